@@ -90,7 +90,7 @@ FILES = {
 
 def wait(simulation: Simulation, condition: Callable[[], bool]) -> None:
     """Wait until this is so."""
-    assert simulation.wait_for(condition, PATIENCE), (simulation.status, simulation.take_output())
+    assert simulation.wait_for(condition, PATIENCE), (simulation.status, simulation.output_cursor().read())
 
 
 def settle(simulation: Simulation) -> None:

@@ -35,12 +35,12 @@ from pyfrc_core.deploy.starting import go_back, start
 
 REQUEST = DeployRequest("robot.py", {})
 TRACEBACK = "Traceback (most recent call last):\n  File robot.py\nRuntimeError: no such gyro\n"
-CRASHED = Watched(ENDED, TRACEBACK, StartState(seconds=4.5, lived=4.1, heard=True, seen=True))
-RUNS = Watched(RUNNING, "", StartState(seconds=1.0, age=1.0, heard=True, seen=True))
+CRASHED = Watched(ENDED, TRACEBACK, StartState(seconds=4.5, lived=4.1, has_output=True, seen=True))
+RUNS = Watched(RUNNING, "", StartState(seconds=1.0, age=1.0, has_output=True, seen=True))
 SLOW = Watched(
     STARTING,
     "looking for the camera\n",
-    StartState(seconds=60.0, age=60.0, heard=True, seen=True, cpu=7.25, network_tables=True),
+    StartState(seconds=60.0, age=60.0, has_output=True, seen=True, cpu=7.25, network_tables=True),
 )
 SILENT = Watched(UNHEARD, "", StartState(seconds=20.0, age=20.0, seen=True, cpu=7.25, network_tables=False))
 
@@ -120,7 +120,9 @@ def test_a_first_process_that_ended_is_reported(talk: UserInterface, shown: io.S
 
 def test_a_long_start_prints_notes(talk: UserInterface, shown: io.StringIO) -> None:
     robot = Watching(RUNS)
-    robot.states = [StartState(seconds=float(each), age=float(each), heard=each > 15, seen=True) for each in range(45)]
+    robot.states = [
+        StartState(seconds=float(each), age=float(each), has_output=each > 15, seen=True) for each in range(45)
+    ]
     start(robot, talk, 1)
     lines = [line for line in shown.getvalue().splitlines() if " after " in line]
     assert [line.partition(":")[0] for line in lines] == [

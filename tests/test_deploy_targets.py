@@ -11,11 +11,11 @@ from core.agent_disk import AgentDisk
 import pyfrc_core.deploy
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.layout import Layout
-from pyfrc_core.deploy.targets import CONTROLLERS, Controller
+from pyfrc_core.deploy.targets import CONTROLLERS, ControllerKind
 
 #: One user, one file with the start command, a service manager.
 ONE_USER = Layout(
-    name="Other Controller",
+    name="Other ControllerKind",
     user="pilot",
     owner="pilot:pilot",
     administrator="pilot",
@@ -99,7 +99,7 @@ def test_programs_of_other_languages_are_found(robot: AgentDisk) -> None:
 
 
 @pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda each: each.name)
-def test_the_hosts_of_a_team_belong_to_it(controller: Controller) -> None:
+def test_the_hosts_of_a_team_belong_to_it(controller: ControllerKind) -> None:
     hosts = [host for host, _ in controller.addresses(1234)]
     teams = {host: controller.team_of_host(host) for host in hosts}
     assert {host for host in hosts if teams[host] is None} == set(controller.shared_hosts)

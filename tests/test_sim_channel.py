@@ -65,7 +65,7 @@ def see_the_users_error(simulation: Simulation) -> None:
     failure = simulation.status.failure
     assert failure is not None
     assert failure.headline == "robot.py:18: LookupError: the user's error"
-    assert "the last words" in simulation.take_output()
+    assert "the last words" in simulation.output_cursor().read()
 
 
 class Gate(threading.Event):
@@ -165,7 +165,7 @@ def test_what_was_printed_is_read_late(
     monkeypatch.setattr(channel, "receive", receiving)
     monkeypatch.setattr(output_pipe, "read", late(output_pipe.read, gate if robot is FAILS else exit_reported))
     with failed(make_project, robot) as simulation:
-        assert "the last words" in simulation.take_output()
+        assert "the last words" in simulation.output_cursor().read()
 
 
 @only_forked
@@ -179,7 +179,7 @@ def test_a_child_holds_the_connection_of_a_robot_that_dies_open(make_project: Ma
     with failed(make_project, LEAVES_A_CHILD.replace('raise LookupError("the user\'s error")', "os._exit(3)")) as dead:
         assert dead.status.failure is not None
         assert dead.status.failure.headline.startswith("robot.py:18: the robot's process ended itself with exit code 3")
-        assert "the last words" in dead.take_output()
+        assert "the last words" in dead.output_cursor().read()
 
 
 def test_a_host_that_finds_no_simulation_leaves_without_a_word(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from browser_pages import HOSTILE, INJECTED, REFUSED, ROBOT, shared_browser  # n
 from recorded_pages import run_in
 from sim_robots import FILES
 
-from pyfrc_core.sim.ui.web.history import MISSING, History
+from pyfrc_core.sim.ui.web.history import MISSING, ValueHistory
 from pyfrc_core.sim.ui.web.packing import packed
 
 SCRIPT = """\
@@ -149,7 +149,7 @@ def test_a_page_that_cannot_be_written_is_an_error_before_the_run(make_project: 
 
 
 def test_values_are_stored_by_columns_of_numbers_and_shapes() -> None:
-    history = History()
+    history = ValueHistory()
     history.add(0.0, {"a": 0.1, "b": True, "c": ({"x": 1.0, "name": "/home/me"}, 2), "d": 1.0})
     history.add(0.02, {"a": 1 / 3, "b": False, "d": float("nan")})
     history.add(0.04, {"a": -2.5, "c": ({"x": 1.5, "name": "/home/me"}, 3)}, ["b"])

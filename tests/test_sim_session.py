@@ -67,7 +67,7 @@ def test_a_robot_that_has_just_been_switched_on(simulation: Simulation) -> None:
     assert snapshot.scene.robot == (10, 12, 0)
     assert [text.text for text in snapshot.scene.drawings] == ["hello"]
     assert (snapshot.scene.field.width, list(snapshot.scene.field.starts)) == (54.25, ["start", "left", "right"])
-    wait(simulation, lambda: "the robot is there" in simulation.take_output())
+    wait(simulation, lambda: "the robot is there" in simulation.output_cursor().read())
     with pytest.raises(FrozenInstanceError):
         snapshot.time = 1.0  # type: ignore[misc]
     with pytest.raises(TypeError):

@@ -9,7 +9,7 @@ import pytest
 
 from pyfrc_core.sim.engine.changes import Change, RunBegan
 from pyfrc_core.sim.ui.web.console import MOST_IMPORTANT, MOST_LINES, Console
-from pyfrc_core.sim.ui.web.history import MISSING, History
+from pyfrc_core.sim.ui.web.history import MISSING, ValueHistory
 from pyfrc_core.sim.ui.web.marks import Marks
 from pyfrc_core.sim.ui.web.messages import json_text, read_value
 from pyfrc_core.sim.ui.web.plots import series
@@ -39,7 +39,7 @@ def random_value(chance: random.Random) -> object:
 def test_every_moment_has_the_values_that_it_had(seed: int) -> None:
     """Against a plain model: a list of all values at each packet."""
     chance = random.Random(seed)
-    history, now, expected = History(), {}, []
+    history, now, expected = ValueHistory(), {}, []
     paths = [f"pwm[{number}].value" for number in range(6)]
     for packet in range(60):
         steady = seed % 2 == 0
@@ -64,7 +64,7 @@ def test_every_moment_has_the_values_that_it_had(seed: int) -> None:
 
 
 def test_a_curve_holds_each_value_until_the_next_change() -> None:
-    history = History()
+    history = ValueHistory()
     history.add(0.0, {"a": 1.0, "name": "x", "list": (1.0, 2.0)})
     history.add(0.5, {"a": 2.0, "list": (1.0, 3.0)})
     history.add(1.0, {"a": 4.0, "name": "y"})
@@ -76,7 +76,7 @@ def test_a_curve_holds_each_value_until_the_next_change() -> None:
 
 
 def test_a_long_curve_keeps_its_peaks() -> None:
-    history = History()
+    history = ValueHistory()
     for packet in range(5000):
         history.add(
             packet * 0.02, {"a": 50.0 if packet == 3217 else -50.0 if packet == 4001 else math.sin(packet / 99)}
@@ -149,7 +149,7 @@ def test_memory_is_limited_by_forgetting_former_runs_and_then_the_oldest_values(
 
 
 def test_a_value_that_has_not_changed_for_long_is_still_known_when_its_change_is_forgotten() -> None:
-    history = History()
+    history = ValueHistory()
     history.add(0.0, {"steady": "x", "gone": 1.0})
     history.add(0.02, {}, ["gone"])
     for packet in range(2, 1000):

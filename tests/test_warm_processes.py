@@ -103,7 +103,7 @@ def found_by(project: RobotProject) -> dict[str, object]:
 
         def complete() -> bool:
             nonlocal printed
-            printed += simulation.take_output()
+            printed = simulation.output_cursor().read()
             return "grün" in printed
 
         wait(simulation, complete)

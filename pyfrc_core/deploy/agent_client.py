@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from ..file_hash import open_file
 from . import recovery_hints
 from .agent import start_monitor, wire
-from .agent_stream import AgentStream, Channel, TimeLimits, agent_command, agent_package
+from .agent_stream import AgentChannel, AgentStream, TimeLimits, agent_command, agent_package
 from .errors import ConnectionFailedError, DeployError, OtherComputerError
 from .facts import Deployed, DeployRequest, Plan, RobotFacts, RolledBack, StartState, Watched
 from .responses import Fields, ResponseError
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .discovery import Address
     from .manifest import Entry, Manifest
     from .recovery_hints import RecoveryHint
-    from .targets import Controller
+    from .targets import ControllerKind
 
 __all__ = ["AgentClient", "DeployRequest", "Deployed", "Plan", "RobotFacts", "RolledBack", "StartState", "Watched"]
 
@@ -39,9 +39,9 @@ class CommandRunner(Protocol):
     """The part of `Connection` that `AgentClient` needs."""
 
     address: Address
-    controller: Controller
+    controller: ControllerKind
 
-    def open(self, command: str) -> Channel: ...
+    def open(self, command: str) -> AgentChannel: ...
 
 
 class AgentClient:
@@ -51,7 +51,7 @@ class AgentClient:
     request, and another `DeployError` if the request fails.
     """
 
-    def __init__(self, stream: AgentStream, controller: Controller) -> None:
+    def __init__(self, stream: AgentStream, controller: ControllerKind) -> None:
         self._stream = stream
         self._controller = controller
         #: Whether the robot restarts the program without another request.

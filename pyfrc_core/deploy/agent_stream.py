@@ -54,7 +54,7 @@ class TimeLimits:
 T = TypeVar("T")
 
 
-class Channel(Protocol):
+class AgentChannel(Protocol):
     """The part of `paramiko.Channel` that is needed."""
 
     @property
@@ -79,7 +79,12 @@ class AgentStream:
     """
 
     def __init__(
-        self, channel: Channel, where: str, python: str, limits: TimeLimits, clock: Callable[[], float] = time.monotonic
+        self,
+        channel: AgentChannel,
+        where: str,
+        python: str,
+        limits: TimeLimits,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._channel = channel
         self._where = where

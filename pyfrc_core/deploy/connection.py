@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from .discovery import CONNECT_SECONDS, Address
 from .errors import ConnectionFailedError, DeployError, RefusedError
 from .host_keys import HostKey, Recognized, RobotKeys
-from .targets import AdministratorTask, Controller
+from .targets import AdministratorTask, ControllerKind
 
 if TYPE_CHECKING:
     import paramiko
@@ -119,7 +119,7 @@ class Connection:
         self,
         transport: paramiko.Transport,
         address: Address,
-        controller: Controller,
+        controller: ControllerKind,
         key: HostKey,
         recognized: Recognized,
         reconnect: Callable[[str], Connection],
@@ -205,7 +205,7 @@ class Connection:
 
 def connect(
     address: Address,
-    controller: Controller,
+    controller: ControllerKind,
     keys: RobotKeys,
     *,
     user: str | None = None,
@@ -282,7 +282,7 @@ def _kind_of_key(algorithm: str) -> str:
 
 
 def _log_in(
-    transport: paramiko.Transport, address: Address, controller: Controller, user: str, credentials: Credentials
+    transport: paramiko.Transport, address: Address, controller: ControllerKind, user: str, credentials: Credentials
 ) -> None:
     import paramiko
 
@@ -307,7 +307,12 @@ def _log_in(
 
 
 def _refused(
-    address: Address, controller: Controller, user: str, allowed: list[str], offered: int, credentials: Credentials
+    address: Address,
+    controller: ControllerKind,
+    user: str,
+    allowed: list[str],
+    offered: int,
+    credentials: Credentials,
 ) -> ConnectionFailedError:
     if offered:
         what = f"the robot refuses {user} with {credentials.offered(offered)}"

@@ -17,7 +17,7 @@ from typing import Any
 
 from ..errors import UsageError
 from .errors import DeployError, OnTheFieldError
-from .targets import Controller, team_of_host
+from .targets import ControllerKind, team_of_host
 
 #: Time limit for each address, in seconds: enough for a radio that loses packets.
 CONNECT_SECONDS = 5.0
@@ -132,7 +132,7 @@ def _dotted(host: str) -> str:
     return socket.inet_ntoa(socket.inet_aton(host))
 
 
-def addresses_of(team: int, controller: Controller, resolve: bool = True) -> list[tuple[Address, str]]:
+def addresses_of(team: int, controller: ControllerKind, resolve: bool = True) -> list[tuple[Address, str]]:
     """Return the possible addresses of a team's robot, each with a description.
 
     :param resolve: include host names
@@ -150,7 +150,7 @@ def team_of(address: Address) -> int | None:
 def find_robot(
     candidates: Sequence[tuple[Address, str]],
     whose: str,
-    controller: Controller,
+    controller: ControllerKind,
     *,
     station_port: int | None = None,
     take_its_robot: bool = True,
@@ -230,7 +230,7 @@ class _Race:
         self._entered[address] = kind
         self._start(self._resolve, address, kind)
 
-    def ask_driver_station(self, controller: Controller, port: int, take_its_robot: bool) -> None:
+    def ask_driver_station(self, controller: ControllerKind, port: int, take_its_robot: bool) -> None:
         self._start(self._driver_station, controller, port, take_its_robot)
 
     def winner(self) -> FoundRobot | None:
@@ -308,7 +308,7 @@ class _Race:
             address, kind, "a server responds, but not an SSH server" if banner else "closed the connection"
         )
 
-    def _driver_station(self, controller: Controller, port: int, take_its_robot: bool) -> Any:
+    def _driver_station(self, controller: ControllerKind, port: int, take_its_robot: bool) -> Any:
         following: list[Any] = []
         try:
             with socket.create_connection(("127.0.0.1", port), timeout=DRIVER_STATION_SECONDS) as station:

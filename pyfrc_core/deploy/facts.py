@@ -12,7 +12,7 @@ from .agent import start_monitor
 
 if TYPE_CHECKING:
     from .responses import Fields
-    from .targets import Controller
+    from .targets import ControllerKind
 
 #: The image of a virtual robot, which has none.
 VIRTUAL_IMAGE = "virtual robot"
@@ -114,7 +114,7 @@ class RobotFacts:
     program_age: float | None = None
 
     @classmethod
-    def of(cls, fields: Fields, controller: Controller) -> RobotFacts:
+    def of(cls, fields: Fields, controller: ControllerKind) -> RobotFacts:
         """Parse the agent's message."""
         texts = fields.texts_or_none("texts")
         image = VIRTUAL_IMAGE if fields.flag("virtual") else controller.image_in(texts)
@@ -254,7 +254,7 @@ class StartState:
     :param seconds:        seconds since the restart
     :param age:            seconds for which its process has been observed; 0 without one
     :param lived:          the same for a process that has ended
-    :param heard:          whether any output was received
+    :param has_output:     whether any output was received
     :param seen:           whether a process was ever observed
     :param cpu:            processor time of the process in seconds; None if unknown
     :param network_tables: whether its NetworkTables server listens, which WPILib starts after the imports and before
@@ -264,7 +264,7 @@ class StartState:
     seconds: float = 0.0
     age: float = 0.0
     lived: float = 0.0
-    heard: bool = False
+    has_output: bool = False
     seen: bool = False
     cpu: float | None = None
     network_tables: bool | None = None
@@ -276,7 +276,7 @@ class StartState:
             seconds=fields.seconds("seconds"),
             age=fields.seconds("age"),
             lived=fields.seconds("lived") if "lived" in fields else 0.0,
-            heard=fields.flag("heard"),
+            has_output=fields.flag("heard"),
             seen=fields.flag("seen"),
             cpu=fields.seconds_or_none("cpu") if "cpu" in fields else None,
             network_tables=fields.flag_or_none("network_tables") if "network_tables" in fields else None,

@@ -25,7 +25,7 @@ from ..errors import UsageError
 from ..text_files import keep_out_of_version_control, write_whole
 from .discovery import Address, addresses_of, team_of
 from .errors import HostKeyError, KeyFileError
-from .targets import Controller, is_shared_host
+from .targets import ControllerKind, is_shared_host
 
 KNOWN_HOSTS = Path(".pyfrc", "known_hosts")
 
@@ -112,7 +112,7 @@ class HostKeys:
         return cls(Path.home(), of_user=True)
 
     def of_robot(
-        self, address: Address, controller: Controller, team: int | None = None, project_team: int | None = None
+        self, address: Address, controller: ControllerKind, team: int | None = None, project_team: int | None = None
     ) -> RobotKeys:
         """Return the known keys of a robot.
 
@@ -186,7 +186,7 @@ class RobotKeys:
     """The known keys of a robot: those of its team, or those of its address."""
 
     def __init__(
-        self, keys: HostKeys, address: Address, controller: Controller, team: int | None, project_team: int | None
+        self, keys: HostKeys, address: Address, controller: ControllerKind, team: int | None, project_team: int | None
     ) -> None:
         self._keys = keys
         self._controller = controller

@@ -58,7 +58,7 @@ class DeployOptions:
 
 
 @dataclass(frozen=True)
-class Program:
+class CheckedProgram:
     """A program to deploy.
 
     :param manifest: its files
@@ -77,7 +77,7 @@ class Program:
     importing: ImportCheck | None
 
 
-def prepare(project: Project, options: DeployOptions, talk: UserInterface) -> Program:
+def prepare(project: Project, options: DeployOptions, talk: UserInterface) -> CheckedProgram:
     """Check the project, and return the program to deploy.
 
     :raises RefusedError: if it must not be deployed
@@ -109,7 +109,7 @@ def prepare(project: Project, options: DeployOptions, talk: UserInterface) -> Pr
         main = project.main_file.name
         imports = ImportSearch(manifest, project.root, main)
         packages = load_robot_packages(project.pyproject)
-        return Program(manifest, main, _deploy_json(project.root), packages, imports, importing)
+        return CheckedProgram(manifest, main, _deploy_json(project.root), packages, imports, importing)
 
 
 def size_text(count: int) -> str:

@@ -23,7 +23,7 @@ from .connection import Connection
 from .errors import ConnectionFailedError, NoPythonError, RefusedError
 from .facts import VIRTUAL_IMAGE
 from .progress import DeployProgress
-from .targets import AdministratorTask, Controller
+from .targets import AdministratorTask, ControllerKind
 
 if TYPE_CHECKING:
     from .agent.layout import Layout
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 NO_CHECK = "To deploy without this check: -n (--no-version-check)."
 
 
-def refuse_unfit_robot(facts: RobotFacts, controller: Controller, where: str, check_versions: bool) -> None:
+def refuse_unfit_robot(facts: RobotFacts, controller: ControllerKind, where: str, check_versions: bool) -> None:
     """Check whether the program can run on the robot.
 
     :param check_versions: also refuse a robot where the program might fail
@@ -46,7 +46,7 @@ def refuse_unfit_robot(facts: RobotFacts, controller: Controller, where: str, ch
             raise RefusedError(each.text, where=where, remedy=f"{each.remedy} {NO_CHECK}")
 
 
-def obstacles(facts: RobotFacts, controller: Controller) -> Iterator[Obstacle]:
+def obstacles(facts: RobotFacts, controller: ControllerKind) -> Iterator[Obstacle]:
     """Yield the reasons why a robot is not ready, most important first.
 
     :raises RefusedError: if `wpilib` is not installed on this computer
@@ -163,12 +163,12 @@ def same_version_on_both(version: str) -> str:
     )
 
 
-def image_it(controller: Controller) -> str:
+def image_it(controller: ControllerKind) -> str:
     """Return how to install the season's image on a robot."""
     return f"{controller.image_it} (image {CURRENT.controller.images[-1]}). {_SECTION}"
 
 
-def image_problem(image: str | None, wpilib: str, controller: Controller) -> str | None:
+def image_problem(image: str | None, wpilib: str, controller: ControllerKind) -> str | None:
     """Return why the season's tools do not accept a robot's image, or None if they accept it.
 
     :param image:  the robot's image; None if unknown

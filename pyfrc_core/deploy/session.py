@@ -14,7 +14,7 @@ from .console import follow_console
 from .discovery import Address
 from .errors import DeployError, RefusedError
 from .facts import Release, RobotFacts
-from .local_checks import DeployOptions, Program, prepare, size_text
+from .local_checks import CheckedProgram, DeployOptions, prepare, size_text
 from .manifest import ascii_path
 from .progress import DeployProgress, UserInterface
 from .robot_checks import BackgroundTask, other_languages_notice, refuse_unfit_robot
@@ -64,7 +64,7 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
 
 
 def _replace_program(
-    robot: AgentClient, connection: Connection, program: Program, options: DeployOptions, talk: UserInterface
+    robot: AgentClient, connection: Connection, program: CheckedProgram, options: DeployOptions, talk: UserInterface
 ) -> None:
     """Upload the program, and start it."""
     from .starting import start
@@ -197,7 +197,7 @@ def show_console(
     follow_console(address, without_driver_station, talk.progress.quiet)
 
 
-def _upload(robot: AgentClient, program: Program, options: DeployOptions, talk: UserInterface) -> Deployed:
+def _upload(robot: AgentClient, program: CheckedProgram, options: DeployOptions, talk: UserInterface) -> Deployed:
     from .facts import DeployRequest
 
     request = DeployRequest(

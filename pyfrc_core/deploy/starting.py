@@ -91,7 +91,7 @@ def _restart(robot: AgentClient, talk: UserInterface) -> Watched:
         }.get(watched.verdict, f"it {_end_of(state)}")
     if watched.verdict == start_monitor.UNHEARD:
         why = "its console is silent, which is normal without a Driver Station"
-        if state.heard:
+        if state.has_output:
             why = "a main loop of its own, such as a MagicRobot's, does not report the end of its start"
         talk.progress.note(f"  judged by its process alone: {why}; {_known_of(state)}")
     if watched.alive and state.lived:
@@ -116,7 +116,7 @@ class _StateReporter:
     def show(self, state: StartState) -> None:
         self._phase.doing(f"{state.seconds:.0f} s; {_known_of(state)}")
         if state.seconds >= self._next:
-            how = "still starting" if state.heard else "no output"
+            how = "still starting" if state.has_output else "no output"
             self._progress.note(f"  {how} after {state.seconds:.0f} s: {_known_of(state)}")
             self._next = (int(state.seconds) // _NOTE_SECONDS + 1) * _NOTE_SECONDS
 

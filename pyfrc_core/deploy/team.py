@@ -17,7 +17,7 @@ from ..text_files import write_whole
 from .connection import NONE_OFFERED, Credentials
 from .discovery import MAX_TEAM, parse_address
 from .progress import Questions
-from .targets import Controller, controller_of
+from .targets import ControllerKind, controller_of
 
 PREFERENCES = Path(".wpilib", "wpilib_preferences.json")
 _OLD_FILE = ".deploy_cfg"
@@ -33,7 +33,7 @@ class RobotTarget:
     #: Where it was specified.
     source: str = "the command"
     #: The kind of computer on it.
-    controller: Controller = field(default_factory=lambda: controller_of(CURRENT))
+    controller: ControllerKind = field(default_factory=lambda: controller_of(CURRENT))
     #: The project's directory, where its host keys are pinned; None outside of a project.
     keys_in: Path | None = None
     #: The project's team, if the robot was specified by its address.

@@ -14,7 +14,7 @@ from ..deploy.facts import RobotFacts
 from ..deploy.robot_checks import RobotWithoutPython, obstacles, other_languages_notice
 from ..deploy.robot_packages import unfit_packages
 from ..deploy.target_connection import load_robot_keys
-from ..deploy.targets import Controller
+from ..deploy.targets import ControllerKind
 from ..deploy.team import find_target
 from ..errors import PyfrcError, SettingsError, UsageError
 from ..project import Project
@@ -124,7 +124,7 @@ def _examine(project: Project | None, connection: Connection) -> Iterator[CheckR
         yield from check_robot_facts(robot.facts, connection.controller, project)
 
 
-def check_robot_facts(facts: RobotFacts, controller: Controller, project: Project | None) -> Iterator[CheckResult]:
+def check_robot_facts(facts: RobotFacts, controller: ControllerKind, project: Project | None) -> Iterator[CheckResult]:
     """Check whether a robot is ready for this project, as a deploy does."""
     problems = [problem(_TOPIC, each.text, each.remedy) for each in obstacles(facts, controller)]
     if project is not None and facts.not_controller is None and facts.wpilib is not None:

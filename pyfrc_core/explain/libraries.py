@@ -22,7 +22,7 @@ _FIRST_STATE = "Write @state(first=True) above the state with which it begins, a
 
 
 @dataclass(frozen=True)
-class Row:
+class KnownError:
     """One error.
 
     :param pattern: matches the beginning of the error's type and text
@@ -40,211 +40,211 @@ class Row:
 
 ROWS = (
     # -- WPILib's devices. In its numbers, DIO channels are 0 to 30, and PWM channels follow from 31 on.
-    Row(
+    KnownError(
         r"RuntimeError: PWM or DIO (?:\d|[12]\d|30) previously allocated.*: (?:Channel|Port) (?P<channel>-?\d+)",
         "DIO channel {channel} is used already{since}",
         f"{_OWN_CHANNEL} An encoder has two channels.",
     ),
-    Row(
+    KnownError(
         r"RuntimeError: PWM or DIO \d+ previously allocated.*: (?:Channel|Port) (?P<channel>-?\d+)",
         "PWM channel {channel} is used already{since}",
         _OWN_CHANNEL,
     ),
-    Row(
+    KnownError(
         r"RuntimeError: (?P<kind>Analog Input|Analog Output|Relay) (?P<channel>\d+) previously allocated",
         "{kind} {channel} is used already{since}",
         _OWN_CHANNEL,
     ),
-    Row(
+    KnownError(
         r"RuntimeError: Attempted to reuse an allocated resource: Channel (?P<channel>\d+)",
         "channel {channel} of this pneumatics module has a solenoid already",
         f"{_OWN_CHANNEL} A DoubleSolenoid has two channels.",
     ),
-    Row(
+    KnownError(
         r"RuntimeError: Attempted to reuse an allocated resource: (?P<module>\d+)$",
         "the pneumatics module {module} has a Compressor object already",
         "Create it once, and pass it to the code that needs it.",
     ),
-    Row(
+    KnownError(
         r"RuntimeError: Allocating channel that is out of range: \w+ (?P<channel>-?\d+)",
         "there is no channel {channel} for such a device",
         "The roboRIO has PWM 0 to 9, DIO 0 to 9, analog inputs 0 to 3, and relays 0 to 3. Its expansion port (MXP) has "
         "PWM 10 to 19, DIO 10 to 25, and analog inputs 4 to 7. Solenoids: 0 to 7 (CTRE), 0 to 15 (REV).",
     ),
-    Row(
+    KnownError(
         r"RuntimeError: Invalid Index for (?P<kind>[\w ]+?)\s*Status.*Minimum: (?P<low>\d+) Maximum: (?P<end>\d+) "
         r"Requested: (?P<channel>-?\d+)",
         "there is no channel {channel} for {kind}: it must be {low} or more, and less than {end}",
         "Change it to the number of the channel that it is wired to.",
     ),
-    Row(
+    KnownError(
         r"RuntimeError: HAL: No available resources to allocate",
         "the roboRIO has no more devices of this kind",
         "It has 8 encoders, 8 counters, 8 interrupts and 1 AddressableLED: create each once, and not in a method that "
         "is called again.",
     ),
-    Row(
+    KnownError(
         r"RuntimeError: A (?P<kind>\w+) instance has already been created with this device ID: (?P<id>\d+)",
         "CAN ID {id} is used already, by another {kind}",
         "Each motor controller needs a CAN ID of its own, set with REV Hardware Client; create one object for each.",
     ),
     # -- magicbot
-    Row(
+    KnownError(
         r"ValueError: Component (?P<name>\w+) \(.*\) must have a method named 'execute'",
         "class {cls} has no execute()",
         "magicbot calls it in each loop: add def execute(self): to the class, with pass if there is nothing to do.",
     ),
-    Row(
+    KnownError(
         r"AttributeError: '(?P<name>\w+)' object has no attribute 'watchdog'",
         "class {cls} has a robotInit(), which replaces that of MagicRobot",
         "Rename it to createObjects: there, a MagicRobot makes its devices.",
         at="robotInit",
         in_robot=True,
     ),
-    Row(
+    KnownError(
         r"MagicInjectError: (?P<kind>Component|Autonomous mode) (?P<component>.+?) has variable (?P<name>\w+) "
         r"\(type <class '(?P<type>[^']+)'>\), which is absent",
         "class {cls} asks for {name}, which the robot does not have",
         "Is the name right? If it is, create self.{name} or self.{component}_{name} in createObjects() of the robot.",
         at="{name}",
     ),
-    Row(
+    KnownError(
         r"MagicInjectError: Component .+? variable (?P<name>\w+) does not match type in robot! \(Got <class 'type'>",
         "{name} is the class itself, and no component: it was written with = instead of :",
         "Declare a component with a colon: {name}: {expected}",
         at="{name}",
         in_robot=True,
     ),
-    Row(
+    KnownError(
         r"MagicInjectError: Component .+? variable (?P<name>\w+) does not match type in robot! "
         r"\(Got <class '(?P<got>[^']+)'>, expected <class '(?P<type>[^']+)'>\)",
         "class {cls} asks for {name} as {type}, but the robot has {got} under this name",
         "Change the type here, or what createObjects() of the robot creates.",
         at="{name}",
     ),
-    Row(
+    KnownError(
         r"TypeError: (?P<robot>\w+) has a non-type annotation on (?P<name>\w+) \((?P<value>.*?)\)",
         "{name}: {value} declares a value as a type",
         "Write {name} = {value} for a value, or {name}: SomeClass for a component.",
         at="{name}",
         in_robot=True,
     ),
-    Row(r"NoFirstStateError", "class {cls} has no first state", _FIRST_STATE),
-    Row(r"ValueError: Starting state not defined", "class {cls} has no first state", _FIRST_STATE),
-    Row(
+    KnownError(r"NoFirstStateError", "class {cls} has no first state", _FIRST_STATE),
+    KnownError(r"ValueError: Starting state not defined", "class {cls} has no first state", _FIRST_STATE),
+    KnownError(
         r"(MultipleFirstStatesError|ValueError: Multiple states were specified)",
         "class {cls} has more than one first state",
         "Write first=True for one of its states only.",
     ),
-    Row(
+    KnownError(
         r"MultipleDefaultStatesError",
         "class {cls} has more than one default state",
         "Write @default_state above one of its methods only.",
     ),
-    Row(
+    KnownError(
         r"IllegalCallError",
         "a state is called like a method",
         'Write self.next_state("NAME") inside the state machine, and engage() outside of it.',
     ),
-    Row(
+    KnownError(
         r"InvalidStateName: cannot have a state named '(?P<name>\w+)'",
         "a state cannot be called {name}: StateMachine has a method of that name",
         "Give the state another name.",
     ),
-    Row(
+    KnownError(
         r"ValueError: Invalid parameter names in (?P<name>\w+): (?P<wrong>.+)",
         "the state {name} has a parameter that magicbot does not know: {wrong}",
         "A state may have the parameters self, tm, state_tm and initial_call.",
     ),
-    Row(
+    KnownError(
         r"ValueError: timed_state functions must specify a duration",
         "a timed_state without a duration",
         "Write @timed_state(duration=2), in seconds.",
     ),
-    Row(
+    KnownError(
         r"ValueError: super\(\).__init__\(components\) was never called",
         "class {cls} does not call super().__init__(components)",
         "Make that the first line of its __init__.",
     ),
-    Row(
+    KnownError(
         r"ValueError: Must define MODE_NAME",
         "class {cls} has no MODE_NAME",
         'Write MODE_NAME = "Two balls" in the class.',
     ),
     # -- commands2
-    Row(
+    KnownError(
         r"IllegalCommandUse: Multiple commands in a parallel composition cannot require.*\(common=\{<(?P<type>[\w.]+)",
         "two commands that run at the same time both need {type}",
         "A subsystem does one command at a time. Run them one after the other, with one.andThen(other) or "
         "commands2.cmd.sequence(one, other), or remove one.",
     ),
-    Row(
+    KnownError(
         r"IllegalCommandUse: Default commands must require their subsystem.*subsystem=<(?P<type>[\w.]+)",
         "the default command of {type} does not require it",
         "Pass the subsystem to the command, as in commands2.RunCommand(function, subsystem); or write "
         "self.addRequirements(subsystem) in the command's __init__.",
     ),
-    Row(
+    KnownError(
         r"IllegalCommandUse: Commands that have been composed may not be.*originally composed at (?P<place>.+?)\)",
         "this command is already part of another one, composed at {place}",
         "Use a command object once: create a second one for the second use, for example with a function that returns "
         "a new command each time.",
     ),
-    Row(
+    KnownError(
         r"IllegalCommandUse: Cannot compose a command twice",
         "the same command object is twice in this composition",
         "Create a command object for each use, for example with a function that returns a new one.",
     ),
-    Row(
+    KnownError(
         r"IllegalCommandUse: Commands that have been scheduled individually",
         "this command is running by itself, and cannot become part of another one",
         "Create another command object for the composition.",
     ),
-    Row(
+    KnownError(
         r"IllegalCommandUse: Commands cannot be added to a composition while it is running",
         "",
         "Add all commands when you create the composition.",
     ),
-    Row(
+    KnownError(
         r"IllegalCommandUse: The deadline command cannot also be",
         "the deadline is also among the other commands",
         "Name it once: deadline.deadlineFor(other, another).",
     ),
-    Row(
+    KnownError(
         r"TypeError: [\w.]+__init__\(\) must be called when overriding __init__",
         "class {cls} does not call super().__init__()",
         "Make that the first line of its __init__.",
     ),
-    Row(
+    KnownError(
         r"TypeError: \w+\.end\(\) takes 1 positional argument but 2 were given",
         "",
         "Write def end(self, interrupted): - the scheduler says whether the command was interrupted.",
     ),
     # -- Python
-    Row(
+    KnownError(
         r"TypeError: can only concatenate str",
         "",
         'Write the value into the text, as in: f"speed: {{value}}"',
     ),
-    Row(r"TypeError: 'int' object is not iterable", "", "To count, write range, as in: for number in range(5):"),
-    Row(r"IndexError: list index out of range", "", "Indexes begin with 0: the last one is the length - 1."),
-    Row(
+    KnownError(r"TypeError: 'int' object is not iterable", "", "To count, write range, as in: for number in range(5):"),
+    KnownError(r"IndexError: list index out of range", "", "Indexes begin with 0: the last one is the length - 1."),
+    KnownError(
         r"TypeError: (?:\w+\.)*(?P<name>\w+): No constructor defined",
         "no object of {name} can be created",
         "Call its functions on the class, as in: wpilib.SmartDashboard.putNumber(name, value)",
     ),
-    Row(
+    KnownError(
         r"TypeError: '(?P<type>\w+)' object is not callable",
         "",
         "The name before () is a {type}, and no function. Was it to be passed as a function: lambda: ...?",
     ),
-    Row(
+    KnownError(
         r"(TypeError|AttributeError): .*'NoneType'",
         "",
         "A value is None: a function without return gives None, and so does a name that is set later.",
     ),
-    Row(r"exit\(", "", "A robot program must not end by itself: remove that line."),
-    Row(r"RecursionError", "a function calls itself without end", "Did you mean super()., or another method?"),
+    KnownError(r"exit\(", "", "A robot program must not end by itself: remove that line."),
+    KnownError(r"RecursionError", "a function calls itself without end", "Did you mean super()., or another method?"),
 )
 
 
@@ -270,7 +270,7 @@ def _unknown_state(error: KeyError) -> Explanation | None:
     return Explanation(text, f"{nearest(str(error.args[0]), known).capitalize()}")
 
 
-def _explained(row: Row, found: re.Match[str], error: BaseException, files: RobotFiles) -> Explanation:
+def _explained(row: KnownError, found: re.Match[str], error: BaseException, files: RobotFiles) -> Explanation:
     words = {name: value or "" for name, value in found.groupdict().items()}
     named = re.search(r"<([\w.]+) object at ", found[0])
     cls = class_named(named[1], files) if named else None

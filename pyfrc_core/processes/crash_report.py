@@ -42,7 +42,7 @@ _os_exit = os._exit
 
 
 @dataclass(frozen=True)
-class Moment:
+class MomentOfExit:
     """When a robot's process ended.
 
     :param seconds: robot time
@@ -182,12 +182,12 @@ def describe_exit(report: bytes, status: int, files: RobotFiles, meanwhile: str)
     return f"{line}: {what}\n\n{text}".strip() if line else f"{what}\n\n{text}".strip()
 
 
-def moment_of(report: bytes) -> Moment | None:
+def moment_of(report: bytes) -> MomentOfExit | None:
     """Return when the process with this crash log ended; None when its robot had not started."""
     if not report.startswith(_MAGIC) or len(report) < _MOMENT.size:
         return None
     _, time_us, mode = _MOMENT.unpack_from(report)
-    return None if time_us == _NOT_STARTED else Moment(time_us / 1_000_000, mode.rstrip(b"\0").decode())
+    return None if time_us == _NOT_STARTED else MomentOfExit(time_us / 1_000_000, mode.rstrip(b"\0").decode())
 
 
 def standstill_of(report: bytes, files: RobotFiles) -> Standstill | None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-#: From this many seconds without progress on, the user is told the line.
-TOLD_AFTER = 3.0
+#: From this many seconds without progress on, the line is reported.
+REPORTED_AFTER = 3.0
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class StandstillNotice:
 
     def __init__(self, meanwhile: str = "") -> None:
         self._meanwhile = meanwhile
-        self._told = False
+        self._reported = False
 
     def look(self, now: Standstill | None) -> str | None:
         """Return what to print, if anything.
@@ -49,8 +49,8 @@ class StandstillNotice:
         :param now: the state of the process
         """
         if now is None:
-            self._told = False
-        elif now.seconds >= TOLD_AFTER and not self._told:
-            self._told = True
+            self._reported = False
+        elif now.seconds >= REPORTED_AFTER and not self._reported:
+            self._reported = True
             return now.text(self._meanwhile)
         return None

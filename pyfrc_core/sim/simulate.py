@@ -22,7 +22,7 @@ from .engine.options import NT4_PORT, SimOptions
 from .engine.simulation import Simulation
 from .engine.watch import watching
 from .page_file import PageFile, place_in
-from .ui.choose import FRONT_ENDS, Wishes, default_name, make_front_end
+from .ui.choose import FRONT_ENDS, FrontEndOptions, default_name, make_front_end
 from .ui.headless import Headless, HeadlessMode
 
 
@@ -78,7 +78,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         raise UsageError("--mode is for simulations without a window", remedy="Add --ui none.")
     if not kind.is_served and request.is_for_page:
         raise UsageError("--share, --port and --allow-host are for the simulator in a browser", remedy="Add --ui web.")
-    front_end = make_front_end(ui, _wishes(request, say))
+    front_end = make_front_end(ui, _front_end_options(request, say))
     ends_by_itself = any(each is not None for each in (request.mode, request.seconds, request.script))
     unattended = not kind.interactive and ends_by_itself
     port = request.nt_port if request.nt_port is not None else 0 if unattended else NT4_PORT
@@ -141,8 +141,8 @@ def _front_end_name(request: SimRequest, say: Callable[[str], object]) -> str:
     return name
 
 
-def _wishes(request: SimRequest, say: Callable[[str], object]) -> Wishes:
-    return Wishes(
+def _front_end_options(request: SimRequest, say: Callable[[str], object]) -> FrontEndOptions:
+    return FrontEndOptions(
         say,
         request.mode,
         request.seconds,

@@ -20,7 +20,7 @@ from pyfrc_core.deploy.agent.robot_paths import Refusal, RobotPaths
 from pyfrc_core.deploy.agent.wire import (
     CONTENT,
     EndedError,
-    OutputPipe,
+    LaptopPipe,
     Wire,
     WireError,
     frame,
@@ -80,7 +80,7 @@ def test_a_pipe_that_the_laptop_reads() -> None:
 
     reader = threading.Thread(target=read)
     reader.start()
-    Wire(io.BytesIO(), OutputPipe(target)).send(text=os.urandom(500_000).hex())
+    Wire(io.BytesIO(), LaptopPipe(target)).send(text=os.urandom(500_000).hex())
     os.close(target)
     reader.join()
     os.close(source)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from pyfrc_core.processes import crash_report
-from pyfrc_core.processes.crash_report import CrashLog, Moment, describe_exit, moment_of
+from pyfrc_core.processes.crash_report import CrashLog, MomentOfExit, describe_exit, moment_of
 from pyfrc_core.processes.exit import EXIT_HANGS
 from pyfrc_core.project.robot_files import RobotFiles
 
@@ -107,12 +107,12 @@ def test_a_moment_counts_once_the_robot_has_started(log: CrashLog) -> None:
     assert moment_of(contents(log)) is None
     assert log.time_us is not None
     log.time_us[0] = 0
-    assert moment_of(contents(log)) == Moment(0, "autonomous")
+    assert moment_of(contents(log)) == MomentOfExit(0, "autonomous")
     log.time_us[0] = 15_020_000
     log.set_mode("teleop")
     assert str(moment_of(contents(log))) == "at 15.02 s in teleop mode"
     log.set_mode("x" * 50)
-    assert moment_of(contents(log)) == Moment(15.02, "x" * 32)
+    assert moment_of(contents(log)) == MomentOfExit(15.02, "x" * 32)
     log.write("and a text")
     assert describe_exit(contents(log), 3, FILES, "meanwhile") == (
         f"the robot's process ended itself with exit code 3, meanwhile, at 15.02 s in {'x' * 32} mode\n\nand a text"

@@ -113,7 +113,7 @@ class Program:
             "seconds": monitor.seconds(now),
             "age": monitor.age(now),
             "lived": monitor.lived,
-            "heard": monitor.heard,
+            "heard": monitor.has_output,
             "seen": monitor.seen,
             **({} if monitor.process is None else process_state(self._host, monitor.process)),
         }

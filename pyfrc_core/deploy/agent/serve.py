@@ -25,14 +25,14 @@ from .start_monitor import ENDED, RUNNING, UNHEARD
 from .system import become, is_root, user
 from .transaction import RESERVE, Deploy, plan
 from .virtual import VirtualRobotClient
-from .wire import EndedError, Message, OutputPipe, Wire, WireError
+from .wire import EndedError, LaptopPipe, Message, Wire, WireError
 
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
 
 
 def main(source: BinaryIO) -> None:
     """Run the agent. Requests come from `source`; responses go to standard output."""
-    wire = Wire(source, OutputPipe(os.dup(1)))
+    wire = Wire(source, LaptopPipe(os.dup(1)))
     hello = wire.receive()
     layout = Layout(**hello["layout"])
     host: Host | None = VirtualRobotClient.from_environment(layout)

@@ -61,7 +61,7 @@ class StartMonitor:
         self._since = 0.0
         self._others: set[int] = set()  # its child processes, which may outlive it
         #: Whether output of the new program was received.
-        self.heard = False
+        self.has_output = False
         #: Whether a process of the new program was ever found.
         self.seen = False
         self._old_seen = float("-inf")
@@ -100,7 +100,7 @@ class StartMonitor:
         found, lines = frozenset(processes), text.splitlines()
         if found & self._old:
             lines, self._old_seen = [], now
-        self.heard = self.heard or bool(lines)
+        self.has_output = self.has_output or bool(lines)
         fresh = found - self._old - self._others
         if self.process is not None and self.process not in fresh:
             beginning = _last_beginning(lines)
@@ -167,7 +167,7 @@ class StartMonitor:
         if left is not None:
             return None if left else RUNNING
         is_judged_alone = now - self._since >= unheard and not self._proof_left(now)
-        if is_judged_alone and not (self.heard and self._reports()):
+        if is_judged_alone and not (self.has_output and self._reports()):
             return UNHEARD
         return STARTING if now - self._restarted >= limit else None
 

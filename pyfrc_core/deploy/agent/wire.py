@@ -90,7 +90,7 @@ def parse_message(kind: bytes, body: bytes) -> Message:
     return message
 
 
-class OutputPipe(RawIOBase):
+class LaptopPipe(RawIOBase):
     """A pipe to the laptop. A laptop that reads nothing for some time counts as disconnected.
 
     :param descriptor: the pipe's file descriptor

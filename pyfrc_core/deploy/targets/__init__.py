@@ -1,4 +1,4 @@
-"""What a deploy does differently on each controller: one module with one `Controller` for each.
+"""What a deploy does differently on each controller: one module with one `ControllerKind` for each.
 
 No other part of a deploy names a controller. To add one, write a module such as `roborio`, and add its record to
 `CONTROLLERS`. The agent on the robot gets the record's `layout` in the first message.
@@ -7,13 +7,13 @@ No other part of a deploy names a controller. To add one, write a module such as
 from __future__ import annotations
 
 from ...season import Season
-from .controller import AdministratorTask, Controller
+from .controller import AdministratorTask, ControllerKind
 from .roborio import ROBORIO
 
 __all__ = [
     "CONTROLLERS",
     "AdministratorTask",
-    "Controller",
+    "ControllerKind",
     "controller_named",
     "controller_of",
     "is_shared_host",
@@ -23,12 +23,12 @@ __all__ = [
 CONTROLLERS = (ROBORIO,)
 
 
-def controller_of(season: Season) -> Controller:
+def controller_of(season: Season) -> ControllerKind:
     """Return the controller of a season's robots."""
     return controller_named(season.controller.name)
 
 
-def controller_named(name: str) -> Controller:
+def controller_named(name: str) -> ControllerKind:
     """Return the controller with this name."""
     return next(each for each in CONTROLLERS if each.name == name)
 

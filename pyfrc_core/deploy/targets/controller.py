@@ -27,7 +27,7 @@ class AdministratorTask:
 
 
 @dataclass(frozen=True)
-class Controller:
+class ControllerKind:
     """A kind of computer on robots.
 
     :param layout:           its files and commands, which the agent needs

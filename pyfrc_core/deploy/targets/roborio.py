@@ -10,7 +10,7 @@ from shlex import quote
 from typing import Any
 
 from ..agent.layout import Layout
-from .controller import AdministratorTask, Controller, Texts
+from .controller import AdministratorTask, ControllerKind, Texts
 
 _HOME = "/home/lvuser"
 _PYTHON = "/usr/local/bin/python3"
@@ -154,7 +154,7 @@ fi
 sync
 """
 
-ROBORIO = Controller(
+ROBORIO = ControllerKind(
     layout=_LAYOUT,
     python=_PYTHON,
     password="",

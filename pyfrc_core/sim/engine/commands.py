@@ -16,7 +16,7 @@ ChosenMode = Literal["autonomous", "teleop", "test"]
 
 
 @dataclass(frozen=True)
-class Run:
+class Resume:
     """Let time go on.
 
     :param until_us: pause at this robot time; None: never
@@ -75,7 +75,7 @@ class Quit:
     """End; for a robot's process and for its host."""
 
 
-Command = Run | Pause | Speed | ChooseMode | Enable | EmergencyStop | Practice | Write
+Command = Resume | Pause | Speed | ChooseMode | Enable | EmergencyStop | Practice | Write
 
 #: The target that moves the robot on the field: x, y and angle as WPILib has them, in metres and degrees.
 ROBOT_ON_FIELD = "nt:/SmartDashboard/Field/Robot"
@@ -110,10 +110,10 @@ class TimeState:
         :param next_packet_us: when the first packet after the command is due
         """
         match command:
-            case Run(packets=int(packets)):
+            case Resume(packets=int(packets)):
                 begin_us = self.until_us if self.stepping and self.until_us is not None else next_packet_us - PACKET_US
                 return replace(self, paused=False, until_us=begin_us + packets * PACKET_US, stepping=True)
-            case Run():
+            case Resume():
                 return replace(self, paused=False, until_us=command.until_us, stepping=False)
             case Pause():
                 return self.stopped()
@@ -167,7 +167,7 @@ class PendingCommands:
         self._commands = [
             (number, command)
             for number, command in self._commands
-            if number > (carried_out if isinstance(command, Run | Pause | Speed) else recorded)
+            if number > (carried_out if isinstance(command, Resume | Pause | Speed) else recorded)
         ]
         self._merge(carried_out)
 

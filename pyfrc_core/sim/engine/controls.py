@@ -19,7 +19,7 @@ from .commands import (
     Enable,
     Pause,
     Practice,
-    Run,
+    Resume,
     Speed,
     Write,
     chooser_target,
@@ -74,7 +74,7 @@ class Controls(ABC):
 
     def resume(self) -> None:
         """Let time go on."""
-        self._send(Run())
+        self._send(Resume())
 
     def pause(self) -> None:
         """Stop time."""
@@ -82,7 +82,7 @@ class Controls(ABC):
 
     def step(self, packets: int = 1) -> None:
         """Let this many packets pass, 0.02 s each, then pause. The rest of an unfinished step is added."""
-        self._send(Run(packets=max(1, packets)))
+        self._send(Resume(packets=max(1, packets)))
 
     def run_for(self, seconds: float) -> None:
         """Let this many seconds of robot time pass, then pause."""
@@ -90,7 +90,7 @@ class Controls(ABC):
 
     def run_until(self, seconds: float) -> None:
         """Pause when robot time gets there."""
-        self._send(Run(until_us=to_us(seconds)))
+        self._send(Resume(until_us=to_us(seconds)))
 
     def set_speed(self, factor: float) -> None:
         """Set the robot seconds per second: 1 is real time, 0.1 slow motion, 0 as fast as possible."""

@@ -86,7 +86,7 @@ class RobotProcesses:
             if self._closed:
                 return self._number
             self._number += 1
-            self._channels[self._number] = Channel(self._number, self._heard, self._gone)
+            self._channels[self._number] = Channel(self._number, self._received, self._gone)
             if self._host is not None and not self._forks:
                 self._end_host()
             self._robot, self._for_robot = None, []
@@ -257,7 +257,7 @@ class RobotProcesses:
             barrier.send(name)
             accepted.wait()
 
-    def _heard(self, number: int, message: Message) -> None:
+    def _received(self, number: int, message: Message) -> None:
         if isinstance(message, Failed):
             self._flush_output()
         self._on_message(number, message)

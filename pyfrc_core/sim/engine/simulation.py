@@ -72,7 +72,6 @@ class Simulation(Controls):
         self._forward_us = 0
         self._streams = ChangeStreams(self._recording, self.reports, self.options.network_values)
         self._output = OutputLog()
-        self._taken = self._output.cursor()
         #: Called with all that robots print, and with their tracebacks, from this object's threads.
         self.echo: Callable[[str], object] = lambda text: None
         self._processes: RobotProcesses | None = None
@@ -125,11 +124,6 @@ class Simulation(Controls):
         """Return a reader of all changes of NetworkTables, as `change_cursor` does of `hal_data`."""
         self._check_recorded()
         return self._streams.network_cursor()
-
-    def take_output(self) -> str:
-        """Return what the robot has printed since the last call, by whatever caller. `output_cursor` is for several."""
-        with self.reports:
-            return self._taken.read()
 
     def wait_for(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
         """Wait until a condition is true, and return whether it is.

@@ -21,7 +21,7 @@ from .headless import Headless, HeadlessMode
 
 
 @dataclass(frozen=True)
-class Wishes:
+class FrontEndOptions:
     """What the user asks of a front end.
 
     :param say: prints to the terminal
@@ -58,7 +58,7 @@ class FrontEndKind:
     :param is_served: whether it is a page, which can be shared with the network
     """
 
-    make: Callable[[Wishes], FrontEnd]
+    make: Callable[[FrontEndOptions], FrontEnd]
     interactive: bool = True
     needs_display: bool = False
     opens_display: bool = False
@@ -68,7 +68,7 @@ class FrontEndKind:
     is_served: bool = False
 
 
-def _make_tk(wishes: Wishes) -> FrontEnd:
+def _make_tk(options: FrontEndOptions) -> FrontEnd:
     try:
         from .tk import TkFrontEnd
     except ImportError as missing:
@@ -78,20 +78,20 @@ def _make_tk(wishes: Wishes) -> FrontEnd:
     return TkFrontEnd()
 
 
-def _make_web(wishes: Wishes) -> FrontEnd:
+def _make_web(options: FrontEndOptions) -> FrontEnd:
     from .web.front_end import WebFrontEnd
     from .web.server import WebOptions
 
-    options = WebOptions(wishes.share, wishes.port, wishes.allowed_hosts, watching=wishes.watching)
-    return WebFrontEnd(wishes.say, options, wishes.quiet)
+    served = WebOptions(options.share, options.port, options.allowed_hosts, watching=options.watching)
+    return WebFrontEnd(options.say, served, options.quiet)
 
 
-def _make_wpilib(wishes: Wishes) -> FrontEnd:
+def _make_wpilib(options: FrontEndOptions) -> FrontEnd:
     return WpilibWindow()
 
 
-def _make_headless(wishes: Wishes) -> FrontEnd:
-    return Headless(wishes.say, wishes.mode, wishes.seconds, wishes.watching, wishes.quiet)
+def _make_headless(options: FrontEndOptions) -> FrontEnd:
+    return Headless(options.say, options.mode, options.seconds, options.watching, options.quiet)
 
 
 FRONT_ENDS: dict[str, FrontEndKind] = {
@@ -115,7 +115,7 @@ def default_name() -> tuple[str, str]:
     return "web", ""
 
 
-def make_front_end(name: str, wishes: Wishes) -> FrontEnd:
+def make_front_end(name: str, options: FrontEndOptions) -> FrontEnd:
     """Return the front end of this name in `FRONT_ENDS`.
 
     :raises UsageError: when it cannot work here, saying what to do
@@ -126,7 +126,7 @@ def make_front_end(name: str, wishes: Wishes) -> FrontEnd:
             f"--ui {name} needs a display, and there is none",
             remedy=WITHOUT_DISPLAY,
         )
-    return kind.make(wishes)
+    return kind.make(options)
 
 
 class WpilibWindow(FrontEnd):

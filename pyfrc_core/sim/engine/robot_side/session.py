@@ -20,19 +20,7 @@ from ....runtime.scripts.player import Player
 from ....runtime.scripts.recorder import Recorder
 from ....runtime.scripts.targets import Targets
 from ....wpi import station
-from ..commands import (
-    ROBOT_ON_FIELD,
-    ChooseMode,
-    EmergencyStop,
-    Enable,
-    Pause,
-    Practice,
-    Quit,
-    Run,
-    Speed,
-    TimeState,
-    Write,
-)
+from .. import commands
 from ..messages import Job, Ready, Replayed, Update
 from ..scene import Pose, Target
 from .driven_path import DrivenPath
@@ -255,7 +243,7 @@ class Session:
     def _stop_us(self) -> int:
         return 1 << 62 if self._time.until_us is None else self._time.until_us
 
-    def _set_time(self, time: TimeState) -> None:
+    def _set_time(self, time: commands.TimeState) -> None:
         self._time = time
         self._pace.paused, self._pace.speed = time.paused, time.speed
         self._pace.begin(self._run.clock.now_us)
@@ -268,7 +256,7 @@ class Session:
         try:
             while self._connection.poll():
                 command = self._connection.recv()
-                if isinstance(command, Quit):
+                if isinstance(command, commands.Quit):
                     return False
                 self._carry_out(command)
                 received = True
@@ -281,18 +269,18 @@ class Session:
     def _carry_out(self, command: object) -> None:
         self._carried_out += 1
         match command:
-            case Run() | Pause() | Speed():
+            case commands.Resume() | commands.Pause() | commands.Speed():
                 self._set_time(self._time.after(command, self._run.clock.next_packet_us))
-            case ChooseMode():
+            case commands.ChooseMode():
                 self._station.choose(command)
-            case Enable():
+            case commands.Enable():
                 if note := self._station.enable(command):
                     self._notes.append(note)
-            case EmergencyStop():
+            case commands.EmergencyStop():
                 self._station.emergency_stop(command)
-            case Practice():
+            case commands.Practice():
                 self._station.practise(command)
-            case Write():
+            case commands.Write():
                 for target, value in command.writes.items():
                     self._put(target, value)
 
@@ -303,7 +291,7 @@ class Session:
             self._notes.append(f"{target} = {value!r}: {wrong}")
 
     def _write(self, target: str, value: object) -> None:
-        if target == ROBOT_ON_FIELD:  # robot code may show a field of its own under that name
+        if target == commands.ROBOT_ON_FIELD:  # robot code may show a field of its own under that name
             target = target.replace("/Field/", f"/{getattr(self._run.physics, 'field_name', 'Field')}/")
         self._targets.write(target, value, self._run.clock.now_us)
 

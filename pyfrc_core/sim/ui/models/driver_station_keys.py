@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from .joysticks import Sticks
-from .keyboard import Control, KeyDriver, Layout, canonical, layout_for
+from .keyboard import Control, KeyDriver, KeyLayout, canonical, layout_for
 from .time_controls import toggle
 
 if TYPE_CHECKING:
@@ -45,12 +45,12 @@ class DriverStationKeys:
         self._with_control: dict[str, Callable[[], object]] = {"e": simulation.enable, "q": close}
 
     @property
-    def layout(self) -> Layout:
+    def layout(self) -> KeyLayout:
         """The layout of the keys that drive."""
         return self._driver.layout
 
     @layout.setter
-    def layout(self, layout: Layout) -> None:
+    def layout(self, layout: KeyLayout) -> None:
         self._driver.layout = layout
         self._move()
 

@@ -29,7 +29,7 @@ _SHIFTED = dict(zip(("exclam", "at", "numbersign", "dollar", "percent", "asciici
 
 
 @dataclass(frozen=True)
-class Layout:
+class KeyLayout:
     """An assignment of keys.
 
     :param name: its name for the user
@@ -50,7 +50,7 @@ def _pair(left: str, right: str, control: Control) -> dict[str, dict[Control, fl
 _LEFT, _RIGHT = (0, 1), (1, 1)
 
 LAYOUTS = (
-    Layout(
+    KeyLayout(
         "Tank: both sides",
         "W S drive, A D turn (Y of joysticks 0 and 1)",
         {
@@ -61,7 +61,7 @@ LAYOUTS = (
             **_pair("up", "down", _RIGHT),
         },
     ),
-    Layout(
+    KeyLayout(
         "Two joysticks",
         "WASD: joystick 0, Q E: its twist; arrows: joystick 1",
         {
@@ -72,7 +72,7 @@ LAYOUTS = (
             **_pair("up", "down", (1, 1)),
         },
     ),
-    Layout(
+    KeyLayout(
         "Gamepad",
         "WASD: left stick of 0, arrows: right stick, Q E: triggers",
         {
@@ -87,7 +87,7 @@ LAYOUTS = (
 )
 
 
-def layout_for(config: SimConfig) -> Layout:
+def layout_for(config: SimConfig) -> KeyLayout:
     """Return the layout for a robot: the axes of joystick 0 that it labels show which kind of joystick it uses."""
     tank, joysticks, gamepad = LAYOUTS
     named = config.joysticks[0].axes.keys() if 0 in config.joysticks else set()
@@ -108,7 +108,7 @@ def canonical(keysym: str) -> str:
 class KeyDriver:
     """The keys that are held, and the axes and buttons that follow from them."""
 
-    def __init__(self, layout: Layout = LAYOUTS[0]) -> None:
+    def __init__(self, layout: KeyLayout = LAYOUTS[0]) -> None:
         self.layout = layout
         self.held: set[str] = set()
 

@@ -6,7 +6,7 @@ import math
 import re
 
 from ....physics.pose import Pose
-from ....processes.standstill import TOLD_AFTER
+from ....processes.standstill import REPORTED_AFTER
 from ...engine.snapshot import Snapshot, Status
 
 #: The alliance stations: as they are shown, in the order of their numbers, and as they are commanded.
@@ -39,7 +39,7 @@ def mode_text(snapshot: Snapshot | None, status: Status) -> tuple[str, str]:
         return "No robot code", "error"
     if not status.responding:
         stands = status.standstill
-        if stands is not None and stands.seconds >= TOLD_AFTER:
+        if stands is not None and stands.seconds >= REPORTED_AFTER:
             return f"Not responding: {stands.place}", "error"
         return "Not responding", "error"
     if status.state == "starting" and status.replaying_to:

@@ -19,7 +19,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from ....config.pictures import field_picture, picture_kind
 from .access import Access, Guard, Receive, Role, Scope, Send
-from .commands import Commands
+from .commands import PageCommands
 from .greeting import greeting
 from .page_client import PageClient
 from .single_file import PAGE
@@ -128,7 +128,7 @@ class WebApp:
         client = PageClient(
             socket,
             self._collector,
-            None if driver is None else Commands(self._simulation, driver, self._collector, self._close),
+            None if driver is None else PageCommands(self._simulation, driver, self._collector, self._close),
             UpdateBuilder(self._collector, image),
             lambda: greeting(self._simulation, number, role == "view", self._watching),
             lambda: len(self._clients),

@@ -26,7 +26,7 @@ _MOST_STEPS = 3000
 _FARTHEST = 1e6
 
 
-class Commands:
+class PageCommands:
     """Carries out the commands of one page.
 
     :param driver: the person at the page

@@ -31,7 +31,7 @@ def _size_of(value: Any) -> int:
     return _OBJECT_SIZE if isinstance(value, str) else 24
 
 
-class Changes:
+class ValueChanges:
     """The changes of one value: the numbers of packets, and the value after each.
 
     Most values are numbers, which take 8 bytes each in an array. Other values are objects in a list.
@@ -67,9 +67,9 @@ class Changes:
         after = bisect_right(self.packets, packet)
         return self.values[after - 1] if after else MISSING
 
-    def until(self, packet: int) -> Changes:
+    def until(self, packet: int) -> ValueChanges:
         """Return a copy of the changes until a packet."""
-        part, end = Changes(), bisect_right(self.packets, packet)
+        part, end = ValueChanges(), bisect_right(self.packets, packet)
         part.packets, part.values, part._object_size = self.packets[:end], self.values[:end], self._object_size
         return part
 
@@ -80,14 +80,14 @@ class Changes:
             self.packets[0] = packet
 
 
-class History:
+class ValueHistory:
     """The values of one run. Use it from one thread at a time."""
 
     def __init__(self) -> None:
         self._times = array("d")
         #: The number of the first packet that is known; packets count from 0.
         self._first = 0
-        self._changes: dict[str, Changes] = {}
+        self._changes: dict[str, ValueChanges] = {}
         self._now: dict[str, Any] = {}
 
     @property
@@ -127,7 +127,7 @@ class History:
         for path, value in values.items():
             changes = known.get(path)
             if changes is None:
-                changes = known[path] = Changes()
+                changes = known[path] = ValueChanges()
             changes.append(packet, value)
         self._now.update(values)
         for path in gone:
@@ -147,9 +147,9 @@ class History:
                 del self._changes[path]
         return True
 
-    def until(self, time: float) -> History:
+    def until(self, time: float) -> ValueHistory:
         """Return a copy of the part until a moment, which can grow differently."""
-        part, last = History(), self._packet_at(time)
+        part, last = ValueHistory(), self._packet_at(time)
         part._first, part._times = self._first, self._times[: last + 1 - self._first]
         copies = ((path, changes.until(last)) for path, changes in self._changes.items())
         part._changes = {path: changes for path, changes in copies if changes.packets}

@@ -16,7 +16,7 @@ from itertools import pairwise
 from typing import Any
 
 from ...engine.messages import TYPE
-from .history import MISSING, History
+from .history import MISSING, ValueHistory
 
 #: The digits of a number that are kept: more than a plot or a panel shows.
 _DIGITS = 7
@@ -25,7 +25,7 @@ _MOST_DECIMALS = 12
 _GONE = {"$": "gone"}
 
 
-def packed(history: History, clean: Callable[[str], str]) -> dict[str, Any]:
+def packed(history: ValueHistory, clean: Callable[[str], str]) -> dict[str, Any]:
     """Return a history for a page.
 
     :param clean: changes each text

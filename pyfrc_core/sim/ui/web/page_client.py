@@ -8,7 +8,7 @@ from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
 
 from ...engine.messages import TYPE
-from .commands import Commands
+from .commands import PageCommands
 from .greeting import save_layout
 from .messages import CommandError, Message, json_text, read_message
 from .updates import UpdateBuilder
@@ -40,7 +40,7 @@ class PageClient:
         self,
         socket: WebSocket,
         collector: Collector,
-        commands: Commands | None,
+        commands: PageCommands | None,
         builder: UpdateBuilder,
         hello: Callable[[], dict[str, Any]],
         clients: Callable[[], int],
@@ -110,7 +110,7 @@ class PageClient:
             case other:
                 raise CommandError(f"There is no message {other[:80]!r}. Reload the page.")
 
-    async def _in_order(self, act: Callable[[Commands], dict[str, Any]]) -> dict[str, Any]:
+    async def _in_order(self, act: Callable[[PageCommands], dict[str, Any]]) -> dict[str, Any]:
         if self._commands is None:
             raise CommandError(_READ_ONLY)
         return await asyncio.get_running_loop().run_in_executor(self._executor, act, self._commands)

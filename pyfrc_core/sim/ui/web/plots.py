@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from itertools import zip_longest
 from typing import Any
 
-from .history import MISSING, History
+from .history import MISSING, ValueHistory
 
 _ELEMENT = re.compile(r"(?P<whole>.+)\[(?P<index>\d+)\]")
 #: The most points of a curve, whatever is asked for.
@@ -22,7 +22,7 @@ def element_of(path: str) -> tuple[str, int | None]:
     return (path, None) if match is None else (match["whole"], int(match["index"]))
 
 
-def resolve(history: History, path: str) -> tuple[str, int | None]:
+def resolve(history: ValueHistory, path: str) -> tuple[str, int | None]:
     """Return the path that the history has, and the index of an element of its value, or None."""
     whole, index = element_of(path)
     return (path, None) if index is None or path in history.now or whole not in history.now else (whole, index)
@@ -35,7 +35,7 @@ def picked(value: Any, index: int | None) -> Any:
     return value[index] if isinstance(value, tuple) and index < len(value) else MISSING
 
 
-def series(history: History, path: str, begin: float, end: float, points: int) -> dict[str, Any]:
+def series(history: ValueHistory, path: str, begin: float, end: float, points: int) -> dict[str, Any]:
     """Return the curve of a value: times, values, and the kind of its values.
 
     A value holds until the next time. If there are more changes than points, the lowest and the highest of each
@@ -99,7 +99,7 @@ class FirstDifference:
         self.time: float | None = None
         self.paths: list[str] = []
 
-    def compare(self, one: History, other: History, path: str) -> None:
+    def compare(self, one: ValueHistory, other: ValueHistory, path: str) -> None:
         """Look for an earlier difference in this value."""
         time = self._difference(one, other, path)
         if time is None:
@@ -110,7 +110,7 @@ class FirstDifference:
         if len(self.paths) < _MOST_NAMED:
             self.paths.append(path)
 
-    def _difference(self, one: History, other: History, path: str) -> float | None:
+    def _difference(self, one: ValueHistory, other: ValueHistory, path: str) -> float | None:
         changes = zip_longest(
             _changes(one, path, self._begin, self._end), _changes(other, path, self._begin, self._end)
         )
@@ -122,7 +122,7 @@ class FirstDifference:
         return None
 
 
-def _changes(history: History, path: str, begin: float, end: float) -> Iterator[tuple[float, Any]]:
+def _changes(history: ValueHistory, path: str, begin: float, end: float) -> Iterator[tuple[float, Any]]:
     """Yield the value at the beginning, and each later change of it."""
     whole, index = resolve(history, path)
     before = picked(history.value_at(whole, begin), index)

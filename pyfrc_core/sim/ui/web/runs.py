@@ -10,7 +10,7 @@ from typing import Any, Literal
 from ...engine.changes import Change, RunBegan
 from ...engine.messages import MODE, POSE, TYPE, VALUE
 from ..models.wording import clock
-from .history import MISSING, History
+from .history import MISSING, ValueHistory
 from .packing import packed
 from .plots import MOST_POINTS, FirstDifference, picked, resolve, series
 
@@ -37,7 +37,7 @@ class Branch:
     name: str
     begin: float
     end: float
-    histories: dict[Source, History] = field(default_factory=dict)
+    histories: dict[Source, ValueHistory] = field(default_factory=dict)
 
     def plain(self) -> dict[str, object]:
         """Return it for a page."""
@@ -53,7 +53,7 @@ class Runs:
     def __init__(self, most_bytes: int = MOST_BYTES) -> None:
         self._lock = threading.Lock()
         self._most_bytes = most_bytes
-        self._histories: dict[Source, History] = {"hal": History(), "network": History()}
+        self._histories: dict[Source, ValueHistory] = {"hal": ValueHistory(), "network": ValueHistory()}
         #: The number of the run that each of the histories has.
         self._numbers: dict[Source, int] = {"hal": 0, "network": 0}
         self._packets = 0
@@ -85,7 +85,7 @@ class Runs:
         former = self._histories[source]
         self._keep(source, former, began)
         if not began.values:  # from the start: its changes have everything
-            self._histories[source] = History()
+            self._histories[source] = ValueHistory()
         else:
             history = former.until(began.time + _ROUNDING)
             now = history.now
@@ -94,7 +94,7 @@ class Runs:
             self._histories[source] = history
         self._numbers[source] = began.number
 
-    def _keep(self, source: Source, former: History, began: RunBegan) -> None:
+    def _keep(self, source: Source, former: ValueHistory, began: RunBegan) -> None:
         """Keep the values of the run before, when those of both sources are there and the run went on further."""
         leaving = self._leaving
         if leaving is None or leaving.number != began.number:
@@ -167,7 +167,7 @@ class Runs:
             if branch is None:
                 return None
             end = max(history.end for history in self._histories.values())
-            compared: list[tuple[History, History, str]] = []
+            compared: list[tuple[ValueHistory, ValueHistory, str]] = []
             found = FirstDifference(branch.begin, min(end, branch.end) + _ROUNDING)
             for source, history in self._histories.items():
                 former = branch.histories[source]
@@ -224,7 +224,7 @@ class Runs:
         packets: dict[Source, int] = {source: history.packets for source, history in self._histories.items()}
         return Position(dict(self._numbers), packets)
 
-    def _history(self, source: Source, branch: int | None) -> History | None:
+    def _history(self, source: Source, branch: int | None) -> ValueHistory | None:
         if branch is None:
             return self._histories[source]
         found = self._branch(branch)
