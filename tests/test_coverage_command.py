@@ -233,17 +233,3 @@ def test_the_worst_file_comes_first_and_in_it_the_longest_function() -> None:
 def test_lines_that_a_simulation_runs_count(project: RobotProject) -> None:
     report = measured(project, "sim", "--ui", "none", "--mode", "practice", "--nt-port", "0")
     assert functions_run(report) == {"in_a_thread", "in_a_notifier", "in_autonomous"}
-
-
-def test_a_file_that_cannot_be_parsed_does_not_cost_the_coverage_report(make_project: MakeProject) -> None:
-    project = make_project(
-        {
-            "robot.py": "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n",
-            "old_robot.py": 'print "hello"\n',
-            "tests/pyfrc_test.py": "from pyfrc.tests import *\n",
-        }
-    )
-    result = project.run("test", "--coverage", "--", "-q")
-    assert result.code == 0, result.output
-    assert re.search(r"^robot\.py .* 100%$", result.stdout, re.MULTILINE)
-    assert "Traceback" not in result.output

@@ -208,35 +208,3 @@ def test_moving(control, hal_data, robot, physics_controller):
         assert max(abs(module.drive_motor.get_position().value) for module in robot.container.drivetrain.modules) > 0.1
 """,
     )
-
-
-def test_tank_on_sparks_drives(make_project: MakeProject) -> None:
-    project = competition_robot(make_project, "tank_arm")
-    printed = create(project)
-    assert "left: SPARK MAX [10]" in printed
-    assert "mechanism: SPARK MAX [20] (container.arm.motor)" in printed
-    text = (project.path / "physics.py").read_text()
-    assert "WHEEL_MOTOR = DCMotor.NEO(1)  # on each motor controller\n" in text
-    assert "ARM_GEARING = 80 " in text
-    run_test(
-        project,
-        """
-from pytest import approx
-
-
-def test_driving(control, hal_data, robot, physics_controller):
-    with control.run_robot():
-        control.step_timing(seconds=0.5, autonomous=False, enabled=False)
-        start = physics_controller.get_pose()
-        hal_data["joysticks"][0]["axes"][1] = -1.0
-        control.step_timing(seconds=2, autonomous=False, enabled=True)
-        driven = physics_controller.get_pose().relativeTo(start)
-        drivetrain = robot.container.drivetrain
-        assert 2 < driven.X() < 10 and abs(driven.Y()) < 0.1
-        assert drivetrain.left_encoder.getDistance() == approx(driven.X(), abs=0.1)
-        for side in "left", "right":
-            encoder = getattr(drivetrain, f"{side}_motor_encoder")
-            assert getattr(drivetrain, side).getAppliedOutput() > 0.9
-            assert encoder.getPosition() > 1 and encoder.getVelocity() > 1
-""",
-    )

@@ -259,16 +259,6 @@ def test_attributes_of_a_tank_model_are_set() -> None:
     assert model.l_position - before == pytest.approx(0.004, rel=0.05)
 
 
-def test_the_levers_of_a_tank_model_are_set() -> None:
-    model, twice, half = tank_model(), tank_model(), tank_model()
-    twice.bm = 2 * twice.bm
-    half.inertia = 0.5 * half.inertia
-    turned = [each.get_distance(-1, -1, 0.02)[2] for each in (model, twice, half)]
-    assert turned[1:] == pytest.approx([2 * turned[0]] * 2)
-    with pytest.raises(ValueError, match="bm"):
-        model.bm = 3 * units.feet
-
-
 def test_wheel_speeds_are_set() -> None:
     drive = drivetrains.MecanumDrivetrain()
     drive.get_vector(1, 1, 1, 1)
@@ -301,17 +291,6 @@ def test_attributes_of_a_motor_model_are_set() -> None:
     assert motor.kv.to("volt * second / foot").magnitude == pytest.approx(0.5)
     with pytest.raises(ValueError, match="kv"):
         motor.kv = 0.5
-
-
-def test_a_side_of_a_tank_model_takes_other_constants() -> None:
-    """Private in 2019, too, and reached into by tests."""
-    model = tank_model()
-    model.get_distance(-1, 1, 0.02)
-    before = model.l_velocity
-    model._lmotor.vintercept = 12 * units.volt
-    for _ in range(20):
-        model.get_distance(-1, 1, 0.02)
-    assert model.l_velocity < before < model.r_velocity
 
 
 def test_methods_and_attributes_of_models_are_replaced(monkeypatch: pytest.MonkeyPatch) -> None:

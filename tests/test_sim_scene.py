@@ -15,7 +15,6 @@ from pyfrc_core.config.findings import SettingsWarning
 from pyfrc_core.errors import PyfrcError, UsageError
 from pyfrc_core.project import Project
 from pyfrc_core.sim.engine.field import field_of, tags_of
-from pyfrc_core.sim.engine.robot_side.user_renderer import MOST_DRAWINGS
 from pyfrc_core.sim.engine.scene import Field, Line, LineStyle, Pose, Scene, Shape, Tag, Target, Text, TextStyle
 from pyfrc_core.sim.ui.picture import draw_picture
 
@@ -174,17 +173,6 @@ def test_many_threads_draw_at_once(renderer: UserRenderer) -> None:
     }
 
 
-def test_what_is_drawn_again_and_again_does_not_pile_up(renderer: UserRenderer) -> None:
-    for _ in range(10):
-        renderer.draw_text("same", (1, 1))
-    assert len(renderer.drawings()) == 1
-    for number in range(MOST_DRAWINGS + 5):
-        renderer.draw_text(str(number), (1, 1))
-    drawings = renderer.drawings()
-    assert len(drawings) == MOST_DRAWINGS
-    assert drawings[-1].text == str(MOST_DRAWINGS + 4)
-
-
 # -- the field -------------------------------------------------------------------------------------------------------
 
 
@@ -302,11 +290,3 @@ def test_a_picture_of_tags_and_on_an_image(tmp_path: Path) -> None:
     image.write_text("no picture")
     with pytest.raises(UsageError, match=r"field.png is no picture"):
         draw_picture(scene, tmp_path / "path.png")
-
-
-@pytest.mark.parametrize("name", ["path", "path.doc", "sub"])
-def test_a_picture_that_cannot_be_written(name: str, tmp_path: Path) -> None:
-    pytest.importorskip("PIL.Image")
-    (tmp_path / "sub.png").mkdir()
-    with pytest.raises(UsageError, match=r"path|sub"):
-        draw_picture(SCENE, tmp_path / (name if name != "sub" else "sub.png"))

@@ -21,10 +21,10 @@ from pyfrc_core.physics.pose import Pose
 from pyfrc_core.processes.standstill import Standstill
 from pyfrc_core.sim import Field, Scene, Snapshot, Status
 from pyfrc_core.sim.engine.snapshot import Failure
-from pyfrc_core.sim.ui.models.devices import SETTABLE, DeviceRows, Row, RowKind, panels_of
+from pyfrc_core.sim.ui.models.devices import SETTABLE, Row, RowKind, panels_of
 from pyfrc_core.sim.ui.models.driver_station_keys import DriverStationKeys
 from pyfrc_core.sim.ui.models.gamepads import HINT, GamepadRouter, Reading
-from pyfrc_core.sim.ui.models.joysticks import RELEASED, Sticks, axis_labels, button_labels, direction
+from pyfrc_core.sim.ui.models.joysticks import RELEASED, Sticks, axis_labels, button_labels
 from pyfrc_core.sim.ui.models.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical, layout_for
 from pyfrc_core.sim.ui.models.time_controls import FASTEST, SLOWEST, slider_of_speed, speed_of_slider
 from pyfrc_core.sim.ui.models.viewport import Viewport
@@ -35,7 +35,6 @@ from pyfrc_core.sim.ui.models.wording import (
     typed_number,
 )
 from pyfrc_core.sim.ui.tk.device_items import ITEMS
-from pyfrc_core.sim.ui.tk.theme import scale_for
 
 FIELD = Field(54.25, 26.5, 20.0, 2.0, 3.0, {"start": Pose(0.0, 0.0, 0.0)})
 
@@ -178,13 +177,6 @@ def test_the_set_point_of_a_spark_has_its_mode_and_unit(values: dict[str, Any], 
     assert rows["Position"].kind in SETTABLE
 
 
-def test_a_new_mode_makes_new_rows() -> None:
-    rows = DeviceRows(SimConfig())
-    assert rows.update(spark(1))
-    assert not rows.update(spark(1))
-    assert rows.update(spark(3))
-
-
 def test_ctre_devices_have_the_names_that_people_know() -> None:
     values = {
         'CAN["CANMotor:Talon FX (v6)[3]"].dutyCycle': 0.5,
@@ -218,30 +210,6 @@ def test_from_the_field_to_the_screen_and_back(view: Viewport, x: float, y: floa
     there = view.to_screen(x, y)
     assert view.to_field(*there) == pytest.approx((x, y), abs=1e-6)
     assert view.line([(x, y), (x, y)]) == pytest.approx([*there, *there], rel=1e-9, abs=1e-6)
-
-
-@given(lengths, lengths, pixels, pixels)
-def test_the_whole_field_is_to_be_seen(width: float, height: float, across: int, down: int) -> None:
-    view = Viewport.whole(width, height, across, down)
-    (left, top), (right, bottom) = view.to_screen(0, 0), view.to_screen(width, height)
-    assert 0 <= left < right <= across  # x to the right
-    assert 0 <= top < bottom <= down  # y downwards
-    assert (right - left) / (bottom - top) == pytest.approx(width / height)
-
-
-@pytest.mark.parametrize(
-    ("dpi", "width", "height", "points", "scale"),
-    [
-        (96, 1366, 768, False, 1.0),
-        (100, 1366, 768, False, 1.0),  # nearly as the design: letters stay sharp
-        (192, 3840, 2160, False, 2.0),
-        (144, 1366, 768, False, 1366 / 1300),  # what fits
-        (72, 1440, 900, True, 1.0),  # macOS scales by itself
-        (96, 800, 600, False, 0.75),
-    ],
-)
-def test_scaling(dpi: float, width: int, height: int, points: bool, scale: float) -> None:
-    assert scale_for(dpi, width, height, points=points) == pytest.approx(scale)
 
 
 # -- keys -------------------------------------------------------------------------------------------------------------
@@ -312,13 +280,6 @@ def test_keys_are_laid_out_for_what_the_robot_is_driven_with(joysticks: dict[int
     assert layout_for(SimConfig.model_validate({"joysticks": joysticks})).name == layout
 
 
-def test_three_keys_at_once_enable() -> None:
-    made = driver("Gamepad", "bracketleft", "bracketright")
-    assert not made.asks_to_enable
-    made.press("backslash")
-    assert made.asks_to_enable
-
-
 # -- joysticks --------------------------------------------------------------------------------------------------------
 
 
@@ -361,12 +322,6 @@ def test_what_the_robot_has_is_shown() -> None:
     assert told.calls == [("set_axis", 0, 1, 1.0)]
     made.adopt({**values, "joysticks[0].povs": (RELEASED,)})
     assert (first.axes[1], first.pov) == (-0.5, RELEASED)
-
-
-@given(st.integers(0, 7), st.floats(0.01, 100))
-def test_directions_of_a_pov(eighth: int, far: float) -> None:
-    angle = math.radians(eighth * 45)
-    assert direction(far * math.sin(angle), -far * math.cos(angle)) == eighth * 45
 
 
 # -- gamepads ---------------------------------------------------------------------------------------------------------

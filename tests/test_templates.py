@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import functools
 import importlib.util
 import io
@@ -45,9 +44,6 @@ ON_THE_ROBOT = (
 
 #: The first command of the workflows.
 INSTALLING = ["pip", "install", "-r", "requirements.txt"]
-
-#: A function as long as this is nothing that two robots happen to have both.
-LONG_FUNCTION = 6
 
 
 @pytest.fixture(scope="module")
@@ -265,20 +261,6 @@ def test_no_two_templates_share_a_file_and_none_replaces_one_of_the_base() -> No
         for file, text in own.items():
             where[text].append(f"{template}/{file}")
     assert [files for files in where.values() if len(files) > 1] == []
-
-
-def test_no_two_templates_share_a_long_function() -> None:
-    where = defaultdict(set)
-    for template in TEMPLATES:
-        for file, text in overlay(template).items():
-            for node in ast.walk(ast.parse(text)) if file.endswith(".py") else ():
-                if isinstance(node, ast.FunctionDef):
-                    body = node.body[1:] if ast.get_docstring(node) else node.body
-                    lines = "\n".join(map(ast.unparse, body))
-                    if lines.count("\n") + 1 >= LONG_FUNCTION:
-                        where[lines].add(f"{template}/{file}: {node.name}")
-    assert len(where) > 20
-    assert [sorted(places) for places in where.values() if len(places) > 1] == []
 
 
 def test_every_directory_of_templates_is_one() -> None:

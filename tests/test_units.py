@@ -151,22 +151,6 @@ def test_a_cache_that_cannot_be_kept_costs_only_time(tmp_path: Path) -> None:
     assert works(registry.build(None))
 
 
-def test_two_at_once_leave_one_whole_cache(definitions: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = tmp_path / "definitions"
-    other = shutil.copytree(definitions, tmp_path / "other")
-    remove = shutil.rmtree
-
-    def another_process_is_first(path: Path, **options: Any) -> None:
-        remove(path, **options)
-        if path == folder and not folder.exists():
-            shutil.copytree(other, folder)
-
-    monkeypatch.setattr(shutil, "rmtree", another_process_is_first)
-    assert works(registry.build(folder))
-    assert {path.name for path in folder.iterdir()} == {path.name for path in other.iterdir()}
-    assert {path.name for path in tmp_path.iterdir()} == {"definitions", "other"}
-
-
 @pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="XDG_CACHE_HOME is of Linux")
 def test_the_cache_is_in_the_users_cache_directory(tmp_path: Path) -> None:
     assert python(KNOWS_ITS_UNITS, XDG_CACHE_HOME=str(tmp_path)) == "1.0 60 counts_per_minute\n"

@@ -97,26 +97,6 @@ def test_the_direction_from_an_input_and_the_length_of_a_pulse(clock: Clock) -> 
     assert pulses.getPeriod() == pytest.approx(0.03)
 
 
-def test_a_subclass_and_wrong_arguments(clock: Clock) -> None:
-    class Balls(wpilib.Counter):
-        def __init__(self) -> None:
-            super().__init__(channel=FIRST + 4)
-
-        def get(self) -> int:
-            return 10 + super().get()
-
-    balls = Balls()
-    balls.setMaxPeriod(1.0)
-    write(FIRST + 4, 0, 1)
-    assert balls.get() == 11
-    balls.reset()
-    assert balls.get() == 10
-    with pytest.raises(TypeError):
-        wpilib.Counter("three")  # type: ignore[call-overload]
-    with pytest.raises(TypeError):
-        balls.setUpSourceEdge(True)  # type: ignore[call-arg]
-
-
 def test_hal_data_has_the_counters_of_the_robot(clock: Clock) -> None:
     tree = HalData()
     changes = tree.changes()

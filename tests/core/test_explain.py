@@ -61,12 +61,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "own",
         ),
         (
-            "a = wpilib.DigitalInput(1)\nb = wpilib.Encoder(0, 1)",
-            "DIO channel 1 is used already, since",
-            "two channels",
-        ),
-        ("a = wpilib.Ultrasonic(1, 2)\nb = wpilib.DigitalOutput(2)", "DIO channel 2 is used already", "own"),
-        (
             "m = wpilib.PneumaticsModuleType.REVPH\na = wpilib.Solenoid(m, 4)\nb = wpilib.DoubleSolenoid(m, 3, 4)",
             "channel 4 of this pneumatics module has a solenoid already",
             "A DoubleSolenoid has two channels",
@@ -94,13 +88,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "set() got None, from speed()",
             "Does speed() return something?\n  It takes: set(value: number)",
         ),
-        ("self.v = None\nwpilib.PWMSparkMax(1).set(self.v)", "set() got None, from self.v", "Has anything set self.v"),
-        (
-            "wpilib.SmartDashboard.putNumber('a', None)",
-            "putNumber() got None",
-            "It takes: putNumber(keyName: str, value: ",
-        ),
-        ("wpilib.PWMSparkMax(1).set('0.5')", "set() does not take '0.5' ('0.5' is a text)", "set(value: number)"),
         ("wpilib.PWMSparkMax(1).set(0.5, 1)", "set() was called with 2 values, but takes 1", "set(value: number)"),
         (
             "x = wpilib.XboxController(0)\nwpilib.PWMSparkMax(1).set(x.getLeftY)",
@@ -112,7 +99,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "toRun must be a function, but is None, from print()",
             "lambda: print()",
         ),
-        ("x = None\nx * 2", "TypeError: unsupported operand type(s) for *: 'NoneType' and 'int'", "A value is None"),
         # Calls
         (
             "wpilib.Encoder(0)",
@@ -134,21 +120,11 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "Not every way through the function sets speed",
         ),
         (
-            "global count\ncount = 0\ndef up():\n    count += 1\nup()",
-            "UnboundLocalError",
-            "as self.count; or write first",
-        ),
-        (
             "c = wpilib.XboxController(0)\nspeed = 1 if -c.getLeftY else 0",
             "c.getLeftY is a function, and not its value",
             "Write c.getLeftY()",
         ),
         ("import time\ntime()", "time is a module, and cannot be called", "Write time.time(), or what else it has"),
-        (
-            "class Arm:\n    def __init__(self, motor): pass\nArm()",
-            "Arm() was called with 0 values",
-            "It takes: Arm(motor) (robot.py:3)",
-        ),
         (
             "class Arm:\n    def up(self, speed): pass\na = Arm()\na.up(sped=1)",
             "a.up() was called with sped=",
@@ -170,7 +146,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "the default command of Subsystem does not require it",
             "self.addRequirements",
         ),
-        ("c = commands2.PrintCommand('a')\nc.andThen(c)", "the same command object is twice", "for each use"),
         # Names
         (
             "wpilib.XBoxController(0)",
@@ -179,7 +154,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ),
         ("wpilib.IterativeRobot", "wpilib has no IterativeRobot any more", "Instead: wpilib.TimedRobot."),
         ("wpilib.SendableChooser().addObject('a', 1)", "SendableChooser has no addObject any more", "addOption"),
-        ("x = true", "NameError: name 'true' is not defined", "Did you mean True?"),
         ("this.x = 1", "NameError: name 'this' is not defined", "Did you mean self?"),
         ("rev.CANSparkMax", "rev has no CANSparkMax any more", "Instead: rev.SparkMax."),
         # Modules
@@ -195,7 +169,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "from phoenix5 import WPI_TalonSRX, WPI_VictorSPX\n  Install it: python -m pip install robotpy-ctre",
         ),
         ("from .arm import Arm", "a dot before a module's name means", "Write: from arm import Arm"),
-        ("from . import arm", "a dot before a module's name means", "Write: import arm"),
         (
             "import choreo",
             "there is no module choreo",

@@ -237,23 +237,6 @@ def test_devices_and_values_that_come_and_go(tree: HalData) -> None:
     del again
 
 
-def test_devices_of_the_same_names_with_other_handles(tree: HalData) -> None:
-    first, second = hal.SimDevice("A"), hal.SimDevice("B")
-    angles = [device.createDouble("angle", 2, 1.0) for device in (first, second)]
-    changes = looking(tree)
-    del first, second, angles
-    gc.collect()
-    before = hal.SimDevice("before them")
-    first, second = hal.SimDevice("A"), hal.SimDevice("B")
-    angles = [device.createDouble("angle", 2, 1.0) for device in (first, second)]
-    del before
-    gc.collect()
-    assert changes.look() == ([], [])
-    angles[0].set(2.0)
-    angles[1].set(3.0)
-    assert found(changes.look()) == {"CAN.A.angle": 2.0, "CAN.B.angle": 3.0}
-
-
 def test_a_reset_of_all_sim_devices_is_noticed(tree: HalData) -> None:
     before = make(1)
     changes = looking(tree)

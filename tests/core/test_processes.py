@@ -21,7 +21,7 @@ from typing import Any
 import pytest
 
 from pyfrc_core.errors import RobotCodeError, UsageError
-from pyfrc_core.processes import channel, frames
+from pyfrc_core.processes import channel
 from pyfrc_core.processes.call import ForkedCall, run_in_subprocess
 from pyfrc_core.processes.crash_report import CrashLog
 from pyfrc_core.processes.exit import (
@@ -112,27 +112,6 @@ def test_a_process_that_ended_before_anything_was_read(begin: Begin) -> None:
 
 
 @only_forked
-def test_messages_are_there_before_the_exit(begin: Begin) -> None:
-    """Each when it was sent: the process waits until the one before was read."""
-    reading, writing = os.pipe()
-
-    def send_in_turn(send: Send, log: CrashLog) -> None:
-        for number in range(3):
-            send(number)
-            os.read(reading, 1)
-
-    worker = begin(ForkedWorker, send_in_turn)
-    for number in range(3):
-        while number not in worker.messages():
-            assert not worker.finished
-            wait_for_any([worker])
-        os.write(writing, b".")
-    assert finish(worker) == [0, 1, 2]
-    os.close(reading)
-    os.close(writing)
-
-
-@only_forked
 def test_a_message_larger_than_a_pipe(begin: Begin) -> None:
     def send_much(send: Send, log: CrashLog) -> None:
         send(b"much" * (1 << 20))
@@ -141,20 +120,6 @@ def test_a_message_larger_than_a_pipe(begin: Begin) -> None:
     much, more = finish(begin(ForkedWorker, send_much))
     assert much == b"much" * (1 << 20)
     assert more == "more"
-
-
-@only_forked
-def test_a_message_that_is_too_large(begin: Begin, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(frames, "MOST_BYTES", 100)
-
-    def send_too_much(send: Send, log: CrashLog) -> None:
-        send("before")
-        send("too much" * 100)
-
-    worker = begin(ForkedWorker, send_too_much)
-    assert finish(worker) == ["before"]
-    assert worker.status == 1
-    assert "FrameTooLargeError" in worker.describe_exit(FILES, "meanwhile")
 
 
 class Cycle:
