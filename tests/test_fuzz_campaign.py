@@ -2,29 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 import signal
 import sys
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, get_args
+from typing import Any
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from pyfrc_core.fuzz.campaign.describe import story_of
-from pyfrc_core.fuzz.guidance.seed_schedule import SeedScheduler
-from pyfrc_core.fuzz.inputs.values import SPANS, InputKind, can_be, nearest, simpler
-from pyfrc_core.fuzz.match.work import MatchExecutor, MatchResult, ReplayTask, Task
-from pyfrc_core.fuzz.oracle.failure import FuzzFailure
-from pyfrc_core.fuzz.shrink.shrinker import Shrinker
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork, wait_for_any
-from pyfrc_core.project import Project
-from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
+from pyfrc_core.runtime.scripts.script import load_script
 
 EMPTY = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
 
@@ -394,138 +384,7 @@ def test_where_lines_cannot_be_watched_their_share_is_not_told(make_project) -> 
     assert ("% of the robot's lines" in result.stdout) == (sys.version_info >= (3, 12)), result.output
 
 
-@pytest.mark.skipif(not FORK_IS_SAFE, reason="too slow where each match is a new interpreter")
-def test_where_every_process_dies_the_share_of_lines_is_not_told(make_project) -> None:
-    project = make_project({"robot.py": EXITING.format("os._exit(3)", "pass", "pass").replace("sys", "os")})
-    result = project.run("fuzz", "--runs", "2", "--seed", "1")
-    assert result.code == 1, result.output
-    assert re.search("^1 match, .*robot time, 1 failure$", result.stdout, re.MULTILINE), result.output
-
-
-# -- schedules ---------------------------------------------------------------------------------------------------------
-
-
-def test_recipes_follow_from_the_seed_and_what_was_learned() -> None:
-    def schedules(seed: int) -> list[object]:
-        made = SeedScheduler(seed)
-        found = [made.schedule(number) for number in range(10)]
-        made.learn(found[3], {("robot.py", 12): 4_000_000})
-        return [*found, *(made.schedule(number) for number in range(10, 40))]
-
-    assert schedules(1) == schedules(1) != schedules(2)
-    short = SeedScheduler(1, begins_short=True)
-    assert [short.schedule(number).seeds[0][1].endswith(" short") for number in (0, 23, 24, 25)] == [
-        True,
-        True,
-        False,
-        True,
-    ]
-    continued = [schedule for schedule in schedules(1) if len(schedule.seeds) == 2]  # type: ignore[attr-defined]
-    assert 5 < len(continued) < 25
-    for schedule in continued:
-        assert schedule.seeds[0] == (0, "fuzz 1 3")  # type: ignore[attr-defined]
-        assert 4_000_000 <= schedule.seeds[1][0] < 5_000_000  # type: ignore[attr-defined]
-
-
-CONTINUED = """
-    from pyfrc_core.fuzz.match.work import FuzzTask
-    from pyfrc_core.fuzz.guidance.seed_schedule import SeedSchedule
-    from pyfrc_core.fuzz.campaign.executors import open_match_executor
-    from pyfrc_core.project import find_project
-
-    with open_match_executor(find_project(), 1) as executor:
-        schedules = SeedSchedule(((0, "a"),)), SeedSchedule(((0, "a"), (3_000_000, "b")))
-        one, other = (played.script.steps for played in executor.play(map(FuzzTask, schedules)))
-    same = [step for step in one if step.at_us < 3_000_000]
-    assert len(same) > 20
-    assert same == [step for step in other if step.at_us < 3_000_000]
-    assert one != other
-    """
-
-
-def test_a_match_that_goes_on_from_another_is_the_same_until_then(make_project) -> None:
-    project = copy_of("magic", make_project)
-    project.write({"continued.py": CONTINUED})
-    result = project.run(program="continued")
-    assert result.code == 0, result.output
-
-
-WITHOUT_WAITS = """
-    from pyfrc_core.fuzz.campaign import executors
-    from pyfrc_core.fuzz.match.work import ReplayTask
-    from pyfrc_core.project import find_project
-    from pyfrc_core.runtime.scripts.script import InputScript
-
-    def wait_for_any(descriptors):
-        assert descriptors, "there is nothing to wait for"
-        wait(descriptors)
-
-    wait, executors.wait_for_any = executors.wait_for_any, wait_for_any
-    task = ReplayTask(InputScript((), 100_000, robot="robot.py"))
-    with executors.open_match_executor(find_project(), 2) as executor:
-        print([len(list(executor.play([task] * count))) for count in (0, 1, 3)])
-    """
-
-
-def test_when_no_match_is_left_nothing_is_waited_for(make_project) -> None:
-    project = make_project({"robot.py": EMPTY, "without_waits.py": WITHOUT_WAITS})
-    result = project.run(program="without_waits")
-    assert (result.code, result.stdout) == (0, "[0, 1, 3]\n"), result.output
-
-
 # -- shrinking -------------------------------------------------------------------------------------------------------
-
-
-class Imagined(MatchExecutor):
-    """An executor whose robot fails when a script writes all of these targets."""
-
-    def __init__(self, needed: frozenset[str]) -> None:
-        super().__init__(Project(Path("robot.py")), 1, Path())
-        self._needed = needed
-
-    @property
-    def lines(self) -> frozenset[tuple[str, int]]:
-        return frozenset()
-
-    def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
-        for task in tasks:
-            assert isinstance(task, ReplayTask)
-            written: set[str] = set()
-            failure, end_us = None, task.script.end_us
-            for step in task.script.steps:
-                written |= step.writes.keys()
-                if self._needed <= written:
-                    failure, end_us = (
-                        FuzzFailure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3"),
-                        step.at_us + 20_000,
-                    )
-                    break
-            yield MatchResult(failure, InputScript(task.script.steps, end_us))
-
-
-@given(count=st.integers(1, 300), needed=st.sets(st.integers(0, 299), max_size=4))
-def test_only_what_is_needed_is_left(count: int, needed: set[int]) -> None:
-    targets = frozenset(f"dio[{number % count}].value" for number in needed)
-    steps = tuple(Step(20_000 * number, {f"dio[{number}].value": True}) for number in range(count))
-    failure = FuzzFailure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3")
-    shrinker = Shrinker(Imagined(targets), InputScript(steps, 20_000 * count), failure, {})
-    shrinker.shrink()
-    if not targets:  # it fails with its first step, whatever that is
-        return
-    assert shrinker.repeats
-    assert {target for step in shrinker.script.steps for target in step.writes} == targets
-    assert [step.at_us for step in shrinker.script.steps] == [0]
-    assert shrinker.runs < 2_000
-
-
-def test_when_its_time_is_over_shrinking_takes_what_it_has() -> None:
-    """One run has begun before that is known."""
-    targets = frozenset(f"dio[{number}].value" for number in range(9))
-    steps = tuple(Step(20_000 * number, {f"dio[{number}].value": False}) for number in range(9))
-    failure = FuzzFailure("Imagined", "robot.py:1", "f", "robot.py:1: Imagined")
-    shrinker = Shrinker(Imagined(targets), InputScript(steps, 2_000_000), failure, {}, seconds=0)
-    shrinker.shrink()
-    assert shrinker.runs == 1
 
 
 #: It fails in its first start, and never again.
@@ -551,51 +410,3 @@ def test_a_start_that_fails_once_does_not_end_the_campaign(make_project) -> None
     result = project.run("fuzz", "--runs", "8", "--seed", "1")
     assert "ValueError: always" in result.stdout, result.output
     assert "fails at its start" not in result.stdout
-
-
-def test_a_failure_is_named_when_it_is_seen(campaign) -> None:
-    """Before its script is short."""
-    project, result = campaign
-    lines = result.stdout.splitlines()
-    text = f"{project.place('robot.py', '# the bug')}: IndexError: tuple index out of range"
-    assert lines.index(f"found {text}") < lines.index(text)
-
-
-def test_no_more_robots_are_run_than_allowed() -> None:
-    steps = tuple(Step(20_000 * number, {f"dio[{number}].value": True}) for number in range(100))
-    failure = FuzzFailure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3")
-    needed = frozenset({"dio[3].value", "dio[60].value", "dio[90].value"})
-    shrinker = Shrinker(Imagined(needed), InputScript(steps, 2_000_000), failure, {}, most_runs=10)
-    shrinker.shrink()
-    assert shrinker.runs <= 10
-    assert needed <= {target for step in shrinker.script.steps for target in step.writes}
-
-
-@given(kind=st.sampled_from(sorted(set(get_args(InputKind)) & SPANS.keys())), value=st.floats(-1e6, 1e6))
-def test_simpler_values_can_be_and_are_shorter(kind: InputKind, value: float) -> None:
-    value = nearest(kind, value)
-    for each in simpler(kind, value):
-        assert can_be(kind, each)
-        assert len(json.dumps(each)) < len(json.dumps(value))
-
-
-# -- descriptions ------------------------------------------------------------------------------------------------------
-
-
-def test_the_story_is_one_that_people_tell() -> None:
-    steps = (
-        Step(0, {"mode": "disabled", "alliance_station": "red2"}),
-        Step(500_000, {"mode": "teleop"}),
-        Step(1_000_000, {"joysticks[0].povs[0]": 90, "joysticks[1].axes[4]": -0.5}),
-        Step(21_340_000, {"joysticks[0].buttons[3]": True}),
-        Step(21_400_000, {"joysticks[0].plugged": False, "dio[2].value": True}),
-    )
-    failure = FuzzFailure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3\nmore")
-    assert story_of(InputScript(steps, 22_020_000), failure) == (
-        "at 0.00 s disabled begins: alliance station 'red2'",
-        "at 0.50 s teleoperated begins",
-        "at 1.00 s in teleoperated: joystick 0 POV 90, joystick 1 axis 4 at -0.5",
-        "at 21.34 s in teleoperated: joystick 0 button 3 pressed while POV 90 and joystick 1 axis 4 at -0.5",
-        "at 21.40 s in teleoperated: joystick 0 unplugged, dio[2].value True while joystick 1 axis 4 at -0.5",
-        "at 22.00 s: robot.py:3: KeyError: 3",
-    )

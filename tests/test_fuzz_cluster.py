@@ -6,7 +6,6 @@ import os
 import re
 import shlex
 import signal
-import sys
 import threading
 from collections.abc import Generator, Mapping
 from importlib.util import find_spec
@@ -17,13 +16,6 @@ import pytest
 from skips import require
 from started_commands import StartedCommand
 from warm_cluster import Starts
-
-from pyfrc_core.errors import PyfrcError, UsageError
-from pyfrc_core.fuzz.campaign import cluster as cluster_module
-from pyfrc_core.fuzz.campaign.cluster import ClusterError, ClusterMatchExecutor, open_cluster_executor
-from pyfrc_core.fuzz.match.work import ReplayTask
-from pyfrc_core.project.locate import find_project
-from pyfrc_core.runtime.scripts.script import InputScript
 
 require("campaigns on a cluster", [] if find_spec("distributed") else ["Dask"])
 
@@ -266,70 +258,3 @@ def test_an_error_of_the_robots_code_is_shown_as_without_a_cluster(cluster: Clus
 def test_what_is_no_address(address: str, make_project) -> None:
     result = make_project({"robot.py": ROBOT}).run("fuzz", "--scheduler", address)
     assert (result.code, "is not the address of a scheduler" in result.first_error) == (2, True), result.stderr
-
-
-def test_nothing_listens_at_the_address(make_project) -> None:
-    result = make_project({"robot.py": ROBOT}).run("fuzz", "--scheduler", "tcp://127.0.0.1:1")
-    assert result.code == 1
-    assert result.first_error.startswith("there is no Dask scheduler at tcp://127.0.0.1:1, or it cannot be reached (")
-    assert "dask scheduler" in result.stderr
-
-
-@pytest.mark.parametrize(
-    ("options", "text"), [(("-j", "2"), "-j are mutually"), (("--against", "main"), "--against are mutually")]
-)
-def test_options_that_exclude_each_other(options: tuple[str, ...], text: str, make_project) -> None:
-    result = make_project({"robot.py": ROBOT}).run("fuzz", "--scheduler", "tcp://127.0.0.1:1", *options)
-    assert (result.code, text in result.stderr) == (2, True), result.stderr
-
-
-def test_without_the_extra(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cluster_module, "find_spec", lambda name: None)
-    project = find_project(make_project({"robot.py": ROBOT}).path)
-    with pytest.raises(UsageError) as raised, open_cluster_executor(project, "tcp://127.0.0.1:1"):
-        pass
-    assert raised.value.remedy == f'Install it with: pip install "{INSTALL[2]}"'
-
-
-class FakeClient:
-    """A connection to a cluster whose workers are all lost, or have another Python."""
-
-    status = "running"
-
-    def __init__(self, python: str = "") -> None:
-        from pyfrc_core.fuzz.campaign.cluster_worker import versions
-
-        self._here = {"host": {"python": sys.version.split()[0]}, "packages": versions()}
-        self._there = {**self._here, "host": {"python": python}}
-        self._workers = {"tcp://10.0.0.6:1": 4} if python else {}
-
-    def nthreads(self) -> dict[str, int]:
-        return self._workers
-
-    def get_versions(self, packages: object) -> dict[str, Any]:
-        return {"scheduler": self._here, "workers": dict.fromkeys(self._workers, self._there)}
-
-    def get_executor(self, **options: object) -> Any:
-        from concurrent.futures import Executor, Future
-
-        class Never(Executor):
-            def submit(self, *arguments: Any, **options: Any) -> Future[Any]:
-                return Future()
-
-        return Never()
-
-
-def test_a_worker_with_another_python() -> None:
-    here = "{}.{}".format(*sys.version_info)
-    with pytest.raises(ClusterError) as raised:
-        cluster_module._check_versions(FakeClient("3.9.1"), "address")
-    assert raised.value.message == f"the worker at tcp://10.0.0.6:1 has another version: Python 3.9 ({here} here)"
-
-
-def test_all_workers_are_lost(make_project, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(cluster_module, "_CHECK_SECONDS", 0.0)
-    monkeypatch.setattr(cluster_module, "_WITHOUT_WORKERS_SECONDS", 0.0)
-    project = find_project(make_project({"robot.py": ROBOT}).path)
-    executor = ClusterMatchExecutor(project, FakeClient(), "tcp://10.0.0.5:8786", "plugin", tmp_path)
-    with pytest.raises(PyfrcError, match="has lost all its workers"):
-        list(executor.play([ReplayTask(InputScript((), 1_000_000))]))

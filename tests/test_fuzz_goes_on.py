@@ -68,13 +68,6 @@ def test_one_misbehavior_does_not_hide_another_from_its_script(make_project) -> 
     assert sum(len(step.writes) for step in load_script(project.path / file).steps) == 2
 
 
-def test_motors_while_disabled_are_reported_once(make_project) -> None:
-    disabled = "self.motor.set(0.2)\n            self.motor.set(0.3)"
-    project = make(make_project, disabled=disabled, seconds=20)
-    result = project.run("fuzz", "--seed", "1", "--runs", "2")
-    assert "1 failure" in result.stdout, result.output
-
-
 @pytest.mark.parametrize(
     ("created", "disabled"),
     [
@@ -149,17 +142,6 @@ def test_most_matches_leave_out_an_input_of_each_known_failure() -> None:
     assert 100 < chosen[frozenset({button, mode})] < 250
     assert sum(count for left_out, count in chosen.items() if left_out) > 380
     assert 10 < sum(count for left_out, count in chosen.items() if "mode=test" in left_out) < 80
-
-
-def test_a_match_that_continues_another_leaves_out_more_only_from_then_on() -> None:
-    scheduler = SeedScheduler(1)
-    scheduler.learn(scheduler.schedule(0), {("robot.py", 1): 4_000_000})
-    failure = FuzzFailure("ValueError", "robot.py:1", "f", "")
-    scheduler.note_end(scheduler.schedule(0), failure)
-    scheduler.avoid(failure, script_of({"mode": "teleop"}))
-    (continued, *_) = (each for each in map(scheduler.schedule, range(1, 50)) if len(each.seeds) == 2)
-    assert not continued.left_out_at(3_999_999)
-    assert continued.left_out_at(5_000_000) == {"mode=teleop"}
 
 
 def test_what_a_match_leaves_out_is_not_written_but_may_be_let_go() -> None:

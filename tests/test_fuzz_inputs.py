@@ -15,7 +15,7 @@ from pyfrc_core.errors import UsageError
 from pyfrc_core.fuzz.inputs.match_plan import FieldData
 from pyfrc_core.fuzz.inputs.network_values import NetworkRead, NetworkValues
 from pyfrc_core.fuzz.inputs.robot_constants import find_constants
-from pyfrc_core.fuzz.inputs.values import UNKNOWN, RobotConstants, can_be, simpler
+from pyfrc_core.fuzz.inputs.values import UNKNOWN, RobotConstants, can_be
 from pyfrc_core.hal import HalData
 from pyfrc_core.runtime.scripts.network_entries import entry_target, parse_entry_target
 from pyfrc_core.runtime.scripts.script import load_script
@@ -247,25 +247,6 @@ def drawn(read: NetworkRead, before: Any, setting: bool, constants: RobotConstan
     return found
 
 
-def test_a_setting_keeps_its_sign_or_becomes_zero() -> None:
-    constants = RobotConstants(numbers=(-7.0, 0.25, 12.0))
-    found = drawn(NetworkRead("/SmartDashboard/speed", "double"), 2.0, True, constants)
-    assert min(found) == 0.0
-    assert {1.0, 4.0} <= set(found)
-    assert any(0.2 < value < 0.3 for value in found)
-    assert max(drawn(NetworkRead("/SmartDashboard/speed", "double"), -2.0, True, constants)) == 0.0
-
-
-def test_what_a_camera_measures_has_its_limits() -> None:
-    found = drawn(NetworkRead("/limelight/tx", "double"), 0.0, False, RobotConstants(numbers=(5.0, 500.0)))
-    assert min(found) == -29.8
-    assert max(found) == 29.8
-    assert set(drawn(NetworkRead("/limelight/tv", "double"), 0.0, False)) == {0.0, 1.0}
-    tags = drawn(NetworkRead("/limelight/tid", "int"), -1, False)
-    assert all(isinstance(tag, int) and 1 <= tag <= 32 for tag in tags)
-    assert NetworkValues(random.Random(1), UNKNOWN).without_target(NetworkRead("/limelight/tid", "int", -1)) == -1
-
-
 def test_a_pose_that_a_camera_cannot_compute_is_not_a_number() -> None:
     assert ("nan",) * 3 in drawn(NetworkRead("/vision/robot", "struct:Pose2d"), None, False)
     assert ("nan",) * 6 in drawn(NetworkRead("/vision/botpose", "double[]"), [0.0] * 6, False)
@@ -277,29 +258,6 @@ def test_a_pose_that_a_camera_cannot_compute_is_not_a_number() -> None:
     ):
         found = drawn(NetworkRead(name, type_name), [1.0] * 3, setting)
         assert not any("nan" in value for value in found)
-
-
-def test_a_latency_jumps() -> None:
-    found = drawn(NetworkRead("/limelight/tl", "double"), 11.0, False)
-    assert sum(value <= 100 for value in found) > 240
-    assert max(found) == 5000.0
-
-
-def test_lists_are_empty_short_and_long() -> None:
-    found = drawn(NetworkRead("/limelight/botpose", "double[]"), [0.0] * 6, False)
-    assert {0, 5, 6, 7, 11} == {len(value) for value in found}
-
-
-def test_strings_are_those_of_the_code() -> None:
-    found = drawn(NetworkRead("/vision/state", "string"), "idle", False, RobotConstants(texts=("LOCKED", "state")))
-    assert {"LOCKED", "", "IDLE"} <= set(found)
-    assert "state" not in found
-
-
-def test_values_of_entries_become_simpler() -> None:
-    assert list(simpler("entry", 3.141))[:2] == [0.0, 1.0]
-    assert next(iter(simpler("entry", (1.5, 2.25)))) == ()
-    assert list(simpler("entry", True)) == []
 
 
 def test_what_the_field_says() -> None:
@@ -336,14 +294,6 @@ def test_constants_are_those_that_functions_use() -> None:
     assert not any("heights" in text for text in found.texts)
     assert found.asks("abs", "nothing")
     assert not found.asks("nothing")
-
-
-def test_numbers_near_constants() -> None:
-    constants, rng = RobotConstants(numbers=(1.0, 1.5)), random.Random(1)
-    found = [constants.near(rng, -2, 2) for _ in range(300)]
-    assert {1.0, 1.5, -1.0} <= set(found)
-    assert sum(1.0 < value < 1.5 for value in found if value is not None) > 50
-    assert UNKNOWN.near(rng, -2, 2) is None
 
 
 # -- targets -----------------------------------------------------------------------------------------------------------

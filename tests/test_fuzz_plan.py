@@ -81,18 +81,6 @@ def test_some_matches_are_as_long_as_real_ones() -> None:
     assert length_of(f"fuzz 1 4{SHORT}", 2.0, SETTINGS) == 2.0
 
 
-def test_two_matches_in_a_row_have_all_periods_twice_and_no_restart() -> None:
-    """What fails after 160 enabled seconds fails in one of these."""
-    for seed in range(20):
-        plan = plan_match(random.Random(seed), 308.0, SETTINGS)
-        modes = [str(event.writes["mode"]) for event in plan if "mode" in event.writes]
-        enabled = [mode for mode in modes if not mode.startswith("disabled")]
-        second = enabled.index("teleop", enabled.index("teleop") + 1)
-        assert "teleop" in enabled[second:]
-        assert not any("restart" in event.writes for event in plan)
-        assert plan[-1].at_us > 160_000_000
-
-
 def test_match_numbers_are_those_of_events() -> None:
     """130 qualification matches at most, and as many matches of a playoff as there are."""
     starts = [plan_match(random.Random(seed), SECONDS, SETTINGS)[0].writes for seed in range(2000)]

@@ -6,6 +6,9 @@ from collections.abc import Callable, Generator, Iterable
 from dataclasses import replace
 from pathlib import Path
 
+from hypothesis import given
+from hypothesis import strategies as st
+
 from pyfrc_core.fuzz.campaign.describe import late_failure, story_of
 from pyfrc_core.fuzz.match.work import MatchExecutor, MatchResult, ReplayTask, Task
 from pyfrc_core.fuzz.oracle.failure import HANGS, FuzzFailure
@@ -112,6 +115,15 @@ def test_what_depends_on_the_state_alone_needs_no_long_run() -> None:
     assert written(shrinker.script) == [("dio[3].value", True), ("dio[7].value", True)]
     # The match that was found and all shorter ones together: a minute of robot time, not one for each.
     assert executor.packets < 3_000
+
+
+@given(count=st.integers(1, 100), needed=st.sets(st.integers(0, 99), min_size=1, max_size=4))
+def test_only_what_is_needed_is_left(count: int, needed: set[int]) -> None:
+    targets = {f"dio[{number % count}].value" for number in needed}
+    script = script_of([(number / 50, f"dio[{number}].value", True) for number in range(count)])
+    shrinker, _ = shrunk(lambda: lambda now, values: targets <= values.keys(), script)
+    assert {target for target, _ in written(shrinker.script)} == targets
+    assert shrinker.runs < 2_000
 
 
 def test_what_remains_keeps_its_moment() -> None:
