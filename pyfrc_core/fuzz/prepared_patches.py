@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import Generic, TypeVar
+from itertools import starmap
+from typing import Any, Generic, TypeVar
 
 from ..runtime.patch_table import Patch, PatchTable, patched
 
@@ -14,11 +15,11 @@ Watch = TypeVar("Watch")
 class PreparedPatches(Generic[Watch]):
     """The patches that watch some kind of calls.
 
-    :param patches: returns the patches that report to a watch
+    :param replacements: returns what is replaced, to report to a watch: each with its owner and its name
     """
 
-    def __init__(self, patches: Callable[[Watch], Iterable[Patch]]) -> None:
-        self._patches = patches
+    def __init__(self, replacements: Callable[[Watch], Iterable[tuple[Any, str, Any]]]) -> None:
+        self._replacements = replacements
         self._table = PatchTable()
         #: The watch to which the prepared patches report.
         self._prepared: Watch | None = None
@@ -27,7 +28,7 @@ class PreparedPatches(Generic[Watch]):
         """Make the patches, for the forks of this process. Calling it again changes nothing until `undo`."""
         if not self._table:
             self._prepared = watch
-            for patch in list(self._patches(watch)):  # all are made from the original values
+            for patch in list(self._replacements(watch)):  # all are made from the original values
                 self._table.patch(*patch)
 
     def undo(self) -> None:
@@ -46,5 +47,5 @@ class PreparedPatches(Generic[Watch]):
             yield watch
             return
         watch = make()
-        with patched(self._patches(watch)):
+        with patched(starmap(Patch, self._replacements(watch))):
             yield watch

@@ -30,9 +30,12 @@ if TYPE_CHECKING:
     from .season_2026 import devices as devices
     from .season_2026 import encoders as encoders
     from .season_2026 import geometry as geometry
+    from .season_2026 import joysticks as joysticks
+    from .season_2026 import motor_controllers as motor_controllers
     from .season_2026 import motors as motors
     from .season_2026 import names as names
     from .season_2026 import network as network
+    from .season_2026 import network_reads as network_reads
     from .season_2026 import reports as reports
     from .season_2026 import robots as robots
     from .season_2026 import station as station

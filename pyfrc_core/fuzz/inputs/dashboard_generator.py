@@ -7,10 +7,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-import ntcore
-
 from ...runtime.clock import PACKET_US
 from ...runtime.scripts.network_entries import NETWORK, entry_target, parse_entry_target
+from ...wpi import network
 from .network_values import SEES_TARGET, NetworkRead, NetworkValues, is_setting
 from .values import UNKNOWN, Input, RobotConstants, Value, draw
 
@@ -43,7 +42,6 @@ class DashboardFinder:
     """Finds the inputs of dashboards; looks at the entries again only after there are others, and now and then."""
 
     def __init__(self) -> None:
-        self._network = ntcore.NetworkTableInstance.getDefault()
         self._names: list[str] = []
         self._found: list[Input] = []
         self._searches = 0
@@ -53,29 +51,27 @@ class DashboardFinder:
 
         A plain entry that the robot writes and does not read is no input.
         """
-        topics = self._network.getTopics()
-        names = [topic.getName() for topic in topics]
+        names = network.entry_names()
         if names != self._names or self._searches % _UNCHANGED == 0:
-            self._names, self._found = names, sorted(self._inputs(topics, names))
+            self._names, self._found = names, sorted(self._inputs(names))
         self._searches += 1
         return self._found
 
-    def _inputs(self, topics: Sequence[ntcore.Topic], names: Sequence[str]) -> Iterator[Input]:
-        network = self._network
-        for topic, name in zip(topics, names, strict=True):
+    def _inputs(self, names: Sequence[str]) -> Iterator[Input]:
+        for name in names:
             table, _, entry = name.rpartition("/")
             if not name.startswith(_DASHBOARD_TABLES) or entry.startswith("."):
                 continue
-            sort, made_by = topic.getType(), network.getEntry(f"{table}/.type").getString("")
+            made_by = network.text_of(f"{table}/.type")
             if made_by == "String Chooser":
-                if entry == "options" and (options := network.getEntry(name).getStringArray([])):
+                if entry == "options" and (options := network.texts_of(name)):
                     yield Input(f"{NETWORK}{table}/selected", "choice", table, tuple(options))
             elif made_by == "Command":
                 if entry == "running":
                     yield Input(NETWORK + name, "command", table)
-            elif made_by and sort == ntcore.NetworkTableType.kBoolean:
+            elif made_by and network.type_of(name) == "boolean":
                 yield Input(NETWORK + name, "flag", name)
-            elif made_by and sort == ntcore.NetworkTableType.kDouble:
+            elif made_by and network.type_of(name) == "double":
                 yield Input(NETWORK + name, "number", name)
 
 
@@ -120,14 +116,12 @@ class DashboardGenerator:
         self._unread = plain
         for each in inputs:
             if each.kind == "number" and each.target not in self._originals:
-                entry = ntcore.NetworkTableInstance.getDefault().getEntry(each.target.removeprefix(NETWORK))
-                self._originals[each.target] = entry.getDouble(0.0)
+                self._originals[each.target] = network.number_of(each.target.removeprefix(NETWORK))
         return [*inputs, *entries]
 
     def before_first_read(self, read: NetworkRead) -> dict[str, Value]:
         """Return what to write before the robot, which is starting, reads an entry for the first time."""
-        exists = ntcore.NetworkTableInstance.getDefault().getTopic(read.name).exists()
-        if exists or self._rng.random() >= _BEFORE_START:
+        if network.exists(read.name) or self._rng.random() >= _BEFORE_START:
             return {}
         found: dict[str, Value] = {}
         entry = self._entry(read)
@@ -143,8 +137,7 @@ class DashboardGenerator:
         """Notice an entry whose value changes without a write: the program writes it."""
         if read.name in self._published or read.type_name not in _PLAIN:
             return
-        entry = ntcore.NetworkTableInstance.getDefault().getEntry(read.name)
-        now = entry.getValue().value() if entry.exists() else None
+        now = network.value_of(read.name)
         known = self._written.get(read.name, self._seen.get(read.name, now))
         if known is not None and now != known:
             self._published.add(read.name)
@@ -191,19 +184,17 @@ class DashboardGenerator:
         table, _, last = read.name.rpartition("/")
         if read.name.startswith(_NOT_INPUTS) or last.startswith(".") or read.name in self._published:
             return None
-        topic = ntcore.NetworkTableInstance.getDefault().getTopic(read.name)
-        type_name = read.type_name
-        if topic.exists() and topic.getTypeString() != type_name:
-            if not {topic.getTypeString(), type_name} <= set(_NUMBERS):
+        type_name, published = read.type_name, network.type_of(read.name)
+        if published and published != type_name:
+            if not {published, type_name} <= set(_NUMBERS):
                 return None
-            type_name = topic.getTypeString()
+            type_name = published
         return Input(entry_target(read.name, "" if type_name in _PLAIN else type_name), "entry", table)
 
     def _change_entry(self, target: str, read: NetworkRead, found: dict[str, Value]) -> None:
         if read.name not in self._originals:
-            entry = ntcore.NetworkTableInstance.getDefault().getEntry(read.name)
-            own = entry.exists()
-            self._originals[read.name] = entry.getValue().value() if own else read.default
+            own = network.exists(read.name)
+            self._originals[read.name] = network.value_of(read.name) if own else read.default
             if own or is_setting(read.name):
                 self._settings.add(read.name)
         now = self._entry(read)

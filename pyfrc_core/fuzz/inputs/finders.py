@@ -10,15 +10,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
 
-from wpilib.simulation import SimDeviceSim
-
 from ...hal import HalData, format_path
 from ...hal.counters import counted_channels
 from ...hal.devices import KINDS
 from ...hal.modules import Modules
 from ...hal.sim_device_list import Signature
-from ...wpi import station
-from .gamepads import TRIGGERS
+from ...wpi import devices, joysticks, station
 from .values import UNKNOWN, Input, InputKind, RobotConstants
 
 # -- joysticks -------------------------------------------------------------------------------------------------------
@@ -27,7 +24,7 @@ from .values import UNKNOWN, Input, InputKind, RobotConstants
 def find_controls(hal_data: HalData, gamepads: Mapping[int, str]) -> Iterator[Input]:
     """Return the axes, buttons and POVs of the joysticks that are plugged in."""
     for number, stick in enumerate(hal_data["joysticks"]):
-        yield from _controls(number, *stick.counts(), TRIGGERS.get(gamepads.get(number, ""), ()))
+        yield from _controls(number, *stick.counts(), joysticks.TRIGGERS.get(gamepads.get(number, ""), ()))
 
 
 @cache
@@ -163,7 +160,7 @@ def prepare_search() -> None:
     _channels()
     _modules()
     for number in range(station.JOYSTICKS):
-        for triggers in {(), *TRIGGERS.values()}:
+        for triggers in {(), *joysticks.TRIGGERS.values()}:
             _controls(number, station.AXES, station.BUTTONS, station.POVS, triggers)
 
 
@@ -218,18 +215,15 @@ def _kind_of_number(device: str, value: str) -> InputKind:
 
 
 def _of_sim_device(name: str) -> Iterator[Input]:
-    device = SimDeviceSim(name)
-    for value, is_output in device.enumerateValues():
+    for value, is_output, sort, options in devices.sim_values(name):
         if is_output:
             continue
-        options: tuple[str, ...] = ()
         kind: InputKind
-        sort = device.getValue(value).type.name
-        if sort == "BOOLEAN":
+        if sort == "boolean":
             kind = "connected" if re.search("connected|valid", value, re.IGNORECASE) else "switch"
-        elif sort == "ENUM":
-            kind, options = "option", tuple(SimDeviceSim.getEnumOptions(device.getEnum(value)))
-        elif sort == "DOUBLE":
+        elif sort == "option":
+            kind = "option"
+        elif sort == "number":
             kind = _kind_of_number(name, value)
         else:
             kind = "celsius" if re.search("temperature", value, re.IGNORECASE) else "whole"

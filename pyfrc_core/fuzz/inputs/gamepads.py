@@ -10,11 +10,7 @@ import types
 from collections.abc import Iterator
 from typing import Any
 
-import wpilib
-from wpilib.interfaces import GenericHID
-
-#: The trigger axes of gamepads: their values go from 0 to 1, not from -1.
-TRIGGERS: dict[str, tuple[int, ...]] = {"XboxController": (2, 3), "PS4Controller": (3, 4), "PS5Controller": (3, 4)}
+from ...wpi import joysticks
 
 #: The search ends after this many objects.
 _MOST_OBJECTS = 20_000
@@ -28,17 +24,17 @@ def find_gamepads(robot: object) -> dict[int, str]:
     """Return the class name of the joystick at each port, as far as they are found."""
     found: dict[int, str] = {}
     for stick in _reachable(robot):
-        name = next((each.__name__ for each in type(stick).__mro__ if hasattr(wpilib, each.__name__)), "")
-        if name in TRIGGERS or found.get(stick.getPort()) is None:
-            found[stick.getPort()] = name
+        name = joysticks.class_of(stick)
+        if name in joysticks.TRIGGERS or found.get(joysticks.port_of(stick)) is None:
+            found[joysticks.port_of(stick)] = name
     return dict(sorted(found.items()))
 
 
-def _reachable(robot: object) -> Iterator[GenericHID]:
+def _reachable(robot: object) -> Iterator[joysticks.GenericHID]:
     """Search breadth first, through attributes, containers and the closures of functions."""
     seen, waiting = {id(robot)}, [robot]
     for each in waiting:
-        if isinstance(each, GenericHID):
+        if joysticks.is_joystick(each):
             yield each
             continue
         if len(seen) > _MOST_OBJECTS:

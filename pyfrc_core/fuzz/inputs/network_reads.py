@@ -11,33 +11,11 @@ from contextlib import AbstractContextManager
 from types import FrameType
 from typing import Any
 
-import ntcore
-import wpilib
-
 from ...compat.cpython_private import get_frame
 from ...project.robot_files import RobotFiles
-from ...runtime.patch_table import Patch
-from ...wpi import names
+from ...wpi import names, network_reads
 from ..prepared_patches import PreparedPatches
 from .network_values import STRUCTS, NetworkRead
-
-#: The names that NetworkTables gives to types, by the names in its functions.
-_TYPES = {
-    "Boolean": "boolean",
-    "Integer": "int",
-    "Float": "float",
-    "Double": "double",
-    "String": "string",
-    "BooleanArray": "boolean[]",
-    "IntegerArray": "int[]",
-    "FloatArray": "float[]",
-    "DoubleArray": "double[]",
-    "StringArray": "string[]",
-}
-#: The names of types that differ in the tables' and the preferences' functions.
-_TABLE_TYPES = {**_TYPES, "Number": "double", "NumberArray": "double[]"}
-_PREFERENCE_TYPES = {**_TYPES, "Int": "int", "Long": "int"}
-
 
 #: The library file that reads on behalf of robot code: MagicBot's tunables.
 _TUNABLES = "magic_tunable.py"
@@ -94,100 +72,8 @@ def prepare_network_watch(files: RobotFiles, prepare: bool = True) -> None:
         _watches.undo()
 
 
-def _patches(reads: NetworkReads) -> Iterator[Patch]:
-    for owner in (ntcore.NetworkTableEntry, ntcore.GenericSubscriber):
-        for name, type_name in _TYPES.items():
-            yield Patch(owner, f"get{name}", _of_entry(vars(owner)[f"get{name}"], type_name, reads))
-    for name, type_name in _TABLE_TYPES.items():
-        if f"get{name}" in vars(ntcore.NetworkTable):
-            real = vars(ntcore.NetworkTable)[f"get{name}"]
-            yield Patch(ntcore.NetworkTable, f"get{name}", _of_table(real, type_name, reads))
-    for name, type_name in _TABLE_TYPES.items():
-        if f"get{name}" in vars(wpilib.SmartDashboard):
-            yield _static(wpilib.SmartDashboard, f"get{name}", "/SmartDashboard/", type_name, reads)
-    for name, type_name in _PREFERENCE_TYPES.items():
-        for verb in ("get", "init"):
-            if f"{verb}{name}" in vars(wpilib.Preferences):
-                yield _static(wpilib.Preferences, f"{verb}{name}", "/Preferences/", type_name, reads)
-    for name, type_name in _TYPES.items():
-        owner = getattr(ntcore, f"{name}Topic")
-        for verb in ("subscribe", "getEntry"):
-            yield Patch(owner, verb, _of_topic(vars(owner)[verb], lambda *_, known=type_name: known, reads))
-    for struct_owner, ending in ((ntcore.StructTopic, ""), (ntcore.StructArrayTopic, "[]")):
-
-        def struct_type(default: object, ending: str = ending) -> str:
-            return _struct_type(default, ending)
-
-        for verb in ("subscribe", "getEntry"):
-            yield Patch(struct_owner, verb, _of_topic(vars(struct_owner)[verb], struct_type, reads))
+def _replacements(reads: NetworkReads) -> Iterator[tuple[Any, str, Any]]:
+    return network_reads.replacements(reads, {name: len(spans) for name, spans in STRUCTS.items()})
 
 
-_watches = PreparedPatches(_patches)
-
-
-def _of_entry(real: Any, type_name: str, reads: NetworkReads) -> Callable[..., Any]:
-    call = _unbound(real)
-
-    def get(self: Any, *args: Any, **kwargs: Any) -> Any:
-        name = self.getName() if isinstance(self, ntcore.NetworkTableEntry) else self.getTopic().getName()
-        if name not in reads.found:
-            reads.note(name, type_name, args, kwargs)
-        return call(self, *args, **kwargs)
-
-    return get
-
-
-def _of_table(real: Any, type_name: str, reads: NetworkReads) -> Callable[..., Any]:
-    call = _unbound(real)
-
-    def get(self: Any, key: str, *args: Any, **kwargs: Any) -> Any:
-        name = f"{self.getPath()}/{key}"
-        if name not in reads.found:
-            reads.note(name, type_name, args, kwargs)
-        return call(self, key, *args, **kwargs)
-
-    return get
-
-
-def _static(owner: object, name: str, table: str, type_name: str, reads: NetworkReads) -> Patch:
-    call = getattr(owner, name)
-
-    def get(key: str, *args: object, **kwargs: object) -> Any:
-        if table + key not in reads.found:
-            reads.note(table + key, type_name, args, kwargs)
-        return call(key, *args, **kwargs)
-
-    return Patch(owner, name, staticmethod(get))
-
-
-def _of_topic(real: Any, type_of: Callable[[Any], str], reads: NetworkReads) -> Callable[..., Any]:
-    call = _unbound(real)
-
-    def subscribe(self: Any, *args: Any, **kwargs: Any) -> Any:
-        name, default = self.getName(), args[0] if args else kwargs.get("defaultValue")
-        if name not in reads.found and (type_name := type_of(default)):
-            reads.note(name, type_name, (default,), {})
-        return call(self, *args, **kwargs)
-
-    return subscribe
-
-
-def _unbound(real: Any) -> Callable[..., Any]:
-    """Return the function of a method: the bindings' methods cannot be called as their class has them."""
-    function: Callable[..., Any] = getattr(real, "__func__", real)
-    return function
-
-
-def _struct_type(default: Any, ending: str) -> str:
-    """Return the name of a struct's type; empty when it cannot be written as numbers."""
-    from wpiutil import wpistruct
-
-    if ending:
-        default = default[0] if default else None
-    if default is None:
-        return ""
-    try:
-        name, schema = wpistruct.getTypeName(type(default)), wpistruct.getSize(type(default))
-    except TypeError:
-        return ""
-    return f"struct:{name}{ending}" if name in STRUCTS and schema == 8 * len(STRUCTS[name]) else ""
+_watches = PreparedPatches(_replacements)

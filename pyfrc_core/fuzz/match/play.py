@@ -10,8 +10,6 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-import ntcore
-
 from ...errors import PyfrcError
 from ...invariants.watch import BrokenInvariantError, watch_invariants
 from ...physics.construct import construct
@@ -30,6 +28,7 @@ from ...runtime.scripts.script import InputScript, ScriptError, Step
 from ...runtime.scripts.targets import RESTART, Targets
 from ...runtime.seeds import seed_generators
 from ...runtime.turns import take
+from ...wpi import network
 from ..guidance.seed_schedule import SeedSchedule, match_seconds
 from ..guidance.states import RobotStates
 from ..inputs.asked_controls import watch_controls
@@ -239,8 +238,7 @@ def _replay(project: Project, log: CrashLog, before: MatchResult | None, task: R
 
 def _published() -> frozenset[str]:
     """Return the entries of NetworkTables that are lists or structs: dashboards let no one change these."""
-    topics = ntcore.NetworkTableInstance.getDefault().getTopics()
-    return frozenset(topic.getName() for topic in topics if topic.getTypeString() not in _PLAIN_TYPES)
+    return frozenset(name for name, type_name in network.entries() if type_name not in _PLAIN_TYPES)
 
 
 @contextmanager

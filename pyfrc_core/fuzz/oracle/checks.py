@@ -20,12 +20,12 @@ from ...runtime.clock import OBSERVE, PACKET_US
 from ...runtime.robot import RobotRun
 from ...runtime.scripts.script import InputScript
 from ...runtime.time.timed_loop import Periodic
-from ...wpi import station
+from ...wpi import motor_controllers, station
 from .failure import MisbehaviorError, place_of, user_frame
 from .hal_reports import HalReports, hal_reports
 from .left_running import STOPS_WITHIN_US, MotorsLeftRunning
 from .misbehavior_notes import LastMisbehavior
-from .motor_calls import InertMotors, MotorCalls, watch_motor_calls
+from .motor_calls import InertMotors, watch_motor_calls
 
 #: How long after it was disabled a robot may still command its motors: its loop has to come round.
 _STOPS_WITHIN_US = 500_000
@@ -48,7 +48,7 @@ def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings, ends
         reports = closing.enter_context(hal_reports()) if settings.hal_errors else None
         of_motors = (settings.not_a_number, settings.out_of_range, settings.motors_while_disabled)
         is_watched = any(of_motors) or settings.motors_left_running
-        calls = closing.enter_context(watch_motor_calls()) if is_watched else MotorCalls()
+        calls = closing.enter_context(watch_motor_calls()) if is_watched else motor_controllers.MotorCalls()
         oracle = _Oracle(run, files, settings, reports, calls, ends_run)
         if settings.slow_loops:
             run.timed_loop.after_waits.append(oracle.after_wait)
@@ -76,7 +76,7 @@ class _Oracle:
         files: RobotFiles,
         settings: FuzzSettings,
         reports: HalReports | None,
-        calls: MotorCalls,
+        calls: motor_controllers.MotorCalls,
         ends_run: EndsRun,
     ) -> None:
         self._run = run

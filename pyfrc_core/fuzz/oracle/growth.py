@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from itertools import pairwise
 from typing import NamedTuple
 
-import ntcore
+from ...wpi import network
 
 CONTAINERS = (list, dict, set, deque, bytearray)
 
@@ -53,7 +53,7 @@ class Growths:
         if now_us < self.next_us:
             return
         self.next_us = now_us + _EVERY_US
-        self._count(NETWORK_TABLES, len(ntcore.NetworkTableInstance.getDefault().getTopics()))
+        self._count(NETWORK_TABLES, network.count_entries())
         for path, (owner, name) in self._containers().items():
             thing = owner.get(name)
             if isinstance(thing, CONTAINERS) and getattr(thing, "maxlen", None) is None:

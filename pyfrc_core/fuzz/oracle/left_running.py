@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from types import CodeType, FrameType
 from typing import Any
 
-import wpilib
-
 from ...project.robot_files import RobotFiles
+from ...wpi import motor_controllers
 from .failure import user_frame
 
 #: How long after the beginning of teleop a motor may still have its value from autonomous.
@@ -65,7 +64,7 @@ class MotorsLeftRunning:
         if self._mode != "autonomous":
             self._set.pop(id(motor), None)
             self.counts_calls = bool(self._set)
-        elif isinstance(motor, wpilib.PWMMotorController):
+        elif motor_controllers.is_pwm(motor):
             caller = user_frame(frame, files)
             code, line = (caller.f_code, caller.f_lineno) if caller is not None else (None, 0)
             self._set[id(motor)] = SetMotor(motor, code, line)
@@ -74,7 +73,7 @@ class MotorsLeftRunning:
         """Note a new mode, before the robot reacts to it."""
         if self._mode == "autonomous":
             for noted in list(self._set.values()):
-                noted.power = noted.motor.get()
+                noted.power = motor_controllers.power_of(noted.motor)
         elif mode in ("autonomous", "test"):
             self._set.clear()
         self._mode, self._mode_since_us = mode, now_us
@@ -86,8 +85,8 @@ class MotorsLeftRunning:
             return ()
         noted = list(self._set.values())
         self._set.clear()
-        return [
-            each
-            for each in noted
-            if abs(each.power) > _NEGLIGIBLE_POWER and each.motor.get() == each.power and not self._in_group(each.motor)
-        ]
+        return [each for each in noted if self._runs_on(each)]
+
+    def _runs_on(self, noted: SetMotor) -> bool:
+        now = motor_controllers.power_of(noted.motor)
+        return abs(noted.power) > _NEGLIGIBLE_POWER and now == noted.power and not self._in_group(noted.motor)

@@ -10,7 +10,7 @@ from typing import Any
 
 from ...project.robot_files import RobotFiles
 from ...runtime.clock import Clock
-from ...wpi import commands
+from ...wpi import commands, names
 
 #: How long a command has run that may be one.
 LONG_US = 8_000_000
@@ -36,15 +36,10 @@ class UnfinishedCommands:
         """Begin to watch if a command runs; commands2 must have been imported."""
         if not commands.scheduled_commands():
             return
-        import commands2
-
         self.watching = True
-        scheduler = commands2.CommandScheduler.getInstance()
         for command in commands.scheduled_commands():
             self._on_begin(command)
-        scheduler.onCommandInitialize(self._on_begin)
-        scheduler.onCommandFinish(self._on_finish)
-        scheduler.onCommandInterrupt(self._on_interrupt)
+        commands.watch_commands(self._on_begin, self._on_finish, self._on_interrupt)
 
     def end(self) -> None:
         """Count the commands that run at the end of the match."""
@@ -53,7 +48,7 @@ class UnfinishedCommands:
 
     def _on_begin(self, command: Any) -> None:
         name = self._name_of(command)
-        if name and not any(each.getDefaultCommand() is command for each in command.getRequirements()):
+        if name and not commands.is_default(command):
             self._began[id(command)] = command, name, self._clock.now_us
 
     def _on_finish(self, command: Any) -> None:
@@ -68,7 +63,9 @@ class UnfinishedCommands:
 
     def _name_of(self, command: Any) -> str:
         """Return the line and the name of a command's own end condition; empty if it has none."""
-        code = getattr(type(command).isFinished, "__code__", None)
+        condition = names.END_CONDITION
+        code = getattr(getattr(type(command), condition), "__code__", None)
         if code is None or not self._files.is_robot_code(code.co_filename) or not (code.co_names or code.co_freevars):
             return ""
-        return f"{self._files.relative(code.co_filename)}:{code.co_firstlineno}: {type(command).__name__}.isFinished()"
+        place = f"{self._files.relative(code.co_filename)}:{code.co_firstlineno}"
+        return f"{place}: {type(command).__name__}.{condition}()"

@@ -17,7 +17,7 @@ from ...runtime.exceptions import TestEnded, TestFroze, TestRanTooLong
 from ...runtime.loading import load_robot
 from ...runtime.patches.install import patches
 from ...runtime.robot import RobotRun
-from ...wpi import devices, motors
+from ...wpi import devices, motor_controllers
 from .can_devices import CanDevices, CanMotor, find_can_devices
 from .motors import Motor
 from .names import Name, NamedDevice, Place, find_devices, find_objects, find_track_width, one_line
@@ -171,7 +171,7 @@ def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice], can: Can
         if ("servo", channel) in named:
             found.others.append(f"servo: PWM {channel} ({name_of('servo', channel)})")
             continue
-        inverted = ("pwm", channel) in named and motors.is_inverted(named["pwm", channel].thing)
+        inverted = ("pwm", channel) in named and motor_controllers.is_inverted(named["pwm", channel].thing)
         found.motors.append(Motor(name_of("pwm", channel), channel, inverted=inverted))
     for index in _made(hal_data, "encoder"):
         encoder = hal_data["encoder"][index]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from ...compat.private_name import PrivateName
@@ -36,6 +36,26 @@ def scheduled_commands() -> tuple[Any, ...]:
     import commands2
 
     return tuple(getattr(commands2.CommandScheduler.getInstance(), SCHEDULED_COMMANDS.name, ()))
+
+
+def watch_commands(
+    began: Callable[[Any], None], finished: Callable[[Any], None], interrupted: Callable[[Any], None]
+) -> None:
+    """Call a function with each command that begins, is finished, or is interrupted from now on.
+
+    commands2 must have been imported.
+    """
+    import commands2
+
+    scheduler = commands2.CommandScheduler.getInstance()
+    scheduler.onCommandInitialize(began)
+    scheduler.onCommandFinish(finished)
+    scheduler.onCommandInterrupt(interrupted)
+
+
+def is_default(command: Any) -> bool:
+    """Return whether a command runs because its subsystem has nothing else to do."""
+    return any(each.getDefaultCommand() is command for each in command.getRequirements())
 
 
 def is_state_of_machine(thing: object) -> bool:

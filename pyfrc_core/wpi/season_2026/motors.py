@@ -1,14 +1,13 @@
-"""Motors: their data, and the motor controllers that set them."""
+"""Motors: their data, from which physics computes how they move."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import NamedTuple
 
-from wpilib.interfaces import MotorController
 from wpimath.system.plant import DCMotor
 
-__all__ = ["DCMotor", "MotorData", "data_of", "is_inverted", "usual_motor", "with_gears"]
+__all__ = ["DCMotor", "MotorData", "data_of", "usual_motor", "with_gears"]
 
 
 class MotorData(NamedTuple):
@@ -32,11 +31,6 @@ def data_of(motor: DCMotor) -> MotorData:
 def with_gears(motor: DCMotor, gearing: float) -> DCMotor:
     """Return the motor with gears; `gearing` is how often it turns for one turn behind them."""
     return motor.withReduction(gearing)
-
-
-def is_inverted(thing: object) -> bool:
-    """Return whether the robot has inverted a motor controller; False for other objects."""
-    return isinstance(thing, MotorController) and thing.getInverted()
 
 
 #: The usual motor on each motor controller of a vendor's, by the controller's class.

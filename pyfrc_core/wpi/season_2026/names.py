@@ -25,8 +25,10 @@ OF_A_ROBOT = frozenset({INITIALIZATION, "teleopInit", "teleopPeriodic", "autonom
 
 #: Other methods of a robot that libraries call.
 _OF_ALL_ROBOTS = frozenset({MAIN, "endCompetition", "driverStationConnected", "createObjects", "onException"})
+#: The method of a command that says whether it is finished.
+END_CONDITION = "isFinished"
 #: The methods of commands, subsystems and magicbot's components that libraries call.
-OF_A_COMMAND = frozenset({"initialize", "execute", "end", "isFinished"})
+OF_A_COMMAND = frozenset({"initialize", "execute", "end", END_CONDITION})
 OF_A_SUBSYSTEM = frozenset({"periodic", "simulationPeriodic"})
 OF_A_COMPONENT = frozenset({"execute", "on_enable", "on_disable"})
 
