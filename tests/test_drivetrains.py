@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 from wpimath.geometry import Rotation2d, Translation2d
 from wpimath.kinematics import (
@@ -210,17 +210,6 @@ def test_mecanum_agrees_with_wpilib_and_with_itself(
     assert close(as_metres(drivetrain.get_vector(lr, rr, lf, rf)), axes(chassis))
 
 
-@given(vx=st.floats(-0.4, 0.4), vy=st.floats(-0.4, 0.4), omega=st.floats(-0.05, 0.05), x=lengths, y=lengths)
-def test_mecanum_wheels_that_agree_give_back_the_motion_they_were_made_for(
-    vx: float, vy: float, omega: float, x: float, y: float
-) -> None:
-    full_speed = 10 / METRES
-    drivetrain = MecanumDrivetrain(x, y, full_speed)
-    wheels = drivetrain.kinematics.toWheelSpeeds(ChassisSpeeds(vx, vy, omega))
-    motor = [speed / 10 for speed in (wheels.rearLeft, wheels.rearRight, wheels.frontLeft, wheels.frontRight)]
-    assert close(as_metres(drivetrain.get_vector(*motor)), (vx, vy, omega))
-
-
 def swerve_reference(x: float, y: float) -> SwerveDrive4Kinematics:
     """In the order of our parameters: left rear, right rear, left front, right front."""
     half_x, half_y = x / 2 * METRES, y / 2 * METRES
@@ -247,19 +236,6 @@ def test_swerve_agrees_with_wpilib(motor: Any, angle: Any, x: float, y: float, s
         for value, clockwise in zip(motor, angle, strict=True)
     )
     assert close(axes(swerve_reference(x, y).toChassisSpeeds(states)), as_metres(answer))  # type: ignore[arg-type]
-
-
-@given(vx=st.floats(-3, 3), vy=st.floats(-3, 3), omega=st.floats(-1, 1), x=lengths, y=lengths)
-def test_swerve_wheels_that_agree_give_back_the_motion_they_were_made_for(
-    vx: float, vy: float, omega: float, x: float, y: float
-) -> None:
-    states = swerve_reference(x, y).toSwerveModuleStates(ChassisSpeeds(vx, vy, omega))
-    assume(all(state.speed > 1e-5 for state in states))  # below, WPILib takes any direction for forward
-    motor = [state.speed / 20 for state in states]
-    angle = [-state.angle.degrees() for state in states]
-    arguments: Any = (*motor, *angle, x, y, 20 / METRES)
-    answer = four_motor_swerve_drivetrain(*arguments)
-    assert close(as_metres(answer), (vx, vy, omega))
 
 
 # -- deadzones and motor values ----------------------------------------------------------------------------------

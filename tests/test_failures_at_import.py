@@ -53,13 +53,6 @@ def test_a_missing_module_is_told_with_how_the_projects_packages_are_installed(
     assert ("pip install -r requirements.txt" in result.stderr) == has_requirements
 
 
-def test_a_missing_module_of_a_package_is_told_with_the_nearest(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": "import wpilib.drives\n", "requirements.txt": "amr\n"})
-    result = project.run("test", "--builtin")
-    assert "In wpilib: did you mean 'drive'?" in result.stderr
-    assert "requirements.txt" not in result.stderr
-
-
 LOOPS_WHILE_IMPORTED = """
     import wpilib
 

@@ -59,19 +59,6 @@ def test_leaves_can_be_written_back(tree: HalData) -> None:
     assert dict(tree.leaves()) == leaves
 
 
-def test_leaves_are_the_same_in_another_process() -> None:
-    code = (
-        "import wpilib, hal; from pyfrc_core.hal import HalData; t = HalData();"
-        "d = [hal.SimDevice(n) for n in 'zax']; [x.createDouble('v', 0, 1.0) for x in d];"
-        "m = wpilib.PWMSparkMax(1); e = wpilib.Encoder(2, 3); g = wpilib.ADXRS450_Gyro();"
-        "t['custom'].update(a={3, 'x'}, b=object()); print(list(t.leaves()))"
-    )
-    runs = [subprocess.run([sys.executable, "-c", code], capture_output=True, text=True) for _ in range(2)]
-    assert runs[0].returncode == 0, runs[0].stderr
-    assert runs[0].stdout == runs[1].stdout
-    assert "encoder[0].count" in runs[0].stdout
-
-
 def test_importing_and_making_a_tree_makes_no_device() -> None:
     code = (
         "from pyfrc_core.hal import HalData; from hal import simulation as hs;"

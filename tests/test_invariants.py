@@ -226,38 +226,6 @@ def test_an_error_of_a_rule_names_its_line(body: str, project) -> None:
         assert f"(at {project.place('robot.py', 'self.motor.set(power)')})" in result.output
 
 
-def test_rules_are_checked_after_the_loop_and_before_physics(make_shared_project) -> None:
-    """The robot stops at the switch in the same packet; physics, which runs later, presses it again and again."""
-    robot = """
-        import wpilib
-
-        class MyRobot(wpilib.TimedRobot):
-            def __init__(self):
-                super().__init__({period})
-                self.switch = wpilib.DigitalInput(0)
-                self.motor = wpilib.PWMSparkMax(0)
-
-            def teleopPeriodic(self):
-                self.motor.set(0.5 if self.switch.get() else 0)
-        """
-    physics = """
-        class PhysicsEngine:
-            def __init__(self, physics_controller):
-                pass
-
-            def update_sim(self, hal_data, now, tm_diff):
-                hal_data["dio"][0]["value"] = int(now * 10) % 2 == 0
-        """
-    test = "def test_it(control, robot):\n    control.set_operator_control()\n    control.run_test(lambda tm: tm < 1)\n"
-    for period in (0.02, 0.005):
-        project = make_shared_project(
-            {"robot.py": robot.format(period=period), "physics.py": physics, "tests/test_it.py": test}
-        )
-        project.write({RULES: rule("assert hal_data['dio'][0]['value'] or hal_data['pwm'][0]['value'] == 0")})
-        result = project.run("test")
-        assert result.code == 0, result.output
-
-
 def test_rules_in_test_files_and_values_that_are_shown(project) -> None:
     """pytest rewrites the asserts of test files: the explanation is the same."""
     test = """

@@ -22,14 +22,6 @@ def test_it_moves_at_its_motors_speed_and_counts_ticks() -> None:
     assert motion.compute(0, 10) == 360
 
 
-def test_it_stays_within_its_limits() -> None:
-    motion = LinearMotion("Elevator", 2, 360, 6, 1)
-    assert motion.position_ft == 1
-    assert motion.compute(-1, 5) == 360
-    assert motion.compute(1, 60) == 6 * 360
-    assert motion.compute(-1, 1) == 4 * 360
-
-
 def test_it_does_not_go_below_zero_unless_told_that_it_may() -> None:
     assert LinearMotion("Elevator", 2, 360).compute(-1, 1) == 0
     assert LinearMotion("Elevator", 2, 360, min_position=None).compute(-1, 1) == -720
@@ -44,14 +36,6 @@ def test_a_tick_counts_when_it_is_complete() -> None:
     motion.compute(0.55, 0.03)  # 118.8
     assert motion.position_ticks == 118
     assert LinearMotion("Elevator", 10, 360, min_position=None).compute(-0.55, 0.03) == -59
-
-
-@given(steps=st.integers(1, 200))
-def test_ticks_do_not_depend_on_the_number_of_steps(steps: int) -> None:
-    motion = LinearMotion("Elevator", 1, 360)
-    for _ in range(steps):
-        motion.compute(1, 1 / steps)
-    assert motion.position_ticks == 360
 
 
 @given(

@@ -549,49 +549,6 @@ def test_what_the_robot_leaves_can_be_waited_for_after_its_end(make_project) -> 
     )
 
 
-def test_the_robots_directory_is_the_projects(make_project) -> None:
-    passes(
-        make_project,
-        """
-        def test_it(robot, robot_path):
-            assert robot.directories == [robot_path, robot_path + "/deploy"]
-        """,
-        """
-        import wpilib
-
-        class MyRobot(wpilib.TimedRobot):
-            def __init__(self):
-                super().__init__()
-                self.directories = [wpilib.getOperatingDirectory(), wpilib.getDeployDirectory()]
-        """,
-    )
-
-
-def test_a_process_that_the_robot_starts_ends_with_its_test(make_project) -> None:
-    passes(
-        make_project,
-        """
-        def test_it(control, robot):
-            control.run_test(lambda tm: tm < 1)
-            assert robot.process.is_alive()
-        """,
-        """
-        import multiprocessing, time
-        import wpilib
-
-        def look_for_targets():
-            while True:
-                time.sleep(1000)
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                context = multiprocessing.get_context("fork")
-                self.process = context.Process(target=look_for_targets, daemon=True)
-                self.process.start()
-        """,
-    )
-
-
 @pytest.mark.skipif(not FORK_IS_SAFE, reason="processes are not forked here")
 @pytest.mark.parametrize(
     ("end", "status", "said"),

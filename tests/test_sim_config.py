@@ -42,26 +42,6 @@ def test_without_a_file_everything_is_at_its_default(tmp_path: Path) -> None:
     assert loaded.warnings == ()
 
 
-def test_the_documented_example_loads(load: Load) -> None:
-    text = """
-    {
-      "pyfrc": {
-        "robot": {
-          "w": 2,
-          "h": 3,
-          "starting_x": 2,
-          "starting_y": 20,
-          "starting_angle": 0
-        }
-      }
-    }
-    """
-    loaded = load(text)
-    robot = loaded.config.robot
-    assert (robot.w, robot.l, robot.starting_x, robot.starting_y, robot.starting_angle) == (2, 3, 2, 20, 0)
-    assert loaded.warnings == ()
-
-
 @pytest.mark.parametrize(
     ("robot", "length"), [({"h": 4}, 4), ({"l": 5}, 5), ({"l": 5, "h": 4}, 5), ({}, 3)], ids=["h", "l", "both", "none"]
 )

@@ -15,7 +15,6 @@ from pyfrc_core.project import find_project
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.scripts.recorder import Recorder
 from pyfrc_core.sim.engine import history, snapshot_builder
-from pyfrc_core.sim.engine.history import History, entries
 from pyfrc_core.sim.engine.options import SimOptions
 from pyfrc_core.sim.engine.simulation import Simulation
 
@@ -146,19 +145,3 @@ def test_the_robots_process_keeps_no_steps() -> None:
         assert len(recorder.steps_from(0)) == 1
     finally:
         robot_run.close()
-
-
-@pytest.mark.parametrize("until", [-1, 0, 511, 512, 1500, 1535, 1536, 2999, 5000])
-def test_a_part_of_a_history_grows_by_itself(until: int) -> None:
-    whole = History[str]()
-    for number in range(3000):
-        whole.append(number, str(number))
-    part = whole.until(until)
-    expected = [str(number) for number in range(3000) if number <= until]
-    assert list(entries(part)) == expected
-    assert part.last == (expected[-1] if expected else None)
-    more = [f"other {number}" for number in range(2000)]
-    for number, item in enumerate(more):
-        part.append(6000 + number, item)
-    assert list(entries(part)) == expected + more
-    assert list(entries(whole)) == [str(number) for number in range(3000)]

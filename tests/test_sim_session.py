@@ -200,14 +200,6 @@ def test_putting_the_robot_elsewhere(simulation: Simulation) -> None:
         simulation.reset_position("lft")
 
 
-def test_starting_elsewhere(project: Project) -> None:
-    with Simulation(project, replace(STILL, start_position="left")) as simulation:
-        settle(simulation)
-        drive_forward(simulation)
-        run(simulation, 1)
-        assert simulation.snapshot.scene.robot == pytest.approx((2, 8, math.pi / 2), abs=0.2)
-
-
 def test_going_back_lands_on_the_same_snapshot(simulation: Simulation) -> None:
     """In the middle of a match; and what was driven from there on can be driven again."""
     simulation.practice()

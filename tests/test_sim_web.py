@@ -80,22 +80,6 @@ def test_a_page_drives_the_robot(make_project) -> None:
         assert page.values["pwm[0].value"] == 0
 
 
-def test_the_greeting_has_what_a_page_draws_first(make_project) -> None:
-    with served(make_project(FILES)) as server, server.page() as page:
-        hello = page.hello
-        assert (hello["protocol"], hello["readonly"]) == (1, False)
-        assert hello["project"]["main"] == "robot.py"
-        assert len(hello["options"]["joysticks"]) == 6
-        assert hello["options"]["keyboard"]["chosen"] == "Tank: both sides"
-        assert hello["options"]["alliances"]["Red 1"] == "red1"
-        assert hello["field"]["starts"]["left"] == [2, 3, pytest.approx(math.pi / 2)]
-        page.until(lambda: page.parts.get("panels"))
-        assert [panel["title"] for panel in page.parts["panels"]][:2] == ["PWM", "Digital I/O"]
-        row = page.parts["panels"][1]["rows"][0]
-        assert (row["kind"], row["paths"], row["settable"]) == ("switch", ["dio[3].value"], True)
-        page.until(lambda: any(line["text"] == "the robot is there" for line in page.console))
-
-
 def test_a_page_sets_inputs_choosers_and_its_place(make_project) -> None:
     with served(make_project(FILES)) as server, server.page() as page:
         page.run_for(0.1)

@@ -63,18 +63,6 @@ def test_every_moment_has_the_values_that_it_had(seed: int) -> None:
     assert part.values_at(9.0) == {**expected[cut], "new": 1.0}
 
 
-def test_a_curve_holds_each_value_until_the_next_change() -> None:
-    history = ValueHistory()
-    history.add(0.0, {"a": 1.0, "name": "x", "list": (1.0, 2.0)})
-    history.add(0.5, {"a": 2.0, "list": (1.0, 3.0)})
-    history.add(1.0, {"a": 4.0, "name": "y"})
-    assert series(history, "a", 0.7, 9, 100) == {"kind": "number", "t": [0.7, 1.0], "v": [2.0, 4.0]}
-    assert series(history, "name", 0.0, 9, 100) == {"kind": "text", "t": [0.0, 1.0], "v": ["x", "y"]}
-    assert series(history, "list[1]", 0.0, 9, 100) == {"kind": "number", "t": [0.0, 0.5], "v": [2.0, 3.0]}
-    assert series(history, "list[7]", 0.0, 9, 100)["v"] == [None]
-    assert series(history, "unknown", 0.0, 9, 100) == {"kind": "number", "t": [], "v": []}
-
-
 def test_a_long_curve_keeps_its_peaks() -> None:
     history = ValueHistory()
     for packet in range(5000):

@@ -390,26 +390,3 @@ def test_everything_fits_and_can_be_read(browser, server, scheme) -> None:
                 )
                 assert max(rows) - min(rows) < 5, (size, layout)  # one row
         assert page.evaluate(CONTRASTS) == []
-
-
-#: Take in more points of a plotted value, and more marks, than a page keeps; how many are left of each.
-FLOOD = """async () => {
-  const { model } = await module("js/model.js");
-  const { unwatch, watch } = await module("js/series.js");
-  const path = "pwm[0].value", series = watch(path);
-  model.take({ type: "update", samples: { [path]: Array.from({ length: 90000 }, (_, index) => index / 50) } });
-  const marks = Array.from({ length: 2500 }, (_, n) => ({ n, t: n, kind: n % 100 ? "overrun" : "own", text: "" }));
-  model.take({ type: "update", marks });
-  while (series.t.length > 40000) await new Promise((resolve) => setTimeout(resolve, 10));
-  unwatch(path);
-  const own = model.marks.filter(({ kind }) => kind === "own");
-  return [series.t.length, series.t.at(-1), model.marks.length, own.length];
-}"""
-
-
-def test_a_long_run_leaves_the_page_its_newest_points_and_its_own_marks(person: Seen) -> None:
-    points, newest, marks, own = person.page.evaluate(FLOOD)
-    assert 19_000 < points <= 24_000
-    assert newest == 89_998 / 50
-    assert marks >= 2000
-    assert own == 25

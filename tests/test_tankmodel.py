@@ -126,24 +126,6 @@ def test_pose_agrees_with_a_fine_integration(values: list[tuple[float, float, fl
     assert track.state == pytest.approx(reference.state, abs=1e-6)
 
 
-@pytest.mark.parametrize("seconds", [0.005, 0.02, 0.05, 0.3, 1.0])
-@pytest.mark.parametrize(("l_ka", "r_ka"), [(0.06, 0.06), (0.15, 0.15), (0.06, 0.15), (0.15, 0.05)])
-@pytest.mark.parametrize(("left", "right"), [(-1, 0.5), (0.2, 1), (1, 1), (-0.9, -1), (1, -0.2)])
-def test_a_single_step_is_off_by_a_ten_millionth_of_its_way_at_most(
-    seconds: float, l_ka: float, r_ka: float, left: float, right: float
-) -> None:
-    """So little that what is left out of a series, or a constant that is slightly wrong, cannot hide."""
-    track, reference = Track(measured(0.6, l_ka, 0.6, r_ka)), reference_of_measured()
-    reference.sides = (0.6, l_ka, 1.1), (0.6, r_ka, 1.4)
-    for l_forward, r_forward, duration in ((1, 0.4, 0.4), (left, right, seconds), (left, right, seconds)):
-        before = track.state
-        reference.state = before
-        track.drive(l_forward, r_forward, duration)
-        reference.drive(l_forward, r_forward, duration, longest=0.0005)
-        fastest = max(abs(speed) for speed in before[5:] + track.state[5:])
-        assert track.state == pytest.approx(reference.state, rel=0, abs=1e-7 * fastest * duration)
-
-
 def test_tuned_numbers_keep() -> None:
     """Within 0.5 % of small trapezoid-like steps of 5 ms, which is how this used to be computed."""
     model, others = theory(), {}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
 import re
@@ -354,20 +353,3 @@ def test_a_control_request_needs_the_key(project: RobotProject, directory: Path)
                 assert client.recv(100) == response
     finally:
         control.close()
-
-
-def test_clients_that_read_nothing_delay_a_line_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pyfrc_core.virtual_robot.console._SEND_SECONDS", 0.0)
-    server = ConsoleServer("127.0.0.1")
-    try:
-        with contextlib.ExitStack() as stack:
-            deaf = [stack.enter_context(socket.create_connection(("127.0.0.1", server.port))) for _ in range(3)]
-            server.send(b"first")
-            for _ in range(400):
-                server.send(b"x" * 60_000)
-            reader = stack.enter_context(socket.create_connection(("127.0.0.1", server.port), timeout=SECONDS))
-            server.send(b"last")
-            assert reader.recv(100).endswith(b"last")
-            assert not server._clients[1:], deaf
-    finally:
-        server.close()

@@ -92,19 +92,6 @@ def test_several_targets_come_with_the_least_offset_first() -> None:
     assert vision.get_immediate_distance() == 10
 
 
-def test_a_target_knows_its_camera() -> None:
-    target = VisionSimTarget(0, 0, 315, 45)
-    assert (target.view_angle_start, target.view_angle_end) == pytest.approx((math.radians(315), math.radians(45)))
-    assert target.compute(0, 100, 0, 0.1) is not None  # no camera, no limits
-    camera(target, fov=60, start=2, end=4)
-    assert (target.view_dst_start, target.view_dst_end, target.fov2) == pytest.approx((2, 4, math.radians(30)))
-    assert target.compute(0, 3, 0, math.pi) == (1, 0, 0, 3)
-    assert target.compute(0, 5, 0, math.pi) is None
-    target.view_dst_end, target.fov2 = 6, math.radians(5)
-    assert target.compute(0, 5, 0, math.pi) is not None
-    assert target.compute(0, 5, 0, math.radians(174)) is None
-
-
 # -- frames ------------------------------------------------------------------------------------------------------
 
 

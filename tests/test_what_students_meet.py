@@ -84,15 +84,6 @@ def test_a_robot_in_another_encoding_is_explained(
     assert what in result.first_error
 
 
-def test_another_module_in_utf_16_is_named(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": f"import arm\n{ROBOT}".replace("\n    ", "\n"), **TESTS})
-    (project.path / "arm.py").write_bytes("x = 1\n".encode("utf-16"))
-    result = project.run("test")
-    explained(result, 1)
-    assert result.first_error.startswith("arm.py: this file is in UTF-16")
-    assert "Save it as UTF-8" in result.stderr
-
-
 def test_a_byte_order_mark_before_the_settings_does_no_harm(make_project: MakeProject) -> None:
     settings = "\ufeff[tool.pyfrc.test]\njobs = 1\n[tool.pytest.ini_options]\naddopts = '-v'\n"
     project = make_project({"robot.py": ROBOT, "pyproject.toml": settings, **TESTS})
@@ -142,13 +133,6 @@ def test_a_wrong_value_is_reported_at_its_own_tables_line(make_project: MakeProj
     result = make_project({"robot.py": ROBOT, "pyproject.toml": settings}).run("test")
     explained(result, 2)
     assert result.first_error.startswith("pyproject.toml:6: tool.pyfrc.team = 'b'")
-
-
-def test_a_test_file_in_utf_16_is_explained(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": ROBOT, **TESTS})
-    (project.path / "tests/test_b.py").write_bytes(b"\xff\xfe" + "x = 1\n".encode("utf-16-le"))
-    text = explained(project.run("test"), 2)
-    assert "tests/test_b.py: this file is in UTF-16, and Python reads UTF-8" in text
 
 
 # --- where the project is

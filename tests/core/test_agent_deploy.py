@@ -10,7 +10,6 @@ import pytest
 from pyfrc_core.deploy.agent import disk, releases, serve, transaction
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.releases import Releases
-from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 from .agent_disk import AgentDisk, contents, manifest
 
@@ -187,33 +186,6 @@ def test_a_plan_over_another_tools_code(robot: AgentDisk) -> None:
     assert plan["done"]["removed"] == ["old.py"]
 
 
-def test_facts(robot: AgentDisk) -> None:
-    deployed_twice(robot)
-    (robot.root / "etc/natinst/share").mkdir(parents=True)
-    (robot.root / "etc/natinst/share/scs_imagemetadata.ini").write_text('IMAGEVERSION = "FRC_roboRIO_2026_v1.2"\n')
-    (robot.root / "etc/natinst/share/ni-rt.ini").write_text("[STARTUP]\nStartupDLLs = a.so\n")
-    (facts,) = robot.ask({"op": "info", "modules": ["json", "no_such_module"]})
-    found = facts["done"]
-    assert (ROBORIO.image_in(found["texts"]), ROBORIO.wastes_memory(found["texts"])) == ("FRC_roboRIO_2026_v1.2", True)
-    assert (found["virtual"], found["can_restart"]) == (False, False)
-    assert (found["current"], found["home"], found["other_code"], found["debug"]) == (2, True, False, False)
-    assert found["missing_modules"] == ["no_such_module"]
-    assert found["deploy_json"] == '{\n  "by": "Ada"\n}'
-    assert found["command"].endswith("--main /home/lvuser/py/robot.py run\n")
-    assert found["other_languages"] == []
-    assert found["free"] > 0
-    about = {"main": "robot.py", "debug": False, "deploy": {"by": "Ada"}, "taken": False}
-    about |= {"ran": False, "ended": False, "damaged": False}
-    assert found["releases"] == [
-        {"release": 1, "files": 3, "from": None, **about},
-        {"release": 2, "files": 3, "from": 1, **about},
-    ]
-    (robot.home / "robotCommand").write_text("/usr/local/frc/JRE/bin/java -jar /home/lvuser/Robot.jar")
-    (robot.home / "Robot.jar").write_text("")
-    (facts,) = robot.ask({"op": "info"})
-    assert facts["done"]["other_languages"] == ["/home/lvuser/robotCommand", "/home/lvuser/Robot.jar"]
-
-
 # -- going back ------------------------------------------------------------------------------------------------------
 
 
@@ -318,14 +290,6 @@ def test_a_deploy_that_fails_leaves_no_release(robot: AgentDisk, monkeypatch: py
         assert robot.startable() == "py/robot.py: # one"
         assert {name.split("/")[0] for name in robot.tree()} == {"1", "1.json"}
         monkeypatch.undo()
-
-
-def test_a_record_that_cannot_be_read(robot: AgentDisk) -> None:
-    deployed_twice(robot)
-    (robot.places.releases / "1.json").write_text("")
-    (answer,) = robot.ask({"op": "rollback", "release": 1})
-    assert (answer["error"], answer["message"]) == ("release", "the record of release 1 cannot be read")
-    assert robot.startable() == "py/robot.py: # two"
 
 
 def test_a_deploy_that_was_cut_past_its_moment_is_finished(robot: AgentDisk) -> None:

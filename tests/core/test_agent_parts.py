@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import os
 import signal
-import threading
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -20,7 +19,6 @@ from pyfrc_core.deploy.agent.robot_paths import Refusal, RobotPaths
 from pyfrc_core.deploy.agent.wire import (
     CONTENT,
     EndedError,
-    LaptopPipe,
     Wire,
     WireError,
     frame,
@@ -68,23 +66,6 @@ def test_a_wire_limits_silence() -> None:
         # A laptop that holds no lock may be silent for longer, but not for ever.
         with pytest.raises(WireError, match=r"no data for 0\.02 s"):
             Wire(stream, io.BytesIO(), silence_limit=0.01, idle_limit=0.02).receive()
-
-
-def test_a_pipe_that_the_laptop_reads() -> None:
-    source, target = os.pipe()
-    received: list[bytes] = []
-
-    def read() -> None:
-        while chunk := os.read(source, 10_000):
-            received.append(chunk)
-
-    reader = threading.Thread(target=read)
-    reader.start()
-    Wire(io.BytesIO(), LaptopPipe(target)).send(text=os.urandom(500_000).hex())
-    os.close(target)
-    reader.join()
-    os.close(source)
-    assert len(wire.parse_message(*read_frame(io.BytesIO(b"".join(received)).read))["text"]) == 1_000_000
 
 
 # -- the console -------------------------------------------------------------------------------------------------------

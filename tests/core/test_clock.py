@@ -107,36 +107,6 @@ def test_an_action_may_let_time_pass_and_the_clock_is_later_then(timeline: Timel
     assert timeline.clock.now_us == 15_000
 
 
-def test_each_call_that_is_going_on_has_a_mark_of_its_own(timeline: Timeline) -> None:
-    """So it is known without a look at the stack that the same call has made everything since the last look."""
-    clock = timeline.clock
-    calls: list[object] = []
-
-    def note() -> None:
-        calls.append(clock.call)
-
-    def wait() -> None:
-        note()
-        clock.run_until(15_000)
-        note()
-        clock.run_while(lambda: clock.now_us < 20_000)
-        note()
-        with pytest.raises(TestRanTooLong):
-            clock.run_until(clock.limit_us + 1)
-        note()
-
-    clock.limit_us = 100_000
-    clock.at(10_000, ROBOT_LOOP, wait)
-    clock.at(14_000, OBSERVE, note)
-    clock.at(16_000, OBSERVE, note)
-    clock.at(30_000, OBSERVE, note)
-    clock.run_until(25_000)
-    first, during_wait, second, other_wait, third, last_wait, fourth = calls
-    assert first is second is third is fourth is not None
-    assert len({id(call) for call in (first, during_wait, other_wait, last_wait)}) == 4
-    assert clock.call is None
-
-
 def test_the_hal_has_the_same_time(timeline: Timeline) -> None:
     stepTiming(0)
     timeline.run_until(12.345)

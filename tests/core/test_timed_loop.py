@@ -72,16 +72,6 @@ def test_periods_and_offsets_count_from_the_robots_construction(timeline: Timeli
     assert timeline.run_until(34)[1:] == ["23 loop", "23 late", "27 offset", "28 late", "33 late"]
 
 
-def test_a_callback_that_is_added_within_the_loop_is_called_after_its_first_period(timeline: Timeline) -> None:
-    def turn() -> None:
-        timeline.note("loop")
-        if timeline.clock.now_us == 20_000:
-            loop.add(ROBOT, lambda: timeline.note("added"), 0.006)
-
-    loop = make_loop(timeline, turn)
-    assert timeline.run_until(41) == ["20 loop", "24 added", "30 added", "36 added", "40 loop"]
-
-
 @pytest.mark.parametrize("period", [0, -0.01, 0.0000001])
 def test_a_period_must_be_longer_than_nothing(period: float, timeline: Timeline) -> None:
     with pytest.raises(ValueError, match=r"^addPeriodic: the period must be longer than 0 s, not"):

@@ -39,36 +39,6 @@ def test_a_shot_is_given_up_while_spinning_up(control, robot, hal_data):
     assert not robot.launcher_control.is_executing
 
 
-def test_a_shot_that_feeds_is_finished(control, robot, hal_data):
-    """A is let go while the ball is being fed: it is thrown all the same, once."""
-
-    def on_step(tm):
-        hal_data["joysticks"][0]["buttons"][A] = 1.0 <= tm < 2.2
-        return tm < 5
-
-    control.set_operator_control(enabled=True)
-    control.run_test(on_step)
-
-    assert robot.launcher_control.thrown == 1
-
-
-def test_fifty_loops_a_second(control, robot):
-    """Magicbot's own loop keeps the time of the packets."""
-    loops = {}
-
-    def on_step(tm):
-        loops[round(tm, 2)] = robot.teleop_loops
-        return tm < 12
-
-    control.set_operator_control(enabled=True)
-    control.run_test(on_step)
-
-    assert loops[2.0] - loops[1.0] == 50
-    assert loops[12.0] - loops[2.0] == 500
-    assert robot.teleop_entered == 1
-    assert robot.drivetrain.enabled_times == 1
-
-
 def test_components_are_enabled_with_each_mode(control, robot):
     """Today's style: the stick drives while the robot is enabled, and only then."""
     with control.run_robot():

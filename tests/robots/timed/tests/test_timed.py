@@ -57,29 +57,6 @@ def test_stick_drives_the_motors_on_the_same_packet(control, hal_data):
     assert sum(value > 0 for value in seen.values()) == 50
 
 
-def test_modes_follow_one_another(control, robot):
-    """Disabled, autonomous, disabled, teleop: one second each, entered once each time."""
-    modes = []
-
-    def on_step(tm):
-        if tm < 1:
-            control.set_autonomous(enabled=False)
-        elif tm < 2:
-            control.set_autonomous(enabled=True)
-        elif tm < 3:
-            control.set_operator_control(enabled=False)
-        else:
-            control.set_operator_control(enabled=True)
-        modes.append(control.get_mode())
-        return tm < 4
-
-    control.run_test(on_step)
-
-    assert list(dict.fromkeys(modes)) == ["disabled", "autonomous", "teleop"]
-    assert (robot.disabled.entered, robot.autonomous.entered, robot.teleop.entered) == (2, 1, 1)
-    assert (robot.autonomous.loops, robot.teleop.loops) == (50, 50)
-
-
 def test_enable_and_disable(control, robot):
     """Today's style: the test itself moves the time on."""
     with control.run_robot():

@@ -31,19 +31,6 @@ def test_samples_carry_the_time_they_were_taken(control, robot):
     assert times[:25] == pytest.approx([0.1 * number for number in range(1, 26)], abs=1e-5)
 
 
-def test_samples_follow_the_sensor(control, robot, hal_data):
-    """The sensor jumps half way between two samples, and the next sample shows it."""
-
-    def on_step(tm):
-        hal_data["analog_in"][0]["voltage"] = 2.5 if tm >= 1.04 else 1.0
-        return tm < 2.04
-
-    control.set_operator_control(enabled=True)
-    control.run_test(on_step)
-
-    assert [voltage for _, voltage in robot.received[:20]] == pytest.approx([1.0] * 10 + [2.5] * 10)
-
-
 def test_heartbeat_sees_the_main_loop_go_on(control, robot):
     """Between two beats, 50 ms apart, there are two or three loops of 20 ms."""
     control.run_test(lambda tm: tm < 5.04)
