@@ -16,18 +16,17 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import dedent
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import forked
 import pytest
-import warm_start
 from hypothesis import HealthCheck, settings
-from started_commands import How, StartedCommand, start_command, start_process
+from started_commands import StartedCommand, start_command
 
 from pyfrc_core.collector import collector_paused
 
 if TYPE_CHECKING:
     from roborio.local import Agents
-    from warm_processes import StartInterpreter, WarmProcesses
 
     from pyfrc_core.config.sim_file import LoadedSimConfig
     from pyfrc_core.processes.spawn import Interpreter
@@ -67,12 +66,6 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 #: Guards of tests that need what not every machine has.
 pytest_plugins = ["skips"]
-
-#: Those that a warm start is the same for.
-_WARM = ("pyfrc", "pytest")
-
-#: This process's environment, before a test changes it.
-_AT_START = dict(os.environ)
 
 _BANNER = re.compile(r"^=+ .+ =+$")
 _BLOCK = re.compile(r"^_{2,} (.+?) _{2,}$")
@@ -185,34 +178,29 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object
 
 
 @functools.cache
-def _warm_starts() -> warm_start.WarmStarts:
-    return warm_start.WarmStarts(_environment())
+def _forking_process() -> str:
+    return forked.start_server(_environment())
 
 
-@functools.cache
-def _warm_processes() -> WarmProcesses:
-    from warm_processes import WarmProcesses
-
-    return WarmProcesses(_AT_START)
+def _start_python(command: Sequence[str], **options: Any) -> Any:
+    """Do what `subprocess.Popen` does with Python and its arguments; faster, where that is the same."""
+    if not forked.POSSIBLE:
+        return subprocess.Popen(command, **options)
+    return forked.popen(_forking_process(), command, **options)
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _start_cold() -> StartInterpreter:
-    """Start the hosts of simulations in this process warm, too; the value starts processes as users' are started."""
+def _start_hosts_fast() -> None:
+    """Start the hosts of simulations in this process as commands are started."""
     from pyfrc_core.processes import spawn
 
-    cold = spawn.start
-    if warm_start.POSSIBLE:
-        from warm_processes import start_warm
-
-        start_warm(lambda: _warm_processes().address)
-    return cold
+    spawn.popen = _start_python
 
 
 @pytest.fixture
-def cold_hosts(_start_cold: StartInterpreter, monkeypatch: pytest.MonkeyPatch) -> None:
+def cold_hosts(monkeypatch: pytest.MonkeyPatch) -> None:
     """Start the hosts of this test's simulations in new interpreters."""
-    monkeypatch.setattr("pyfrc_core.processes.spawn.start", _start_cold)
+    monkeypatch.setattr("pyfrc_core.processes.spawn.popen", subprocess.Popen)
 
 
 def trace_hash(file: Path) -> str:
@@ -267,24 +255,19 @@ class RobotProject:
 
         :param cold: in a new interpreter, even where a warm start does the same
         """
-        arguments = [str(argument) for argument in args]
-        environment = self._environment(arguments, env)
-        warm = None if cold else self._warm_starts(program, environment)
-        if warm is not None:
-            address = _warm_processes().address
-            return Result(*warm.run(program, arguments, cwd or self.path, environment, stdin, address))
-        done = subprocess.run(
-            [sys.executable, "-m", program, *arguments],
-            cwd=cwd or self.path,
-            env=environment,
-            stdin=subprocess.DEVNULL if stdin is None else None,
-            input=stdin,
-            capture_output=True,
-            encoding="utf-8",
-            errors="replace",
-            check=False,
+        typed = None
+        if stdin is not None:
+            typed, told = os.pipe()
+            with os.fdopen(told, "w", encoding="utf-8") as file:
+                file.write(stdin)  # fits into a pipe
+        command = start_command(
+            lambda streams: self.start_with(streams, *args, env=env, cwd=cwd, program=program, cold=cold), typed, True
         )
-        return Result(done.returncode, done.stdout, done.stderr)
+        if typed is not None:
+            os.close(typed)
+        with command:
+            printed, errors = command.rest()
+            return Result(command.wait(), printed, errors)
 
     def start(
         self, *args: str | Path, env: Mapping[str, str] | None = None, stdin: int | None = None, apart: bool = False
@@ -301,36 +284,31 @@ class RobotProject:
         streams: Sequence[int],
         *args: str | Path,
         env: Mapping[str, str] | None = None,
+        cwd: Path | None = None,
+        program: str = "pyfrc",
+        cold: bool = False,
         own_session: bool = False,
     ) -> Interpreter:
         """Start ``pyfrc`` with these descriptors as its standard input, output and errors.
 
         :param own_session: whether it leads a session of its own, as at another terminal
         """
-        arguments = [str(argument) for argument in args]
-        environment = self._environment(arguments, env)
-        start_warm = None
-        if (warm := self._warm_starts("pyfrc", environment)) is not None:
-            from warm_processes import ask_for_command
-
-            start_warm = functools.partial(ask_for_command, warm.address, _warm_processes().address)
-        how = How(self.path, environment, streams, own_session)
-        return start_process(start_warm, "pyfrc", arguments, how)
-
-    def _environment(self, arguments: Sequence[str], env: Mapping[str, str] | None) -> dict[str, str]:
+        stdin, stdout, stderr = streams
         environment = _environment() | {"TMPDIR": str(self.temporary), "TEMP": str(self.temporary)}
-        if arguments[:1] == ["fuzz"]:
+        if args[:1] == ("fuzz",):
             # With more processes, shrinking runs scripts that it does not need then: a third more processor time. What
             # is found is the same. Tests that are about the number pass it.
             environment["PYTHON_CPU_COUNT"] = "1"
-        return environment | dict(env or {})
-
-    def _warm_starts(self, program: str, environment: Mapping[str, str]) -> warm_start.WarmStarts | None:
-        """Return what starts the program warm, if that does the same."""
-        if not warm_start.POSSIBLE or program not in _WARM:
-            return None
-        warm = _warm_starts()
-        return warm if warm.fit(self.path, environment) else None
+        popen: Callable[..., Interpreter] = subprocess.Popen if cold else _start_python
+        return popen(
+            [sys.executable, "-m", program, *map(str, args)],
+            cwd=cwd or self.path,
+            env=environment | dict(env or {}),
+            stdin=stdin,
+            stdout=stdout,
+            stderr=stderr,
+            start_new_session=own_session,
+        )
 
     def pytest(self, *args: str | Path, cwd: Path | None = None, env: Mapping[str, str] | None = None) -> Result:
         """Run plain ``pytest``, as an editor does."""

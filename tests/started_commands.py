@@ -3,34 +3,15 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from threading import Thread, Timer
 from types import TracebackType
-from typing import IO, TYPE_CHECKING, NamedTuple
+from typing import IO, TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pyfrc_core.processes.spawn import Interpreter
-
-
-class How(NamedTuple):
-    """How a command is started.
-
-    :param streams: descriptors of its standard input, output and errors
-    :param own_session: whether it leads a session of its own
-    """
-
-    directory: Path
-    environment: Mapping[str, str]
-    streams: Sequence[int]
-    own_session: bool = False
-
-
-#: Starts ``python -m program arguments``; returns None where that has to be a new interpreter.
-StartWarm = Callable[[str, Sequence[str], How], "Interpreter | None"]
 
 
 class StartedCommand:
@@ -94,26 +75,6 @@ class StartedCommand:
             at_end.callback(self.wait)
             printed = self.stdout.read()
         return printed, "".join(errors)
-
-
-def start_process(warm: StartWarm | None, program: str, arguments: Sequence[str], how: How) -> Interpreter:
-    """Start ``python -m program arguments``.
-
-    :param warm: starts it faster
-    """
-    process = None if warm is None else warm(program, arguments, how)
-    if process is not None:
-        return process
-    stdin, stdout, stderr = how.streams
-    return subprocess.Popen(
-        [sys.executable, "-m", program, *arguments],
-        stdin=stdin,
-        stdout=stdout,
-        stderr=stderr,
-        cwd=how.directory,
-        env=how.environment,
-        start_new_session=how.own_session,
-    )
 
 
 def start_command(

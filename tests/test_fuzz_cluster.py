@@ -6,6 +6,8 @@ import os
 import re
 import shlex
 import signal
+import subprocess
+import sys
 import threading
 from collections.abc import Generator, Mapping
 from importlib.util import find_spec
@@ -14,8 +16,7 @@ from typing import Any
 
 import pytest
 from skips import require
-from started_commands import StartedCommand
-from warm_cluster import Starts
+from started_commands import StartedCommand, start_command
 
 require("campaigns on a cluster", [] if find_spec("distributed") else ["Dask"])
 
@@ -61,12 +62,26 @@ ROBOT = """
 CAMPAIGN = ("--seed", "101", "--runs", "16")
 
 
+def start(program: str, arguments: list[str], directory: Path, env: Mapping[str, str] | None = None) -> StartedCommand:
+    """Start ``python -m program arguments``, without input.
+
+    :param env: variables, besides those of this process
+    """
+    command = [sys.executable, "-m", program, *arguments]
+    environment = {**os.environ, **(env or {})}
+    return start_command(
+        lambda streams: subprocess.Popen(
+            command, stdin=streams[0], stdout=streams[1], stderr=streams[2], cwd=directory, env=environment
+        ),
+        apart=True,
+    )
+
+
 class Cluster:
     """A scheduler and its workers, each a process that ends with the context."""
 
-    def __init__(self, directory: Path, starts: Starts) -> None:
+    def __init__(self, directory: Path) -> None:
         self._directory = directory
-        self._starts = starts
         self._processes: list[StartedCommand] = []
         self._workers: list[tuple[StartedCommand, Path]] = []
         self.scheduler, (self.address,) = self._start(
@@ -90,7 +105,7 @@ class Cluster:
         self, command: list[str], ready: str, env: Mapping[str, str] | None = None
     ) -> tuple[StartedCommand, tuple[str, ...]]:
         assert command[0] == "dask"
-        started = self._starts.start("dask", command[1:], self._directory, env)
+        started = start("dask", command[1:], self._directory, env)
         self._processes.append(started)
         assert started.stderr is not None
         log = ""
@@ -109,15 +124,9 @@ class Cluster:
 
 
 @pytest.fixture(scope="module")
-def starts() -> Starts:
-    """Starts schedulers, workers and campaigns."""
-    return Starts(os.environ)
-
-
-@pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory, starts: Starts) -> Generator[Cluster]:
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Generator[Cluster]:
     """A cluster with two workers."""
-    cluster = Cluster(tmp_path_factory.mktemp("cluster"), starts)
+    cluster = Cluster(tmp_path_factory.mktemp("cluster"))
     try:
         cluster.add_worker()
         cluster.add_worker()
@@ -127,10 +136,10 @@ def cluster(tmp_path_factory: pytest.TempPathFactory, starts: Starts) -> Generat
 
 
 @pytest.fixture
-def own_cluster(tmp_path: Path, starts: Starts) -> Generator[Cluster]:
+def own_cluster(tmp_path: Path) -> Generator[Cluster]:
     """A cluster without workers, for one test."""
     (tmp_path / "own").mkdir()
-    cluster = Cluster(tmp_path / "own", starts)
+    cluster = Cluster(tmp_path / "own")
     try:
         yield cluster
     finally:
@@ -169,6 +178,7 @@ def _everywhere(project: Any, result: Any) -> tuple[dict[str, bytes], str]:
     return contents, "\n".join([*(line for line in lines if not re.match(r"\d+ match|found ", line)), last])
 
 
+@pytest.mark.slow
 def test_a_cluster_finds_what_one_process_finds(cluster: Cluster, alone, make_shared_project) -> None:
     project = copy(make_shared_project)
     options = [cluster.address if each.startswith("tcp://") else each for each in FUZZ[2:]]
@@ -180,6 +190,7 @@ def test_a_cluster_finds_what_one_process_finds(cluster: Cluster, alone, make_sh
     assert cluster.left_on_workers() == []
 
 
+@pytest.mark.slow
 def test_matches_whose_process_dies_are_played_again(
     cluster: Cluster, alone, make_shared_project, tmp_path: Path
 ) -> None:
@@ -197,19 +208,20 @@ def test_matches_whose_process_dies_are_played_again(
     another.wait()
 
 
-def _begin(starts: Starts, project: Any, *options: str) -> StartedCommand:
+def _begin(project: Any, *options: str) -> StartedCommand:
     """Begin a long campaign, and return it when it has found something."""
     arguments = ["fuzz", "--seed", "1", "--runs", "100000", *options]
-    campaign = starts.start("pyfrc", arguments, project.path, {"PYTHONHASHSEED": "0"})
+    campaign = start("pyfrc", arguments, project.path, {"PYTHONHASHSEED": "0"})
     for line in campaign.stdout:
         if "pyfrc replay" in line:
             return campaign
     raise AssertionError(campaign.rest())
 
 
-def test_ctrl_c_keeps_what_was_found(cluster: Cluster, starts: Starts, make_shared_project) -> None:
+@pytest.mark.slow
+def test_ctrl_c_keeps_what_was_found(cluster: Cluster, make_shared_project) -> None:
     project = copy(make_shared_project)
-    campaign = _begin(starts, project, "--scheduler", cluster.address)
+    campaign = _begin(project, "--scheduler", cluster.address)
     campaign.send_signal(signal.SIGINT)
     stdout, stderr = campaign.rest()
     assert (campaign.wait(), stderr) == (1, ""), stdout
@@ -218,10 +230,11 @@ def test_ctrl_c_keeps_what_was_found(cluster: Cluster, starts: Starts, make_shar
     assert cluster.left_on_workers() == []
 
 
-def test_a_scheduler_that_is_lost(own_cluster: Cluster, starts: Starts, make_shared_project) -> None:
+@pytest.mark.slow
+def test_a_scheduler_that_is_lost(own_cluster: Cluster, make_shared_project) -> None:
     own_cluster.add_worker()
     project = copy(make_shared_project)
-    campaign = _begin(starts, project, "--scheduler", own_cluster.address)
+    campaign = _begin(project, "--scheduler", own_cluster.address)
     own_cluster.scheduler.kill()
     _, stderr = campaign.rest()
     assert campaign.wait() == 1
@@ -244,6 +257,22 @@ def test_no_workers_and_workers_with_another_version(own_cluster: Cluster, make_
     assert re.fullmatch(
         r"the worker at tcp://\S+ has another version: pyfrc 2025\.9\.9 \(\S+ here\)", result.first_error
     ), result.stderr
+
+
+def test_workers_play_the_matches(cluster: Cluster, make_project) -> None:
+    robot = """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def teleopPeriodic(self):
+                raise ValueError(f"{__name__} fails")
+        """
+    project = make_project({"robot.py": robot, "pyproject.toml": SETTINGS})
+    result = project.run("fuzz", "--runs", "2", "--seed", "1", "--scheduler", cluster.address)
+    assert result.code == 1, result.output
+    assert "robot.py:5" in result.stdout
+    assert [file.name for file in project.path.rglob("tests/fuzz/*.jsonl")] == ["valueerror-robot-teleopperiodic.jsonl"]
+    assert cluster.left_on_workers() == []
 
 
 def test_an_error_of_the_robots_code_is_shown_as_without_a_cluster(cluster: Cluster, make_project) -> None:

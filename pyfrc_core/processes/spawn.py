@@ -22,6 +22,10 @@ DIRECTORY = Path(__file__).resolve().parents[2]
 ARGUMENTS = ("-c", f"from {__name__} import main; main()")
 
 
+#: Starts an interpreter. Always called as an attribute of this module, so that tests can replace it by a faster one.
+popen: Callable[..., Any] = subprocess.Popen
+
+
 class Interpreter(Protocol):
     """A process that was started; with methods of `subprocess.Popen`."""
 
@@ -78,10 +82,7 @@ class _Job:
 
 
 def start(how: Start) -> Interpreter:
-    """Start a new interpreter.
-
-    Always called as an attribute of this module, so that tests can replace it by a function that starts faster.
-    """
+    """Start a new interpreter."""
     process = open_interpreter(how)
     assert process.stdin is not None
     with suppress(OSError):  # it has ended already
@@ -92,16 +93,19 @@ def start(how: Start) -> Interpreter:
 def run_python(arguments: Sequence[str], stdout: IO[Any]) -> int:
     """Run a new interpreter with these arguments until it ends, and return its exit code.
 
-    Always called as an attribute of this module, as `start` is.
-
     :param stdout: a stream with a file descriptor; what goes elsewhere is this process's
     """
-    return subprocess.run([sys.executable, *arguments], stdout=stdout, check=False).returncode
+    process: Interpreter = popen([sys.executable, *arguments], stdout=stdout)
+    try:
+        return process.wait()
+    except BaseException:
+        process.kill()
+        raise
 
 
 def open_interpreter(how: Start) -> subprocess.Popen[bytes]:
     """Start a new interpreter whose standard input stays open: what follows the job is for what it calls."""
-    process = subprocess.Popen(
+    process: subprocess.Popen[bytes] = popen(
         [sys.executable, *ARGUMENTS],
         stdin=subprocess.PIPE,
         stdout=how.stdout,
