@@ -197,12 +197,6 @@ def _start_hosts_fast() -> None:
     spawn.popen = _start_python
 
 
-@pytest.fixture
-def cold_hosts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Start the hosts of this test's simulations in new interpreters."""
-    monkeypatch.setattr("pyfrc_core.processes.spawn.popen", subprocess.Popen)
-
-
 def trace_hash(file: Path) -> str:
     """The hash at the end of a trace."""
     return str(json.loads(file.read_text("utf-8").splitlines()[-1])["sha256"])

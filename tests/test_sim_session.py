@@ -368,7 +368,6 @@ def test_where_processes_cannot_be_forked(project: Project) -> None:
 @pytest.mark.parametrize(
     "fork", [False, pytest.param(True, marks=pytest.mark.skipif(not FORK_IS_SAFE, reason="no fork"))]
 )
-@pytest.mark.usefixtures("cold_hosts")
 def test_closed_right_after_the_start(fork: bool, project: Project, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[subprocess.Popen[bytes]] = []
 
@@ -377,7 +376,7 @@ def test_closed_right_after_the_start(fork: bool, project: Project, tmp_path, mo
             super().__init__(*args, **options)  # type: ignore[call-overload]
             made.append(self)
 
-    monkeypatch.setattr(subprocess, "Popen", Noted)
+    monkeypatch.setattr("pyfrc_core.processes.spawn.popen", Noted)
     kept = tmp_path / "kept"
     kept.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(kept))
