@@ -14,6 +14,7 @@ import importlib
 import io
 import json
 import os
+import pkgutil
 import runpy
 import secrets
 import select
@@ -32,6 +33,9 @@ from typing import IO, Any, NamedTuple
 
 import pytest
 
+import pyfrc_cli
+import pyfrc_core
+from pyfrc_cli import start
 from pyfrc_core.processes import spawn
 
 #: Whether programs can be forked here: where Linux reports the end of a process by a descriptor.
@@ -43,33 +47,8 @@ _READ_AT_START = ("PYTHON", "LC_", "LANG", "LD_", "COVERAGE_", "PYFRC_COVERAGE",
 #: Of these, what a fork can be given after its start.
 _READ_LATER = {"PYTHONPATH", "PYTHON_CPU_COUNT", "PYTHONDONTWRITEBYTECODE", "PYTHONIOENCODING", "PYTHONUNBUFFERED"}
 
-#: Nothing here takes a name that measuring replaces before robot code is imported.
-_IMPORTED = (
-    "coverage",
-    "encodings.idna",
-    "execnet.multi",
-    "numpy.random",
-    "ntcore._logutil",
-    "paramiko",
-    "wpilib.drive",
-    "wpilib.simulation",
-    "pyfrc.physics.tankmodel",
-    "pyfrc_core.config.sim_file",
-    "pyfrc_core.config.sim_schema",
-    "pyfrc_core.deploy.robot_commands",
-    "pyfrc_core.deploy.session",
-    "pyfrc_core.doctor.examine",
-    "pyfrc_core.fuzz.campaign",
-    "pyfrc_core.measure.coverage",
-    "pyfrc_core.physics.create.try_tests",
-    "pyfrc_core.physics.engine",
-    "pyfrc_core.physics.registry",
-    "pyfrc_core.sim.engine.robot_side.robot_process",
-    "pyfrc_core.sim.simulate",
-    "pyfrc_core.sim.ui.headless",
-    "pyfrc_core.test_support.run_tests",
-    "pyfrc_core.tests",
-)
+#: What our modules import later, or not all of it.
+_IMPORTED = ("coverage.xmlreport", "numpy.random", "ntcore._logutil", "paramiko", "wpilib.drive", "wpilib.simulation")
 
 #: Whatever robot code's is made to do.
 _exit_now = os._exit
@@ -330,17 +309,15 @@ def main() -> None:
     listener = socket.socket(fileno=int(sys.argv[1]))
     del sys.path[0]
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    for name in _IMPORTED:
-        importlib.import_module(name)
-    from pyfrc_cli import main as command_line
-    from pyfrc_cli import start
-
-    for module, _ in command_line.COMMANDS.values():
-        importlib.import_module(module)
     with redirect_stdout(io.StringIO()):
         pytest.main(["-VV"])  # imports its plugins, in its own way
+    for package in (pyfrc_cli, pyfrc_core):
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if "cluster" not in module.name:  # it imports Dask
+                importlib.import_module(module.name)
+    for name in _IMPORTED:
+        importlib.import_module(name)
     # The seed is fixed already: Python need not be started again.
-    assert callable(start._restart_with_fixed_seed)
     start._restart_with_fixed_seed = lambda: os.environ.update(PYTHONHASHSEED="0")  # type: ignore[assignment]
     spawn.popen = functools.partial(popen, listener.getsockname().decode())
     gc.collect()
