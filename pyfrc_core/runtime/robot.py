@@ -12,13 +12,11 @@ from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import Any
 
-import ntcore
-
 from ..hal import HalData, devices_exist
 from ..hal.output_gate import OutputGate
 from ..hal.reset import forget_inputs
 from ..processes.exit import in_this_process
-from ..wpi import robots, station, timing, watchdogs
+from ..wpi import network, robots, station, timing, watchdogs
 from .clock import OBSERVE, PACKET_US, Clock
 from .connection import DriverStationConnection
 from .exceptions import TestEnded, TestFroze, WrongThread
@@ -96,8 +94,7 @@ class RobotRun:
         """Acquire the HAL: time at 0, a robot that has just booted, no packet delivered yet."""
         restart_numbers()
         self._closing.enter_context(active_run.set_to(self))
-        # Values that robot code publishes stay in this process: no server, no port, no file.
-        ntcore.NetworkTableInstance.getDefault().startLocal()
+        network.start()
         has_devices = devices_exist() if self._has_devices is None else self._has_devices
         if not has_devices:  # of an earlier run in this process, only its inputs are left
             forget_inputs()
@@ -307,7 +304,7 @@ class RobotRun:
             self.end()
         finally:
             self._closing.close()
-            ntcore.NetworkTableInstance.getDefault().stopLocal()
+            network.stop()
             # What is still due, the loop and the physics hold on to the robot.
             self.clock.forget()
             self.when_constructed.clear()

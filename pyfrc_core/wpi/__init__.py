@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from .season_2026 import encoders as encoders
     from .season_2026 import geometry as geometry
     from .season_2026 import joysticks as joysticks
+    from .season_2026 import logs as logs
     from .season_2026 import motor_controllers as motor_controllers
     from .season_2026 import motors as motors
     from .season_2026 import names as names

@@ -11,11 +11,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from itertools import starmap
 from typing import Any
 
-import ntcore
-
-from .network_entries import MAKE_VALUE, NETWORK, parse_entry_target
+from ...wpi import network
+from .network_entries import NETWORK, parse_entry_target
 from .script import InputScript, Step
 from .targets import MATCH_TIME, RESTART
 
@@ -24,9 +24,6 @@ _STAYS = re.compile(
     r"mode|match_time|time\..*|joysticks\[\d\]\.(?!axes|buttons|povs).*|control\..*|event\..*|alliance_station|nt:.*"
     r"|roborio\.(?:comments|serial_number)"
 )
-
-#: Where `wpilib.Preferences` has its entries; not all are marked as persistent at once.
-_PREFERENCES = "/Preferences/"
 
 
 def boots_of(script: InputScript) -> list[InputScript]:
@@ -86,20 +83,12 @@ class PersistentEntry:
 
 def persistent_entries() -> tuple[PersistentEntry, ...]:
     """Return the persistent entries, by name; those with other types than plain ones and lists are left out."""
-    network = ntcore.NetworkTableInstance.getDefault()
-    found = []
-    for topic in network.getTopics():
-        name, type_name = topic.getName(), topic.getTypeString()
-        if type_name in MAKE_VALUE and (name.startswith(_PREFERENCES) or topic.isPersistent()):
-            value = network.getEntry(name).getValue().value()
-            found.append(PersistentEntry(name, type_name, value))
-    return tuple(sorted(found, key=lambda entry: entry.name))
+    return tuple(sorted(starmap(PersistentEntry, network.persistent_values()), key=lambda entry: entry.name))
 
 
 def restore_entries(entries: Iterable[PersistentEntry]) -> None:
     """Write the persistent entries of the boot before."""
-    network = ntcore.NetworkTableInstance.getDefault()
     for each in entries:
-        entry = network.getEntry(each.name)
-        entry.setValue(MAKE_VALUE[each.type_name](each.value))
-        entry.setPersistent()
+        entry = network.Entry(each.name)
+        entry.write(each.value, each.type_name)
+        entry.keep()

@@ -9,32 +9,18 @@ period ends.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from wpiutil.log import DataLogReader, DataLogRecord
-
-from ...wpi import station
+from ...wpi import logs, station
 from ..robot_time import PACKET_US
 from .network_entries import entry_target
 from .script import InputScript, ScriptError, Step
 from .targets import MATCH_TIME, MODE, REMAINING, plugged
 
-_READ: dict[str, Callable[[DataLogRecord], Any]] = {
-    "boolean": DataLogRecord.getBoolean,
-    "double": DataLogRecord.getDouble,
-    "float": DataLogRecord.getFloat,
-    "int64": DataLogRecord.getInteger,
-    "string": DataLogRecord.getString,
-    "string[]": DataLogRecord.getStringArray,
-    "boolean[]": DataLogRecord.getBooleanArray,
-    "double[]": DataLogRecord.getDoubleArray,
-    "float[]": DataLogRecord.getFloatArray,
-    "int64[]": DataLogRecord.getIntegerArray,
-}
 #: The types of NetworkTables that a target has to name, by their names in a log.
 _NAMED_TYPES = {
     "int64": "int",
@@ -65,14 +51,6 @@ _CONTROLS: dict[str, tuple[int, Any]] = {
 }
 
 
-@dataclass(frozen=True)
-class _Record:
-    at_us: int
-    name: str
-    type_name: str
-    value: Any
-
-
 def script_from_log(file: Path) -> InputScript:
     """Return the inputs in a data log as a script.
 
@@ -80,7 +58,7 @@ def script_from_log(file: Path) -> InputScript:
     """
     try:
         records = sorted(_records(file), key=lambda record: record.at_us)
-    except (RuntimeError, ValueError, TypeError, IndexError, OSError) as malformed:
+    except logs.MALFORMED as malformed:
         raise ScriptError(f"the data log cannot be read: {malformed}", where=file.name) from None
     sent = [record for record in records if record.name.startswith("DS:")]
     if not any(record.name == "DS:enabled" for record in sent):
@@ -103,21 +81,13 @@ def script_from_log(file: Path) -> InputScript:
     return InputScript(tuple(_with_match_time(steps, last_us)), last_us + PACKET_US, file=file.name)
 
 
-def _records(file: Path) -> Iterator[_Record]:
+def _records(file: Path) -> Iterator[logs.Record]:
     if not file.is_file():
         raise ScriptError("this is a directory, not a data log" if file.is_dir() else f"there is no file {file}")
-    reader = DataLogReader(str(file))
-    if not reader.isValid():
+    records = logs.records(file, ("DS:", "NT:", _HAL))
+    if records is None:
         raise ScriptError("this is not a WPILib data log", where=file.name)
-    entries: dict[int, tuple[str, str]] = {}
-    for record in reader:
-        if record.isStart():
-            start = record.getStartData()
-            if start.type in _READ and start.name.startswith(("DS:", "NT:", _HAL)):
-                entries[start.entry] = start.name, start.type
-        elif not record.isControl() and record.getEntry() in entries:
-            name, type_name = entries[record.getEntry()]
-            yield _Record(record.getTimestamp(), name, type_name, _READ[type_name](record))
+    return records
 
 
 def _packet(at_us: int) -> int:

@@ -14,9 +14,8 @@ import struct
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import ntcore
-
 from ...errors import UsageError
+from ...wpi import network
 
 NETWORK = "nt:"
 
@@ -26,20 +25,6 @@ NOT_A_NUMBER = "nan"
 _STRUCT = "struct:"
 _DOUBLES = ("float[]", "double[]")
 _TYPED = re.compile(r"((?:struct:\w+|[a-z]+)(?:\[\])?):")
-
-#: How to make a value of each type that a target can name.
-MAKE_VALUE: dict[str, Callable[[Any], ntcore.Value]] = {
-    "boolean": ntcore.Value.makeBoolean,
-    "int": ntcore.Value.makeInteger,
-    "float": ntcore.Value.makeFloat,
-    "double": ntcore.Value.makeDouble,
-    "string": ntcore.Value.makeString,
-    "boolean[]": ntcore.Value.makeBooleanArray,
-    "int[]": ntcore.Value.makeIntegerArray,
-    "float[]": ntcore.Value.makeFloatArray,
-    "double[]": ntcore.Value.makeDoubleArray,
-    "string[]": ntcore.Value.makeStringArray,
-}
 
 
 def entry_target(name: str, type_name: str = "") -> str:
@@ -64,7 +49,7 @@ def parse_entry_target(target: str) -> tuple[str, str]:
     """Return the name of a target's entry, and the name of its type; empty where its values show it."""
     rest = target.removeprefix(NETWORK)
     typed = _TYPED.match(rest)  # the name of an entry may begin without a slash
-    if typed is None or not (typed[1].removesuffix("[]") in MAKE_VALUE or typed[1].startswith(_STRUCT)):
+    if typed is None or not (typed[1].removesuffix("[]") in network.TYPES or typed[1].startswith(_STRUCT)):
         type_name, slash, name = rest.partition("/")
         return slash + name if slash else type_name, type_name.removesuffix(":") if slash else ""
     return rest[typed.end() :], typed[1]
@@ -103,35 +88,34 @@ def _writer(name: str, type_name: str, at_end: Callable[[Callable[[], object]], 
 
     :param at_end: is given what unpublishes it
     """
-    network = ntcore.NetworkTableInstance.getDefault()
     if type_name.startswith(_STRUCT):
-        publisher = network.getRawTopic(name).publish(type_name)
-        at_end(publisher.close)
+        structs = network.DataEntry(name, type_name)
+        at_end(structs.unpublish)
 
         def write_struct(value: Sequence[float]) -> None:
             try:
-                publisher.set(struct.pack(f"<{len(value)}d", *map(_number, value)))
+                structs.write(struct.pack(f"<{len(value)}d", *map(_number, value)))
             except (TypeError, struct.error):
                 raise UsageError(f"{name} is a struct, written as a list of its numbers, not {value!r}") from None
 
         return write_struct
-    entry = network.getEntry(name)
+    entry = network.Entry(name)
     at_end(entry.unpublish)
     if not type_name:
         return lambda value: _write_plain(entry, value)
-    if type_name not in MAKE_VALUE:
-        raise UsageError(f"NetworkTables has no type {type_name!r}: the types are {', '.join(MAKE_VALUE)}, struct:NAME")
-    make = MAKE_VALUE[type_name]
+    if type_name not in network.TYPES:
+        types = ", ".join(network.TYPES)
+        raise UsageError(f"NetworkTables has no type {type_name!r}: the types are {types}, struct:NAME")
 
-    def write_typed(value: object) -> None:
+    def write_typed(value: Any) -> None:
         try:
-            if isinstance(value, list | tuple):
-                made = make([_number(each) if type_name in _DOUBLES else each for each in value])
-            else:
-                made = make(value)
+            is_list = isinstance(value, list | tuple)
+            made = [_number(each) if type_name in _DOUBLES else each for each in value] if is_list else value
+            fits = entry.write(made, type_name)
         except TypeError:
             raise UsageError(f"{name} is {type_name}, and cannot be {value!r}") from None
-        _set(entry, made, value)
+        if not fits:
+            raise _wrong(entry, value)
 
     return write_typed
 
@@ -140,7 +124,7 @@ def _number(value: Any) -> Any:
     return math.nan if value == NOT_A_NUMBER else value
 
 
-def _write_plain(entry: ntcore.NetworkTableEntry, value: Any) -> None:
+def _write_plain(entry: network.Entry, value: Any) -> None:
     """Write numbers as the type that the entry has, and as doubles where it has none; other values as they are.
 
     JSON does not tell 1 from 1.0, and dashboards write doubles.
@@ -148,23 +132,21 @@ def _write_plain(entry: ntcore.NetworkTableEntry, value: Any) -> None:
     is_list = isinstance(value, list | tuple)
     made = list(value) if is_list else value
     items = made if is_list else [made]
+    kind = ""
     try:
         if all(isinstance(each, int | float) and not isinstance(each, bool) for each in items):
             brackets = "[]" if is_list else ""
-            type_name = entry.getTopic().getTypeString()
             # An empty list is one of any type.
-            fits = type_name in MAKE_VALUE if not items else type_name in (f"int{brackets}", f"float{brackets}")
-            made = MAKE_VALUE[type_name if fits else f"double{brackets}"](made)
-        _set(entry, made, value)
+            of_entry = entry.type_name
+            fits = of_entry in network.TYPES if not items else of_entry in (f"int{brackets}", f"float{brackets}")
+            kind = of_entry if fits else f"double{brackets}"
+        fits = entry.write(made, kind)
     except (TypeError, ValueError, RuntimeError):  # 0.5 in an int[], a list of several kinds, a list of lists
         raise _wrong(entry, value) from None
-
-
-def _set(entry: ntcore.NetworkTableEntry, made: Any, value: Any) -> None:
-    if not entry.setValue(made):
+    if not fits:
         raise _wrong(entry, value)
 
 
-def _wrong(entry: ntcore.NetworkTableEntry, value: Any) -> UsageError:
-    type_name = entry.getTopic().getTypeString()
-    return UsageError(f"{entry.getName()} {f'is {type_name}, and ' if type_name else ''}cannot be {value!r}")
+def _wrong(entry: network.Entry, value: Any) -> UsageError:
+    type_name = entry.type_name
+    return UsageError(f"{entry.name} {f'is {type_name}, and ' if type_name else ''}cannot be {value!r}")

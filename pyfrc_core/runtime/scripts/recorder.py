@@ -8,11 +8,9 @@ from collections.abc import Iterator
 from importlib.metadata import version
 from typing import Any
 
-import ntcore
-
 from ...compat.unrepeatable import is_real_time
 from ...hal.change_reader import MISSING, Change, same
-from ...wpi import station
+from ...wpi import network, station
 from ..robot import RobotRun
 from .network_entries import NETWORK, numbers_of, struct_target
 from .script import InputScript, Step
@@ -221,15 +219,10 @@ class _Network:
     """The values that entries of NetworkTables have, heard of as they change: to ask for each takes far longer."""
 
     def __init__(self) -> None:
-        self._news = ntcore.NetworkTableListenerPoller(ntcore.NetworkTableInstance.getDefault())
+        self._news = network.listen_for_values(current=True, gone=True)
         self._found: dict[str, Any] = {}
         #: The packets whose values have not been read.
         self._waiting = 0
-        self._listen()
-
-    def _listen(self) -> None:
-        flags = ntcore.EventFlags
-        self._listener = self._news.addListener([""], flags.kValueAll | flags.kUnpublish | flags.kImmediate)
 
     def look(self) -> list[Change]:
         """Return the entries that have changed since the last look, in the order in which they were first heard of."""
@@ -258,7 +251,7 @@ class _Network:
                 self._hear(target, value)
             return
         before, self._found = self._found, {}
-        self._listen()  # reports all current values
+        self._news.resume()  # reports all current values
         for target, value in self._heard():
             self._hear(target, value)
         self._found = {target: self._found[target] for target in before if target in self._found} | self._found
@@ -270,30 +263,21 @@ class _Network:
         """
         self._waiting += 1
         if self._waiting == _PACKETS_HEARD:
-            self._news.removeListener(self._listener)
-            self._news.readQueue()
+            self._news.pause()
 
     def _heard(self) -> Iterator[tuple[str, Any]]:
         """Return the news since the last look: targets, with their plain values or `MISSING`."""
-        for event in self._news.readQueue():
-            news = event.data
-            if isinstance(news, ntcore.ValueEventData):
-                value = news.value.value()
-                if isinstance(value, bytes):
-                    yield from self._struct(news.topic, value)
-                    continue
-                is_plain = isinstance(value, _PLAIN) or (
-                    isinstance(value, list) and all(isinstance(each, _PLAIN) for each in value)
-                )
-                yield NETWORK + news.topic.getName(), value if is_plain else MISSING
-            elif isinstance(news, ntcore.TopicInfo):
-                yield struct_target(news.name, news.type_str) or NETWORK + news.name, MISSING
-
-    @staticmethod
-    def _struct(topic: ntcore.Topic, data: bytes) -> Iterator[tuple[str, Any]]:
-        target = struct_target(topic.getName(), topic.getTypeString())
-        if target is not None:
-            yield target, numbers_of(data) or MISSING
+        for update in self._news.read():
+            value = update.value
+            if value is None:
+                yield struct_target(update.name, update.type_name) or NETWORK + update.name, MISSING
+            elif isinstance(value, bytes):
+                target = struct_target(update.name, update.type_name)
+                if target is not None:
+                    yield target, numbers_of(value) or MISSING
+            else:
+                is_plain = isinstance(value, _PLAIN) or all(isinstance(each, _PLAIN) for each in value)
+                yield NETWORK + update.name, value if is_plain else MISSING
 
     def _hear(self, target: str, value: object) -> None:
         if value is MISSING:

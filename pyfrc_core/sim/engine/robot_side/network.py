@@ -12,14 +12,10 @@ import socket
 from collections.abc import Callable
 from typing import Any
 
-import ntcore
-
 from ....runtime.scripts.network_entries import NETWORK
+from ....wpi import network
 from ..snapshot import Chooser
 
-_PUBLISHED = int(ntcore.EventFlags.kPublish) | int(ntcore.EventFlags.kImmediate)
-_VALUES = int(ntcore.EventFlags.kValueAll) | int(ntcore.EventFlags.kImmediate)
-_FROM_OUTSIDE = int(ntcore.EventFlags.kValueRemote)
 _CHOOSER, _TYPE = "String Chooser", "/.type"
 
 
@@ -27,30 +23,25 @@ class Choosers:
     """The choosers among the robot's own tables."""
 
     def __init__(self) -> None:
-        self._instance = ntcore.NetworkTableInstance.getDefault()
-        self._news = ntcore.NetworkTableListenerPoller(self._instance)
-        self._news.addListener([""], _PUBLISHED)
+        self._news = network.listen_for_names()
         self._names: set[str] = set()
         self._sent: tuple[Chooser, ...] = ()
 
     def changed(self) -> tuple[Chooser, ...] | None:
         """Return all choosers; None when nothing has changed since the last call."""
-        for event in self._news.readQueue():
-            name = event.data.name if isinstance(event.data, ntcore.TopicInfo) else ""
-            if name.endswith(_TYPE):
-                self._names.add(name.removesuffix(_TYPE))
-        choosers = tuple(self._chooser(name) for name in sorted(self._names) if self._text(name + _TYPE) == _CHOOSER)
+        for published in self._news.read():
+            if published.name.endswith(_TYPE):
+                self._names.add(published.name.removesuffix(_TYPE))
+        choosers = tuple(_chooser(name) for name in sorted(self._names) if network.text_of(name + _TYPE) == _CHOOSER)
         if choosers == self._sent:
             return None
         self._sent = choosers
         return choosers
 
-    def _chooser(self, name: str) -> Chooser:
-        options = self._instance.getEntry(f"{name}/options").getStringArray([])
-        return Chooser(name, tuple(options), self._text(f"{name}/default"), self._text(f"{name}/active"))
 
-    def _text(self, name: str) -> str:
-        return str(self._instance.getEntry(name).getString(""))
+def _chooser(name: str) -> Chooser:
+    default, active = network.text_of(f"{name}/default"), network.text_of(f"{name}/active")
+    return Chooser(name, tuple(network.texts_of(f"{name}/options")), default, active)
 
 
 class Served:
@@ -64,55 +55,33 @@ class Served:
 
     def __init__(self, port: int, shared: bool, write: Callable[[str, object], object]) -> None:
         self._write = write
-        self._robot = ntcore.NetworkTableListenerPoller(ntcore.NetworkTableInstance.getDefault())
-        self._robot.addListener([""], _VALUES)
-        self._instance = ntcore.NetworkTableInstance.create()
-        self._publishers: dict[str, tuple[str, ntcore.GenericPublisher]] = {}
+        self._robot = network.listen_for_values(current=True)
         self._from_outside: dict[str, Any] = {}
         listen = "" if shared else "127.0.0.1"
         self.problem = _problem_with(listen, port)
         self.address = None if self.problem else f"localhost:{port}"
-        if self.problem is None:
-            self._instance.startServer("", listen, 0, port)
-        self._news = ntcore.NetworkTableListenerPoller(self._instance)
-        self._news.addListener([""], _FROM_OUTSIDE)
+        self._server = network.Server(None if self.problem else listen, port)
 
     def exchange(self) -> None:
         """Copy what the robot has published to dashboards, and what dashboards have written to the robot."""
-        for event in self._robot.readQueue():
-            data = event.data
-            if isinstance(data, ntcore.ValueEventData):
-                self._publish(data.topic, data.value)
-        for event in self._news.readQueue():
-            data = event.data
-            if isinstance(data, ntcore.ValueEventData) and (value := _plain(data.value)) is not None:
-                name = data.topic.getName()
-                self._from_outside[name] = value
-                self._write(f"{NETWORK}{name}", value)
+        for update in self._robot.read():
+            if update.name in self._from_outside and self._from_outside.pop(update.name) == update.value:
+                continue  # a dashboard's own write comes back
+            self._server.publish(update)
+        for update in self._server.written.read():
+            if _is_plain(update.value):
+                self._from_outside[update.name] = update.value
+                self._write(f"{NETWORK}{update.name}", update.value)
 
     def close(self) -> None:
         """Release the port."""
-        ntcore.NetworkTableInstance.destroy(self._instance)
-
-    def _publish(self, topic: ntcore.Topic, value: ntcore.Value) -> None:
-        name = topic.getName()
-        if name in self._from_outside and self._from_outside.pop(name) == value.value():
-            return  # a dashboard's own write comes back
-        kind = topic.getTypeString()
-        known = self._publishers.get(name)
-        if known is None or known[0] != kind:
-            served = self._instance.getTopic(name)
-            self._publishers[name] = known = (kind, served.genericPublish(kind))
-            served.setProperties(topic.getProperties())
-        known[1].set(value)
+        self._server.close()
 
 
-def _plain(value: ntcore.Value) -> Any:
-    found = value.value()
-    items = found if isinstance(found, (list, tuple)) else [found]
-    if not all(isinstance(each, (bool, int, float, str)) for each in items):
-        return None  # only robots write structs and the like
-    return list(found) if isinstance(found, tuple) else found
+def _is_plain(value: Any) -> bool:
+    """Return whether a dashboard may write this: only robots write structs and the like."""
+    items = value if isinstance(value, list) else [value]
+    return all(isinstance(each, (bool, int, float, str)) for each in items)
 
 
 def _problem_with(listen: str, port: int) -> str | None:

@@ -9,17 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import ntcore
-
 from ....runtime.scripts.trace_lines import trace_line
-from ....wpi import station
+from ....wpi import network, station
 from ..messages import MODE, POSE, TYPE, VALUE
 from ..scene import Pose
 from .structs import StructReader
-
-_VALUES = int(ntcore.EventFlags.kValueAll) | int(ntcore.EventFlags.kImmediate)
-_GONE = int(ntcore.EventFlags.kUnpublish)
-_RAW = ntcore.NetworkTableType.kRaw
 
 
 class NetworkTrace:
@@ -30,8 +24,7 @@ class NetworkTrace:
 
     def __init__(self, pose: Callable[[], Pose | None]) -> None:
         self._pose = pose
-        self._news = ntcore.NetworkTableListenerPoller(ntcore.NetworkTableInstance.getDefault())
-        self._news.addListener([""], _VALUES | _GONE)
+        self._news = network.listen_for_values(current=True, gone=True)
         self._structs = StructReader()
         #: All values at the last look, by path.
         self.values: dict[str, Any] = {}
@@ -43,16 +36,15 @@ class NetworkTrace:
         if (pose := self._pose()) is not None:
             changed[POSE] = [pose.x, pose.y, pose.angle]
         gone: dict[str, None] = {}
-        for event in self._news.readQueue():
-            data = event.data
-            if isinstance(data, ntcore.ValueEventData):
-                name, type_name = data.topic.getName(), data.topic.getTypeString()
+        for update in self._news.read():
+            name = update.name
+            if update.value is None:
+                gone[VALUE + name] = None
+                changed.pop(VALUE + name, None)
+            else:
                 gone.pop(VALUE + name, None)
-                changed[VALUE + name] = self._plain(name, type_name, data.value)
-                changed[TYPE + name] = type_name
-            elif isinstance(data, ntcore.TopicInfo):
-                gone[VALUE + data.name] = None
-                changed.pop(VALUE + data.name, None)
+                changed[VALUE + name] = self._plain(update)
+                changed[TYPE + name] = update.type_name
         values = self.values
         changed = {path: value for path, value in changed.items() if path not in values or values[path] != value}
         lost = [path for path in gone if values.pop(path, None) is not None]
@@ -75,8 +67,6 @@ class NetworkTrace:
         self._lines.clear()
         return dict(self.values) if is_base else {}, lines
 
-    def _plain(self, name: str, type_name: str, value: ntcore.Value) -> Any:
-        found = value.value()
-        if value.type() == _RAW:
-            return self._structs.read(name, type_name, bytes(found))
-        return list(found) if isinstance(found, (list, tuple)) else found
+    def _plain(self, update: network.Update) -> Any:
+        value = update.value
+        return self._structs.read(update.name, update.type_name, value) if isinstance(value, bytes) else value

@@ -10,7 +10,7 @@ import re
 import struct
 from typing import Any
 
-import ntcore
+from ....wpi import network
 
 _STRUCT, _SCHEMA = "struct:", "/.schema/struct:"
 #: The formats of a schema's types, for the module `struct`, little-endian.
@@ -31,7 +31,6 @@ class StructReader:
     """Decodes raw values of topics."""
 
     def __init__(self) -> None:
-        self._network = ntcore.NetworkTableInstance.getDefault()
         self._fields: dict[str, list[tuple[str, str, int | None]]] = {}
 
     def read(self, name: str, type_name: str, data: bytes) -> Any:
@@ -79,7 +78,7 @@ class StructReader:
 
     def _fields_of(self, kind: str) -> list[tuple[str, str, int | None]]:
         if kind not in self._fields:
-            text = bytes(self._network.getEntry(_SCHEMA + kind).getRaw(b"")).decode("utf-8", "replace")
+            text = network.data_of(_SCHEMA + kind).decode("utf-8", "replace")
             declarations = [each.strip() for each in text.split(";") if each.strip()]
             matches = [_FIELD.fullmatch(each) for each in declarations]
             if not matches or None in matches:

@@ -11,19 +11,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from wpimath.geometry import Pose2d
-from wpiutil import DataLogWriter, wpistruct
-from wpiutil.log import (
-    BooleanArrayLogEntry,
-    BooleanLogEntry,
-    DoubleArrayLogEntry,
-    DoubleLogEntry,
-    IntegerArrayLogEntry,
-    StringLogEntry,
-)
-
 from ....disk_space import check_disk_space
 from ....errors import UsageError
+from ....wpi import geometry, logs
 
 _DRIVER_STATION = {
     "control.enabled": "DS:enabled",
@@ -34,9 +24,6 @@ _DRIVER_STATION = {
 #: The interval of flushing WPILib's buffer, in microseconds of robot time: the robot's process may be killed.
 _FLUSH_US = 100_000
 _STICK = re.compile(r"joysticks\[(\d)\]\.(axes|buttons|povs)")
-
-#: Logs that could not be written, kept alive: WPILib aborts the process when it closes such a log.
-_UNFINISHED: list[DataLogWriter] = []
 
 
 class WpiLog:
@@ -52,22 +39,20 @@ class WpiLog:
         except OSError as error:
             raise UsageError(f"{file} cannot be written: {error.strerror}", remedy="--wpilog names a file.") from None
         self._file = file
-        self._log = DataLogWriter(str(file), "pyfrc sim")
+        self._log = logs.LogWriter(file, "pyfrc sim")
         self._entries: dict[str, Any] = {}
-        self._pose: int | None = None
+        self._pose: Callable[[geometry.Pose2d, int], object] | None = None
         self._flush_us = 0
 
-    def write(self, now_us: int, changed: Mapping[str, object], pose: Pose2d | None) -> None:
+    def write(self, now_us: int, changed: Mapping[str, object], pose: geometry.Pose2d | None) -> None:
         """Write the changes at `now_us`, in microseconds of robot time."""
-        stamp = max(1, now_us)  # to WPILib, 0 is "now"
+        stamp = self._log.stamp(now_us)
         for path, value in changed.items():
             self._entry(path, value)(value, stamp)
         if pose is not None:
-            # Not by a StructLogEntry, which in WPILib 2026 takes a DataLogWriter for closed ("Object is closed").
             if self._pose is None:
-                self._log.addStructSchema(Pose2d, stamp)
-                self._pose = self._log.start("/pose", f"struct:{wpistruct.getTypeName(Pose2d)}", "", stamp)
-            self._log.appendRaw(self._pose, wpistruct.pack(pose), stamp)
+                self._pose = self._log.poses("/pose", stamp)
+            self._pose(pose, stamp)
         if now_us >= self._flush_us:
             self._flush_us = now_us + _FLUSH_US
             self._log.flush()
@@ -76,9 +61,9 @@ class WpiLog:
         """Write what is still in the buffer, and close the file."""
         self._log.flush()
         if check_disk_space(self._file):
-            _UNFINISHED.append(self._log)
+            self._log.abandon()
         else:
-            self._log.stop()
+            self._log.close()
 
     def _entry(self, path: str, value: object) -> Callable[[Any, int], object]:
         found = self._entries.get(path)
@@ -92,19 +77,19 @@ class WpiLog:
         if (stick := _STICK.fullmatch(path)) is not None:
             name = f"DS:joystick{stick[1]}/{stick[2]}"
             if stick[2] == "axes":
-                return DoubleArrayLogEntry(log, name).append
+                return log.entry(name, "numbers")
             if stick[2] == "povs":
-                return IntegerArrayLogEntry(log, name).append
-            buttons = BooleanArrayLogEntry(log, name)
-            return lambda pressed, stamp: buttons.append(pressed[1:], stamp)  # WPILib's first button is its first
+                return log.entry(name, "whole numbers")
+            buttons = log.entry(name, "booleans")
+            return lambda pressed, stamp: buttons(pressed[1:], stamp)  # WPILib's first button is its first
         if isinstance(value, bool):
-            return _converting(BooleanLogEntry(log, name), bool)
+            return _converting(log.entry(name, "boolean"), bool)
         if isinstance(value, (int, float)):
-            return _converting(DoubleLogEntry(log, name), float)
-        return _converting(StringLogEntry(log, name), str)
+            return _converting(log.entry(name, "number"), float)
+        return _converting(log.entry(name, "text"), str)
 
 
-def _converting(entry: Any, convert: Callable[[Any], Any]) -> Callable[[Any, int], object]:
+def _converting(put: Callable[[Any, int], object], convert: Callable[[Any], Any]) -> Callable[[Any, int], object]:
     """Return a function that appends to an entry. A value of another type, such as None, is left out."""
 
     def append(value: Any, stamp: int) -> None:
@@ -112,6 +97,6 @@ def _converting(entry: Any, convert: Callable[[Any], Any]) -> Callable[[Any, int
             converted = convert(value)
         except (TypeError, ValueError):
             return
-        entry.append(converted, stamp)
+        put(converted, stamp)
 
     return append

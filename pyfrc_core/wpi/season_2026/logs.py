@@ -1,0 +1,127 @@
+"""Data logs: those of robots are read, those of simulations are written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+from wpimath.geometry import Pose2d
+from wpiutil import DataLogWriter, wpistruct
+from wpiutil.log import (
+    BooleanArrayLogEntry,
+    BooleanLogEntry,
+    DataLogReader,
+    DataLogRecord,
+    DoubleArrayLogEntry,
+    DoubleLogEntry,
+    IntegerArrayLogEntry,
+    StringLogEntry,
+)
+
+_READ: dict[str, Callable[[DataLogRecord], Any]] = {
+    "boolean": DataLogRecord.getBoolean,
+    "double": DataLogRecord.getDouble,
+    "float": DataLogRecord.getFloat,
+    "int64": DataLogRecord.getInteger,
+    "string": DataLogRecord.getString,
+    "string[]": DataLogRecord.getStringArray,
+    "boolean[]": DataLogRecord.getBooleanArray,
+    "double[]": DataLogRecord.getDoubleArray,
+    "float[]": DataLogRecord.getFloatArray,
+    "int64[]": DataLogRecord.getIntegerArray,
+}
+
+#: What `records` raises if a log is malformed.
+MALFORMED = (RuntimeError, ValueError, TypeError, IndexError, OSError)
+
+Kind = Literal["boolean", "number", "text", "booleans", "numbers", "whole numbers"]
+
+_ENTRIES: dict[Kind, Any] = {
+    "boolean": BooleanLogEntry,
+    "number": DoubleLogEntry,
+    "text": StringLogEntry,
+    "booleans": BooleanArrayLogEntry,
+    "numbers": DoubleArrayLogEntry,
+    "whole numbers": IntegerArrayLogEntry,
+}
+
+
+class Record(NamedTuple):
+    """A value in a log.
+
+    :param at_us: when it was logged, in microseconds of the robot's clock
+    :param type_name: the name of its type in the log, such as ``int64``
+    """
+
+    at_us: int
+    name: str
+    type_name: str
+    value: Any
+
+
+def records(file: Path, beginnings: tuple[str, ...]) -> Iterator[Record] | None:
+    """Return the plain values in a log, in the order of the file; None if this is no data log.
+
+    :param beginnings: of the names whose values are wanted
+    :raises MALFORMED: when iterated over
+    """
+    reader = DataLogReader(str(file))
+    return _records(reader, beginnings) if reader.isValid() else None
+
+
+def _records(reader: DataLogReader, beginnings: tuple[str, ...]) -> Iterator[Record]:
+    entries: dict[int, tuple[str, str]] = {}
+    for record in reader:
+        if record.isStart():
+            start = record.getStartData()
+            if start.type in _READ and start.name.startswith(beginnings):
+                entries[start.entry] = start.name, start.type
+        elif not record.isControl() and record.getEntry() in entries:
+            name, type_name = entries[record.getEntry()]
+            yield Record(record.getTimestamp(), name, type_name, _READ[type_name](record))
+
+
+#: Logs that could not be written, kept alive: WPILib aborts the process when it closes such a log.
+_UNFINISHED: list[DataLogWriter] = []
+
+
+class LogWriter:
+    """Writes a log. Its times are those that `stamp` returns.
+
+    :param file: must be writable
+    :param writer: the name of the program that writes it
+    """
+
+    def __init__(self, file: Path, writer: str) -> None:
+        self._log = DataLogWriter(str(file), writer)
+
+    @staticmethod
+    def stamp(now_us: int) -> int:
+        """Return the log's number for a time, from microseconds of robot time."""
+        return max(1, now_us)  # to WPILib, 0 is "now"
+
+    def entry(self, name: str, kind: Kind) -> Callable[[Any, int], object]:
+        """Add an entry, and return what appends a value to it, with the value's time."""
+        append: Callable[[Any, int], object] = _ENTRIES[kind](self._log, name).append
+        return append
+
+    def poses(self, name: str, stamp: int) -> Callable[[Pose2d, int], object]:
+        """Add an entry for poses, and return what appends one to it, with its time."""
+        # Not by a StructLogEntry, which in WPILib 2026 takes a DataLogWriter for closed ("Object is closed").
+        log = self._log
+        log.addStructSchema(Pose2d, stamp)
+        entry = log.start(name, f"struct:{wpistruct.getTypeName(Pose2d)}", "", stamp)
+        return lambda pose, stamp: log.appendRaw(entry, wpistruct.pack(pose), stamp)
+
+    def flush(self) -> None:
+        """Write WPILib's buffer to the file."""
+        self._log.flush()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._log.stop()
+
+    def abandon(self) -> None:
+        """Leave a file as it is that could not be written."""
+        _UNFINISHED.append(self._log)
