@@ -11,8 +11,7 @@ from browser_pages import HOSTILE, INJECTED, REFUSED, ROBOT, shared_browser  # n
 from recorded_pages import run_in
 from sim_robots import FILES
 
-from pyfrc_core.sim.ui.web.history import MISSING, ValueHistory
-from pyfrc_core.sim.ui.web.packing import packed
+from pyfrc_core.sim.ui.web.history import MISSING, ValueHistory, packed
 
 SCRIPT = """\
 {"format": "pyfrc-input 1", "end": 4.0}
@@ -148,17 +147,17 @@ def test_a_page_that_cannot_be_written_is_an_error_before_the_run(make_project: 
     assert project.run("fuzz", "--merge", "--pages", "pages", "sim").code == 2
 
 
-def test_values_are_stored_by_columns_of_numbers_and_shapes() -> None:
+def test_values_are_stored_with_seven_digits() -> None:
     history = ValueHistory()
     history.add(0.0, {"a": 0.1, "b": True, "c": ({"x": 1.0, "name": "/home/me"}, 2), "d": 1.0})
     history.add(0.02, {"a": 1 / 3, "b": False, "d": float("nan")})
     history.add(0.04, {"a": -2.5, "c": ({"x": 1.5, "name": "/home/me"}, 3)}, ["b"])
     found = packed(history, lambda text: text.replace("/home/me", "~"))
-    assert found["times"] == [0, 20_000, 20_000]
+    assert found["times"] == [0, 0.02, 0.04]
     assert found["values"] == {
-        "a": {"p": [0, 1, 1], "s": [0], "n": [[6, 100_000, 233_333, -2_833_333]]},
-        "b": {"p": [0, 1, 1], "s": [True, False, {"$": "gone"}], "i": [0, 1, 2]},
-        "c": {"p": [0, 2], "s": [[{"x": 0, "name": "~"}, 0]], "n": [[6, 1_000_000, 500_000], [0, 2, 1]]},
-        "d": {"p": [0, 1], "s": [0, {"$": "NaN"}], "i": [0, 1], "n": [[0, 1]]},
+        "a": {"p": [0, 1, 2], "v": [0.1, 0.3333333, -2.5]},
+        "b": {"p": [0, 1, 2], "v": [True, False, {"$": "gone"}]},
+        "c": {"p": [0, 2], "v": [[{"x": 1.0, "name": "~"}, 2], [{"x": 1.5, "name": "~"}, 3]]},
+        "d": {"p": [0, 1], "v": [1.0, pytest.approx(float("nan"), nan_ok=True)]},
     }
     assert history.values_at(0.04).get("b", MISSING) is MISSING

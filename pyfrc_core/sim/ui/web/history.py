@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
+
+from ...engine.messages import TYPE
 
 #: A value that a path does not have, or no longer has.
 MISSING: Any = object()
@@ -191,6 +193,37 @@ class ValueHistory:
         begin, end = bisect_left(changes.packets, first), bisect_right(changes.packets, last)
         return [self._times[packet - self._first] for packet in changes.packets[begin:end]], changes.values[begin:end]
 
-    def change_numbers(self, path: str) -> array[int]:
+    def change_numbers(self, path: str) -> list[int]:
         """Return which of the packets that are known have changed a value: 0 is the first of `times`."""
-        return array("I", [packet - self._first for packet in self._changes[path].packets])
+        return [packet - self._first for packet in self._changes[path].packets]
+
+
+#: The digits of a number that are kept: more than a plot or a panel shows.
+_DIGITS = 7
+
+
+def packed(history: ValueHistory, clean: Callable[[str], str]) -> dict[str, Any]:
+    """Return the times of all packets; and for each value the packets in which it changed, and what it was then.
+
+    :param clean: changes each text
+    """
+    values = {}
+    for path in history.paths():
+        if not path.startswith(TYPE):
+            changes = [_plain(value, clean) for value in history.changes(path)[1]]
+            values[path] = {"p": history.change_numbers(path), "v": changes}
+    return {"times": [round(time, 6) for time in history.times], "values": values}
+
+
+def _plain(value: Any, clean: Callable[[str], str]) -> Any:
+    if value is MISSING:
+        return {"$": "gone"}
+    if value is None or isinstance(value, (bool, int)):
+        return value
+    if isinstance(value, float):
+        return float(f"{value:.{_DIGITS}g}")
+    if isinstance(value, Mapping):
+        return {clean(str(key)): _plain(each, clean) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(each, clean) for each in value]
+    return clean(str(value))

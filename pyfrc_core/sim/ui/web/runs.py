@@ -10,8 +10,7 @@ from typing import Any, Literal
 from ...engine.changes import Change, RunBegan
 from ...engine.messages import MODE, POSE, TYPE, VALUE
 from ..models.wording import clock
-from .history import MISSING, ValueHistory
-from .packing import packed
+from .history import MISSING, ValueHistory, packed
 from .plots import MOST_POINTS, FirstDifference, picked, resolve, series
 
 Source = Literal["hal", "network"]

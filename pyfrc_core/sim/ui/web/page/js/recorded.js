@@ -1,5 +1,5 @@
 // A run that is part of this file, as `--page` writes it: it answers what the server answers about the past.
-// `packing.py` says how its values are stored.
+// `history.py` says how its values are stored.
 import { indexAfter } from "#js/times.js";
 
 const ROUNDING = 1e-6; // seconds
@@ -30,67 +30,16 @@ export async function readRun() {
 
 function columnsOf({ hal, network }) {
   const columns = new Map();
-  for (const { times, values } of [hal, network]) {
-    const seconds = summed(times).map((microseconds) => microseconds / 1e6);
-    for (const [path, packed] of Object.entries(values)) columns.set(path, new Column(seconds, packed));
-  }
+  for (const { times, values } of [hal, network])
+    for (const [path, { p, v }] of Object.entries(values)) columns.set(path, columnOf(times, p, v));
   return columns;
 }
 
-// The changes of one value, unpacked when they are needed: { t, v }, with undefined where the value is gone.
-class Column {
-  #times;
-  #packed;
-
-  constructor(times, packed) {
-    this.#times = times;
-    this.#packed = packed;
-  }
-
-  get t() {
-    return this.#unpacked().t;
-  }
-
-  get v() {
-    return this.#unpacked().v;
-  }
-
-  at(t) {
-    return this.v[indexAfter(this.t, t + ROUNDING) - 1];
-  }
-
-  #unpacked() {
-    if (this.#packed.v) return this.#packed;
-    const { p, s: shapes, i: chosen, n = [] } = this.#packed;
-    const t = summed(p).map((packet) => this.#times[packet]);
-    const numbers = n.map(([decimals, ...differences]) => summed(differences).map((number) => number / 10 ** decimals));
-    const v = shapes.length === 1 && shapes[0] === 0 ? numbers[0] : filled(t.length, shapes, chosen, numbers);
-    this.#packed = { t, v };
-    return this.#packed;
-  }
-}
-
-function summed(differences) {
-  let sum = 0;
-  return differences.map((difference) => (sum += difference));
-}
-
-// Values of these shapes, in which each number is the next one of its column.
-function filled(count, shapes, chosen, numbers) {
-  const next = numbers.map(() => 0);
-  const values = [];
-  for (let change = 0; change < count; change++) {
-    let column = 0;
-    const fill = (shape) => {
-      if (typeof shape === "number") return numbers[column][next[column++]++];
-      if (Array.isArray(shape)) return shape.map(fill);
-      if (shape === null || typeof shape !== "object") return shape;
-      return Object.fromEntries(Object.entries(shape).map(([name, part]) => [name, fill(part)]));
-    };
-    const shape = shapes[chosen ? chosen[change] : 0];
-    values.push(shape?.$ === "gone" ? undefined : fill(shape));
-  }
-  return values;
+// The changes of one value: { t, v, at(t) }, with undefined where the value is gone.
+function columnOf(times, packets, changes) {
+  const t = packets.map((packet) => times[packet]);
+  const v = changes.map((value) => (value?.$ === "gone" ? undefined : value));
+  return { t, v, at: (when) => v[indexAfter(t, when + ROUNDING) - 1] };
 }
 
 function valuesAt(columns, t) {
