@@ -13,7 +13,7 @@ from ..project import Project
 from ..runtime.clock import PACKET_US, PHYSICS, to_us
 from ..runtime.loading import import_file
 from ..runtime.robot import RobotRun
-from ..wpi import dashboards, geometry, station
+from ..wpi import dashboards, geometry, robots, station
 from .core import PhysicsEngine, PhysicsField, PhysicsInitException, PhysicsInterface
 
 #: The shortest period of `update_sim`, for robots with faster loops (100 Hz).
@@ -120,10 +120,9 @@ class Physics:
         run.when_constructed.append(self._begin)
 
     def _begin(self) -> None:
-        # Robots with WPILib's iterative loop have a method for its period.
-        period = getattr(self._run.robot, "getPeriod", None)
-        if period is not None:
-            self._period_us = min(PACKET_US, max(_SHORTEST_PERIOD_US, to_us(period())))
+        if not robots.is_magic(self._run.robot):
+            period_us = to_us(robots.period(self._run.robot, PACKET_US / 1_000_000))
+            self._period_us = min(PACKET_US, max(_SHORTEST_PERIOD_US, period_us))
         self._run.clock.every(self._period_us, PHYSICS, self._update)
 
     def _make_engine(self) -> None:

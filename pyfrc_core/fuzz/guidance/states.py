@@ -86,7 +86,7 @@ class RobotStates:
             running = commands.scheduled_commands()
             if running != self._commands:
                 self._commands = running
-                names = sorted({command.getName() for command in running})
+                names = sorted({commands.name_of(command) for command in running})
                 self._reach((STATE, "commands", "+".join(names)), now_us)
 
     def _reach(self, goal: Goal, now_us: int) -> None:

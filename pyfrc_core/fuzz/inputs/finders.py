@@ -15,7 +15,7 @@ from ...hal.counters import counted_channels
 from ...hal.devices import KINDS
 from ...hal.modules import Modules
 from ...hal.sim_device_list import Signature
-from ...wpi import devices, joysticks, station
+from ...wpi import devices, joysticks, names, station
 from .values import UNKNOWN, Input, InputKind, RobotConstants
 
 # -- joysticks -------------------------------------------------------------------------------------------------------
@@ -55,22 +55,15 @@ _MODULES: dict[str, tuple[tuple[str, InputKind], ...]] = {
     "pdp": (("voltage", "battery"), *((f"current[{channel}]", "amperes") for channel in range(24))),
 }
 
-_RAILS: tuple[tuple[str, str, InputKind], ...] = (
-    ("getVoltage", "voltage", "rail"),
-    ("getCurrent", "current", "amperes"),
-    ("getEnabled", "active", "switch"),
-    ("getFaultCount", "faults", "whole"),
-)
-#: What the robot's controller measures, by the function with which code asks for it: only then it is varied.
-_ASKED: dict[str, tuple[str, InputKind]] = {
-    "getCPUTemp": ("roborio.cpu_temp", "celsius"),
-    "getInputCurrent": ("power.vin_current", "amperes"),
-    **{
-        function + rail: (f"power.user_{value}_{rail.lower()}", kind)
-        for rail in ("3V3", "5V", "6V")
-        for function, value, kind in _RAILS
-    },
-}
+#: What the robot's controller measures, by its path: varied only where code asks for it.
+_OF_CONTROLLER: dict[str, InputKind] = {"roborio.cpu_temp": "celsius", "power.vin_current": "amperes"}
+for _rail in ("3v3", "5v", "6v"):
+    _OF_CONTROLLER |= {
+        f"power.user_voltage_{_rail}": "rail",
+        f"power.user_current_{_rail}": "amperes",
+        f"power.user_active_{_rail}": "switch",
+        f"power.user_faults_{_rail}": "whole",
+    }
 
 #: Patterns for a SimDevice and its numeric value, as ``device/value``; the first match counts.
 _OF_DEVICES: tuple[tuple[str, InputKind], ...] = (
@@ -175,8 +168,8 @@ def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN, has_mod
     :param constants: tells what the robot's code asks its controller for
     :param has_modules: whether there may be modules on the CAN bus; if not, they are not searched
     """
-    for function, (target, kind) in _ASKED.items():
-        if constants.asks(function):
+    for target, kind in _OF_CONTROLLER.items():
+        if target in names.ASKED_BY and constants.asks(names.ASKED_BY[target]):
             yield Input(target, kind, target)
     channels = _used()
     yield Input("power.vin_voltage", "battery", "power")
@@ -191,7 +184,7 @@ def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN, has_mod
                 yield Input(f"{key}[{number}].{value}", kind, f"{key}[{number}]")
     for key, values in _MODULES.items() if has_modules else ():
         for number in hal_data[key]:
-            if key == "pdp" and constants.asks("getTemperature"):
+            if key == "pdp" and constants.asks(names.ASKED_BY["pdp.temperature"]):
                 yield Input(f"pdp[{number}].temperature", "celsius", f"pdp[{number}]")
             for value, kind in values:
                 yield Input(f"{key}[{number}].{value}", kind, f"{key}[{number}]")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...runtime.clock import PACKET_US, to_us
 from ...runtime.scripts.targets import MODE, PLUGGED, RESTART
-from ...wpi import robots
+from ...wpi import names, robots
 from .dashboard_generator import DashboardFinder, DashboardGenerator
 from .drivers import choose_models
 from .finders import SensorFinder, find_controls
@@ -42,8 +42,8 @@ _DRIVEN_US = 5 * _SECOND_US
 #: How often switches are closed before the program starts, and stay so; the roboRIO's own digital inputs.
 _HELD, _CHANNELS = 0.2, 10
 
-#: What tells a team's robots from each other, by the function with which code asks for it, and its maximum length.
-_DESCRIBED = {"getComments": ("roborio.comments", 64), "getSerialNumber": ("roborio.serial_number", 8)}
+#: What tells a team's robots from each other, and its maximum length.
+_DESCRIBED = {"roborio.comments": 64, "roborio.serial_number": 8}
 
 
 class InputGenerator:
@@ -141,9 +141,9 @@ class InputGenerator:
         if now_us == 0:  # the robot has not been started
             for port, model in self._models.items():
                 found |= without(self.left_out, model.writes(port))
-            for function, (target, longest) in () if self._from_us else _DESCRIBED.items():
+            for target, longest in () if self._from_us else _DESCRIBED.items():
                 texts = [text for text in self._constants.texts if len(text) <= longest]
-                if self._constants.asks(function) and texts and self._rng.random() < 0.5:
+                if self._constants.asks(names.ASKED_BY[target]) and texts and self._rng.random() < 0.5:
                     found[target] = self._rng.choice(texts)
             if not self._from_us and self._constants.asks("DigitalInput"):
                 found |= self._held_switches()

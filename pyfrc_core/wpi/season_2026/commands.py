@@ -53,6 +53,12 @@ def watch_commands(
     scheduler.onCommandInterrupt(interrupted)
 
 
+def name_of(command: Any) -> str:
+    """Return the name of a command."""
+    name: str = command.getName()
+    return name
+
+
 def is_default(command: Any) -> bool:
     """Return whether a command runs because its subsystem has nothing else to do."""
     return any(each.getDefaultCommand() is command for each in command.getRequirements())

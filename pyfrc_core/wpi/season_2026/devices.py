@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, Literal, NamedTuple
 
 import hal
@@ -56,6 +57,45 @@ def channels_of(thing: Any, kind: WiredKind) -> tuple[int, ...]:
     if kind == "duty cycle encoder":
         return (thing.getSourceChannel(),)
     return (thing.getChannel(),)
+
+
+class Sensor(NamedTuple):
+    """A sensor in `hal_data`.
+
+    :param place: the parts of its path there
+    :param where: where it is, if that is no part of the path, to be read after its name
+    """
+
+    place: tuple[str | int, ...]
+    where: str = ""
+
+
+#: What a sensor is, by the name of its class: a vendor's library need not be installed.
+_SENSORS: dict[str, Callable[[Any], Sensor]] = {
+    "DigitalInput": lambda each: Sensor(("dio", each.getChannel()), f" on DIO {each.getChannel()}"),
+    "AnalogInput": lambda each: Sensor(("analog_in", each.getChannel()), f" on analog input {each.getChannel()}"),
+    "AnalogEncoder": lambda each: Sensor(("analog_in", each.getChannel()), f" on analog input {each.getChannel()}"),
+    "Encoder": lambda each: Sensor(("encoder", each.getFPGAIndex())),
+    "DutyCycleEncoder": lambda each: Sensor(("duty_cycle", each.getFPGAIndex()), f" on DIO {each.getSourceChannel()}"),
+    "Ultrasonic": lambda each: Sensor(
+        ("CAN", f"Ultrasonic[{each.getEchoChannel()}]"), f" on DIO {each.getEchoChannel()}"
+    ),
+    "ADXRS450_Gyro": lambda each: Sensor(("CAN", f"Gyro:ADXRS450[{each.getPort()}]")),
+    "ADIS16470_IMU": lambda each: Sensor(("CAN", f"Gyro:ADIS16470[{each.getPort()}]")),
+    "ADIS16448_IMU": lambda each: Sensor(("CAN", f"Gyro:ADIS16448[{each.getPort()}]")),
+    "SparkMax": lambda each: Sensor(("CAN", f"SPARK MAX [{each.getDeviceId()}]")),
+    "SparkFlex": lambda each: Sensor(("CAN", f"SPARK Flex [{each.getDeviceId()}]")),
+}
+
+
+def sensor(thing: object) -> Sensor | None:
+    """Return what a sensor is in `hal_data`; None for other objects, and for one that is closed."""
+    for kind in type(thing).__mro__[:-1]:
+        if (find := _SENSORS.get(kind.__name__)) is not None:
+            with suppress(Exception):  # it is closed, or of a class of the robot's with that name
+                return find(thing)
+            return None
+    return None
 
 
 class SimValue(NamedTuple):

@@ -35,6 +35,25 @@ OF_A_COMPONENT = frozenset({"execute", "on_enable", "on_disable"})
 #: All methods that robot code overrides, besides those of the modes.
 OVERRIDDEN = _OF_ALL_ROBOTS | OF_A_COMMAND | {"periodic", "runsWhenDisabled", "getInterruptionBehavior"}
 
+#: The functions with which robot code asks for what is rarely asked for, by the path in `hal_data` of what they return.
+ASKED_BY = {
+    "roborio.cpu_temp": "getCPUTemp",
+    "roborio.comments": "getComments",
+    "roborio.serial_number": "getSerialNumber",
+    "power.vin_current": "getInputCurrent",
+    "pdp.temperature": "getTemperature",
+    **{
+        f"power.user_{value}_{rail.lower()}": function + rail
+        for rail in ("3V3", "5V", "6V")
+        for function, value in (
+            ("getVoltage", "voltage"),
+            ("getCurrent", "current"),
+            ("getEnabled", "active"),
+            ("getFaultCount", "faults"),
+        )
+    },
+}
+
 #: Words that are written for a mode's name: those of other seasons, and abbreviations.
 SYNONYMS = (
     (re.compile("^auto(n|nomus|nomos)?(?=init|periodic|exit)"), "autonomous"),
