@@ -93,7 +93,7 @@ def begin(settings: dict[str, Any]) -> Callable[[], None]:
     table, numbers, real_open, real_close = PatchTable(), count(), RobotRun.open, RobotRun.close
 
     def open_run(run: RobotRun) -> None:
-        functions.time_callbacks_of_commands(table)
+        functions.time_callbacks(table)
         real_open(run)
         sampler.start()
 

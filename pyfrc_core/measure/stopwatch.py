@@ -16,13 +16,11 @@ from threading import get_ident
 from time import perf_counter_ns, thread_time_ns
 from typing import Any, NamedTuple
 
-from wpilib import TimedRobot
-
 from ..compat.cpython_private import get_frame
 from ..project.robot_files import RobotFiles
 from ..runtime.patches.install import patches
 from ..runtime.threads.robot_threads import RobotThreads
-from ..wpi import station
+from ..wpi import robots, station
 from .figures import WHOLE_LOOP, Figures, Measurand, Overrun
 from .sampler import stack_of
 
@@ -154,7 +152,7 @@ class Stopwatch:
         run = patches.run
         if run is None or run.own_loop is None or run.own_loop.ident != get_ident():
             return False
-        if isinstance(run.robot, TimedRobot):  # its loop is a timed function
+        if robots.is_timed(run.robot):  # its loop is a timed function
             return False
-        self._figures.period_ns = round(getattr(run.robot, "control_loop_wait_time", 0.02) * 1e9)
+        self._figures.period_ns = round(robots.period(run.robot, 0.02) * 1e9)
         return True

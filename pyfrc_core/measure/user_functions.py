@@ -6,45 +6,20 @@ have been imported yet.
 
 from __future__ import annotations
 
-import sys
 import typing
 from collections.abc import Callable, Iterable
 from functools import partial
 from types import FunctionType
 from typing import Any
 
-import wpilib
-import wpilib.event
-import wpiutil
-
 from ..project.robot_files import RobotFiles
 from ..runtime.patch_table import PatchTable
 from ..runtime.patches.notifier import Notifier
 from ..runtime.threads.robot_threads import RobotThreads
 from ..runtime.time.timed_loop import Periodic, TimedLoop
-from ..wpi import robots
+from ..wpi import callbacks, names, robots
 from .figures import WHOLE_LOOP, Measurand
 from .stopwatch import Stopwatch
-
-_LIBRARIES = ("wpilib", "commands2", "magicbot")
-_MODES = ("robot", "disabled", "autonomous", "teleop", "test", "simulation", "_simulation")
-#: The methods of a robot that are called; not its constructor, which runs before there is a loop.
-_OF_A_ROBOT = {f"{mode}{when}" for mode in _MODES for when in ("Init", "Periodic", "Exit")}
-_NOT_OF_A_LOOP = {"startCompetition", "endCompetition"}
-_OF_A_COMPONENT = ("execute", "on_enable", "on_disable")
-#: The methods that libraries call, by their base class.
-_CALLED = {
-    "IterativeRobotBase": ("robot", _OF_A_ROBOT),
-    "MagicRobot": ("robot", _OF_A_ROBOT),
-    "Command": ("command", {"initialize", "execute", "end", "isFinished"}),
-    "Subsystem": ("subsystem", {"periodic", "simulationPeriodic"}),
-}
-#: Where commands and triggers take functions.
-_GIVEN_TO_COMMANDS = (
-    *(f"{name}.__init__" for name in ("FunctionalCommand", "ConditionalCommand", "WaitUntilCommand")),
-    *(f"{name}.__init__" for name in ("SelectCommand", "DeferredCommand", "Trigger")),
-    *(f"Command.{name}" for name in ("onlyWhile", "finallyDo", "handleInterrupt")),
-)
 
 
 class UserFunctions:
@@ -57,23 +32,19 @@ class UserFunctions:
 
     def install(self, table: PatchTable) -> None:
         """Time the functions that are created from now on, until the table is undone."""
-        for base in (wpilib.RobotBase, wpiutil.Sendable):
+        for base in callbacks.BASES:
             table.patch(base, "__init_subclass__", classmethod(self._when_derived_from(base)))
         table.patch(TimedLoop, "schedule", self._scheduling(TimedLoop.schedule))
-        for owner, name in ((wpilib.event.EventLoop, "bind"), (Notifier, "__init__"), (Notifier, "setCallback")):
-            self._time_arguments(table, owner, name)
+        for name in ("__init__", "setCallback"):
+            self._time_arguments(table, Notifier, name)
+        self.time_callbacks(table)
         for name in ("sleep_until", "wait"):
             table.patch(RobotThreads, name, self._stopwatch.waiting(getattr(RobotThreads, name)))
 
-    def time_callbacks_of_commands(self, table: PatchTable) -> None:
-        """Time the functions that commands and triggers take, if the robot has imported commands2 by now."""
-        if "commands2" not in sys.modules:
-            return
-        import commands2.button
-
-        for place in _GIVEN_TO_COMMANDS:
-            where, _, method = place.partition(".")
-            self._time_arguments(table, getattr(commands2, where, None) or getattr(commands2.button, where), method)
+    def time_callbacks(self, table: PatchTable) -> None:
+        """Time the functions that libraries take; those of commands, if the robot has imported commands2 by now."""
+        for owner, name in callbacks.functions_taken():
+            self._time_arguments(table, owner, name)
 
     def _timed(self, function: Callable[..., Any], kind: str, name: str = "", period_ns: int = 0) -> Any:
         code, whole = _code_of(function), function.func if isinstance(function, partial) else function
@@ -91,16 +62,13 @@ class UserFunctions:
 
     def _time_class(self, cls: type) -> None:
         """Time the methods of a new class that derives from WPILib's, perhaps through a library's."""
-        bases = {base.__name__ for base in cls.__mro__ if base.__module__.partition(".")[0] in _LIBRARIES}
-        kind, names = next((_CALLED[base] for base in _CALLED if base in bases), ("", set()))
-        if not kind and "RobotBase" in bases:  # a robot with its own loop: any method may be a part of it
-            kind, names = "robot", {name for name in vars(cls) if name[:2] != "__"} - _NOT_OF_A_LOOP
-        self._time_methods(cls, names, kind)
-        if "MagicRobot" in bases:
+        kind, called = callbacks.called_methods(cls)
+        self._time_methods(cls, called, kind)
+        if callbacks.has_components(cls):
             self._time_components(cls)
 
-    def _time_methods(self, cls: type, names: Iterable[str], kind: str) -> None:
-        for name in sorted(names):
+    def _time_methods(self, cls: type, called: Iterable[str], kind: str) -> None:
+        for name in sorted(called):
             method = vars(cls).get(name)
             if isinstance(method, FunctionType) and self._is_own(method):
                 setattr(cls, name, self._timed(method, kind))
@@ -112,9 +80,9 @@ class UserFunctions:
         except Exception:  # magicbot reports wrong annotations itself
             return
         for cls in dict.fromkeys(hints.values()):
-            if not isinstance(cls, type) or issubclass(cls, (wpiutil.Sendable, int, float, str)):
+            if not callbacks.is_component(cls):
                 continue
-            self._time_methods(cls, _OF_A_COMPONENT, "component")
+            self._time_methods(cls, names.OF_A_COMPONENT, "component")
             inherited = getattr(cls, "execute", None)
             if "execute" not in vars(cls) and isinstance(inherited, FunctionType) and not self._is_own(inherited):
                 setattr(cls, "execute", self._timed(inherited, "component", f"{cls.__qualname__}.execute"))  # noqa: B010

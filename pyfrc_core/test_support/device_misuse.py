@@ -8,12 +8,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import wpilib
-
 from ..compat.cpython_private import get_frame
 from ..fuzz.oracle.motor_calls import watch_motor_calls
 from ..project.robot_files import RobotFiles
 from ..runtime.patch_table import Patch, patched
+from ..wpi import devices
 
 
 class DeviceWarning(UserWarning):
@@ -43,7 +42,8 @@ class _Misuse:
 
     def patches(self) -> Iterator[Patch]:
         """Yield the patches of the constructors of CAN devices that allow an ID twice."""
-        yield Patch(wpilib.CAN, "__init__", self._counted(wpilib.CAN.__init__, lambda id, *kind: (id, "", kind)))
+        owner = devices.CanDevice
+        yield Patch(owner, "__init__", self._counted(owner.__init__, devices.can_key))
         phoenix = sys.modules.get("phoenix6.hardware")
         if phoenix is not None:
             device = phoenix.ParentDevice

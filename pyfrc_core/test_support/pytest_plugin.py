@@ -162,9 +162,9 @@ class PyFrcPlugin(WatchedTests):
     @pytest.fixture
     def wpilib(self) -> ModuleType:
         """The `wpilib` module, for backwards compatibility."""
-        import wpilib
+        from ..wpi import robots
 
-        return wpilib
+        return robots.library()
 
     @pytest.fixture
     def _physics(self, _robot_run: RobotRun) -> Physics | None:

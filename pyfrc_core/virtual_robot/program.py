@@ -50,25 +50,23 @@ def _end_with_supervisor() -> None:
 
 def _run(main: Path) -> bool:
     print("********** Robot program starting **********")
-    import ntcore
-    import wpilib
-
     from ..project import Project
     from ..runtime.robot_class import choose_robot_class
+    from ..wpi import network, robots, station
 
     sys.path[0] = str(main.parent)
-    wpilib.getDeployDirectory = lambda: str(main.parent / "deploy")
+    robots.set_deploy_directory(main.parent / "deploy")
     # It has no joysticks: the warnings, with a stack each second, would hide what the program prints.
-    wpilib.DriverStation.silenceJoystickConnectionWarning(True)
+    station.silence_joystick_warnings()
     # WPILib's own server would listen at all addresses of this computer.
-    ntcore.NetworkTableInstance.getDefault().startServer("networktables.json", "127.0.0.1", 0, _tables_port())
+    network.serve_this_computer(_tables_port())
     specification = importlib.util.spec_from_file_location("robot", main)
     assert specification is not None
     assert specification.loader is not None
     module = importlib.util.module_from_spec(specification)
     sys.modules["robot"] = module
     specification.loader.exec_module(module)
-    return bool(wpilib.RobotBase.main(choose_robot_class(Project(main), module)))
+    return robots.run_program(choose_robot_class(Project(main), module))
 
 
 def _tables_port() -> int:

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING
 from ..season import CURRENT
 
 if TYPE_CHECKING:
+    from .season_2026 import callbacks as callbacks
     from .season_2026 import commands as commands
     from .season_2026 import dashboards as dashboards
     from .season_2026 import devices as devices

@@ -135,3 +135,12 @@ def sim_values(device: str) -> list[SimValue]:
 def sim_integer(device: str, value: str) -> Callable[[], int]:
     """Return the function that reads an integer of a SimDevice, which exists."""
     return SimDeviceSim(device).getInt(value).get
+
+
+#: The class of CAN devices that WPILib drives; two of them can have the same ID.
+CanDevice = wpilib.CAN
+
+
+def can_key(id: int, *kind: object) -> tuple[int, str, object]:
+    """Return ID, bus and kind of a `CanDevice`, from the arguments of its constructor."""
+    return id, "", kind

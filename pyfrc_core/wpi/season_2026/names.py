@@ -23,8 +23,10 @@ OF_SIMULATION = frozenset({"simulationInit", "simulationPeriodic", "_simulationI
 #: The methods that a class without the right base class has, if it was meant to be a robot.
 OF_A_ROBOT = frozenset({INITIALIZATION, "teleopInit", "teleopPeriodic", "autonomousInit", "autonomousPeriodic"})
 
+#: The methods that run a robot's loop, and end it.
+OF_A_LOOP = frozenset({MAIN, "endCompetition"})
 #: Other methods of a robot that libraries call.
-_OF_ALL_ROBOTS = frozenset({MAIN, "endCompetition", "driverStationConnected", "createObjects", "onException"})
+_OF_ALL_ROBOTS = frozenset({*OF_A_LOOP, "driverStationConnected", "createObjects", "onException"})
 #: The method of a command that says whether it is finished.
 END_CONDITION = "isFinished"
 #: The methods of commands, subsystems and magicbot's components that libraries call.

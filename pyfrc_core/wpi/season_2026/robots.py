@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
 from typing import Any, TypeGuard
 
 import hal
@@ -144,3 +146,26 @@ def own_simulation(robot: object) -> str | None:
     name = SIMULATION_PERIODIC.name
     own = getattr(type(robot), name, None)
     return None if own in (None, SIMULATION_PERIODIC.of(wpilib.IterativeRobotBase)) else name
+
+
+# -- programs that run without a clock of ours -------------------------------------------------------------------------
+
+
+def library() -> ModuleType:
+    """Return WPILib's main module, as robot code imports it."""
+    return wpilib
+
+
+def run_program(robot_class: type[Any]) -> bool:
+    """Run a robot program in real time, until it ends; return whether it ended well."""
+    return bool(wpilib.RobotBase.main(robot_class))
+
+
+def set_deploy_directory(directory: Path) -> None:
+    """Set the directory in which robot code finds its files."""
+    wpilib.getDeployDirectory = lambda: str(directory)
+
+
+def show_window() -> None:
+    """Show the window of WPILib's own simulator, which has been loaded, until it is closed."""
+    hal.runMain()

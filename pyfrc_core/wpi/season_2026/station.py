@@ -220,6 +220,11 @@ def robot_is_enabled() -> bool:
     return bool(DriverStation.isEnabled())
 
 
+def silence_joystick_warnings() -> None:
+    """Have the robot not warn of joysticks that it reads and that are not plugged in."""
+    DriverStation.silenceJoystickConnectionWarning(True)
+
+
 # -- without a connection ----------------------------------------------------------------------------------------------
 
 

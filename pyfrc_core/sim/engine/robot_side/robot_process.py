@@ -14,8 +14,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import hal
-
 from ....compat.unrepeatable import explain_unrepeatable
 from ....errors import PyfrcError
 from ....physics.engine import load_physics
@@ -32,6 +30,7 @@ from ....runtime.patches.data_logs import LogPlace
 from ....runtime.patches.install import patches
 from ....runtime.robot import RobotRun
 from ....runtime.seeds import seed_generators
+from ....wpi import robots
 from ..extensions import WINDOW, load_extensions
 from ..field import tags_of
 from ..messages import Failed, Job, Ready, WindowClosed
@@ -55,7 +54,7 @@ def run_robot(job: Job, connection: Connection, log: CrashLog) -> None:
         return
     robot = threading.Thread(target=_run, name="robot", args=(job, connection, log), daemon=True)
     robot.start()
-    hal.runMain()  # until the user closes the window
+    robots.show_window()
     with suppress(OSError):
         connection.send(WindowClosed())
 
