@@ -8,8 +8,8 @@ Traces and recordings find what has changed by one mechanism: `tree_reader` read
 through WPILib's bindings, and `change_reader` compares. Which of the roboRIO's 290 possible devices exist, the HAL
 reports (`created_devices`). It reports no SimDevices to Python, so these are listed at each look (`sim_device_list`).
 
-This is the only package that names simulated devices. Importing it does not change the HAL, and imports WPILib only
-when the tree is used: the simulator's window needs paths and no tree.
+Importing this package does not change the HAL, and imports WPILib only when the tree is used: the simulator's window
+needs paths and no tree.
 
 Where the simulated HAL differs from the hardware, this room does what the hardware does: outputs are off while the
 robot is disabled (`output_gate`).

@@ -14,16 +14,14 @@ functions of `time` and `threading`, WPILib's waits, notifiers and watchdogs. Wh
 original does. For Python's functions the calling file decides, not the thread: robot code, tests and pytest share the
 main thread, and tests and libraries keep real time. A robot's threads are real threads that take turns (`threads`), so
 that a run with threads repeats as well. WPILib's own C++ threads, for motor safety and watchdogs, follow the wall
-clock: they are taken out, and their work is done in robot time (`time`).
+clock: they are taken out, and their work is done in robot time (`time.motor_safety`, `patches.loop_watchdog`).
 
-Like the robot. A run boots without a driver station; packets come only while one is attached
-(`patches.driver_station`). A periodic function that waits for too long has stopped the robot, and is a failure
-(`checks.loop_limit`).
+Like the robot. A run boots without a driver station; packets come only while one is attached (`connection`). A periodic
+function that waits for too long has stopped the robot, and is a failure (`checks.loop_limit`).
 
 Repeatable. Random generators are seeded (`seeds`), and a trace has one hash over all that happened
 (`scripts.trace`). What a library simulates in real time, or with noise by chance (`patches.noise`), does not repeat: it
-is marked. Robot time waits for
-what is simulated in real time where the robot depends on it (`real_time_pace`).
+is marked. Robot time waits for what is simulated in real time where the robot depends on it (`real_time_pace`).
 
 The end. `exceptions.TestEnded` is raised wherever code waits, until none waits. Code that catches it gains nothing:
 each further wait raises it at once. The first failure is stored, so that no `except` hides it. `checks.hang_detector`

@@ -1,5 +1,5 @@
-"""WPILib's own ways to wait and to be called later, in robot time.
+"""What WPILib does by itself while a robot runs, in robot time.
 
-In: the clock, and what robot code sets: notifiers, watchdogs, periodic functions. Out: calls when these are due, on the
-thread that moves the time. WPILib's C++ threads, which follow the wall clock, are taken out.
+In: the clock and the robot. Out: its periodic functions are called when they are due, its motors are checked, and its
+own simulation sees what physics sees.
 """
