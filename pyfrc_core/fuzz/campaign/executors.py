@@ -269,7 +269,6 @@ class ForkedMatchExecutor(WorkExecutor):
         self._preparation.close()
 
     def _begin(self, task: Work) -> ForkedCall[Result]:
-        self._preparation.prepare_for(task)
         return ForkedCall(lambda log: _work(self.project, log, task), files=self.project.files)
 
     def _result(self, task: Work, call: ForkedCall[Result]) -> Result:

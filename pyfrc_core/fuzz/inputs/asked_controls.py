@@ -6,11 +6,11 @@ The HAL knows only that a joystick is read. So the functions that read are inter
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import AbstractContextManager
-from typing import Any
+from contextlib import contextmanager
+from itertools import starmap
 
+from ...runtime.patch_table import Patch, patched
 from ...wpi import joysticks
-from ..prepared_patches import PreparedPatches
 
 
 class AskedControls:
@@ -27,21 +27,9 @@ class AskedControls:
         self.targets[f"joysticks[{port}].{kind}[{number}]"] = None
 
 
-def watch_controls() -> AbstractContextManager[AskedControls]:
+@contextmanager
+def watch_controls() -> Iterator[AskedControls]:
     """Watch until the context ends."""
-    return _watches.watching(AskedControls)
-
-
-def prepare_control_watch(prepare: bool = True) -> None:
-    """Prepare `watch_controls` for the forks of this process, or undo that."""
-    if prepare:
-        _watches.prepare(AskedControls())
-    else:
-        _watches.undo()
-
-
-def _replacements(asked: AskedControls) -> Iterator[tuple[Any, str, Any]]:
-    return joysticks.replacements(asked.note)
-
-
-_watches = PreparedPatches(_replacements)
+    asked = AskedControls()
+    with patched(starmap(Patch, joysticks.replacements(asked.note))):
+        yield asked

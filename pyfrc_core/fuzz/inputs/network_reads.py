@@ -7,14 +7,14 @@ camera. So the functions that read are intercepted in Python. Subscribing is rea
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
+from contextlib import contextmanager
+from itertools import starmap
 from types import FrameType
-from typing import Any
 
 from ...compat.cpython_private import get_frame
 from ...project.robot_files import RobotFiles
+from ...runtime.patch_table import Patch, patched
 from ...wpi import names, network_reads
-from ..prepared_patches import PreparedPatches
 from .network_values import STRUCTS, NetworkRead
 
 #: The library file that reads on behalf of robot code: MagicBot's tunables.
@@ -59,21 +59,10 @@ def _is_of_simulation(frame: FrameType | None) -> bool:
     return False
 
 
-def watch_network_reads(files: RobotFiles) -> AbstractContextManager[NetworkReads]:
+@contextmanager
+def watch_network_reads(files: RobotFiles) -> Iterator[NetworkReads]:
     """Watch until the context ends."""
-    return _watches.watching(lambda: NetworkReads(files))
-
-
-def prepare_network_watch(files: RobotFiles, prepare: bool = True) -> None:
-    """Prepare `watch_network_reads` for the forks of this process, or undo that."""
-    if prepare:
-        _watches.prepare(NetworkReads(files))
-    else:
-        _watches.undo()
-
-
-def _replacements(reads: NetworkReads) -> Iterator[tuple[Any, str, Any]]:
-    return network_reads.replacements(reads, {name: len(spans) for name, spans in STRUCTS.items()})
-
-
-_watches = PreparedPatches(_replacements)
+    reads = NetworkReads(files)
+    numbers = {name: len(spans) for name, spans in STRUCTS.items()}
+    with patched(starmap(Patch, network_reads.replacements(reads, numbers))):
+        yield reads

@@ -6,21 +6,17 @@ What each match would make in the same way, or read from the disk, is made here 
 from __future__ import annotations
 
 import gc
-import linecache
 from contextlib import suppress
 
 from ...errors import PyfrcError
-from ...hal import HalData, devices_exist
+from ...hal import HalData
 from ...project import Project
 from ...runtime.module_files import resolve_module_files
 from ...runtime.patch_table import PatchTable
 from ...wpi import network
-from ..inputs.asked_controls import prepare_control_watch
+from ..inputs.asked_controls import watch_controls
 from ..inputs.finders import prepare_search
-from ..inputs.network_reads import prepare_network_watch
-from ..oracle.motor_calls import prepare_motor_watch
-from .imported_robot import auto_joysticks, game_messages, imported_devices, next_tree, robot_constants, robot_lines
-from .work import FuzzTask, ReplayTask
+from .imported_robot import auto_joysticks, game_messages, imported_devices, next_tree, robot_constants
 
 
 class Preparation:
@@ -30,17 +26,13 @@ class Preparation:
     """
 
     def __init__(self, project: Project, is_imported: bool) -> None:
-        self._project = project
-        self._is_imported = is_imported
         self._patches = PatchTable()
         if is_imported:
-            lines = robot_lines(project)
             robot_constants(project)
             imported_devices(project)
             resolve_module_files()
-            for file in {function.__code__.co_filename for function in lines.functions}:
-                linecache.getlines(file)  # WPILib asks for the lines that create a device
-        devices_exist()
+            with watch_controls():
+                pass  # the functions that it replaces have been found
         prepare_search()
         _build(next_tree())
         _read_settings(project)
@@ -48,19 +40,8 @@ class Preparation:
         self._patches.patch(*network.NETWORK_LOG.place, lambda instance: None)
         gc.freeze()  # a garbage collection in a fork would copy the memory of all objects
 
-    def prepare_for(self, task: object) -> None:
-        """Prepare what watches calls in this task, and nothing else: a replay runs as without fuzz."""
-        is_match = isinstance(task, FuzzTask)
-        self._watch(is_match, is_match or (isinstance(task, ReplayTask) and task.use_oracle))
-
-    def _watch(self, drivers: bool, motors: bool) -> None:
-        prepare_control_watch(self._is_imported and drivers)
-        prepare_network_watch(self._project.files, self._is_imported and drivers)
-        prepare_motor_watch(self._is_imported and motors)
-
     def close(self) -> None:
         """Undo what would be noticed in this process."""
-        self._watch(drivers=False, motors=False)
         self._patches.undo()
 
 

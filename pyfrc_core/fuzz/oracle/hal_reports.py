@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import mmap
 import os
 import re
 import sys
@@ -18,11 +17,6 @@ _ERROR = re.compile(rb"^Error at ([^\n]*)\n", re.MULTILINE)
 _NO_FAULT = re.compile(rb"Joystick .*not (?:available|attached|plugged)|Loop time of|Output not updated", re.IGNORECASE)
 
 
-#: The part of the file that is mapped to memory, on POSIX systems; and what is there until something is written.
-_MAPPED = 64 * 1024
-_NOTHING = bytes(32)
-
-
 class HalReports:
     """The reports of one run.
 
@@ -32,17 +26,10 @@ class HalReports:
     def __init__(self, file: IO[bytes]) -> None:
         self._descriptor = file.fileno()
         self._read = 0
-        #: Its content as memory, which is looked at in each packet without a call of the system.
-        self._map: mmap.mmap | None = None
-        if hasattr(os, "pread"):
-            file.truncate(_MAPPED)
-            self._map = mmap.mmap(self._descriptor, _MAPPED, access=mmap.ACCESS_READ)
 
     def error(self) -> str | None:
         """Return the first error since the last call, from complete lines only; None if there was none."""
         begin = self._read
-        if self._map is not None and self._map[begin : begin + len(_NOTHING)] == _NOTHING:
-            return None
         descriptor = self._descriptor
         # All writers share the position of this file with standard error.
         size = os.lseek(descriptor, 0, os.SEEK_CUR)

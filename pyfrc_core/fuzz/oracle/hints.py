@@ -17,14 +17,12 @@ from .unfinished_commands import UnfinishedCommands
 
 #: How many loops of a match may take long: Python collects garbage in some, and reads modules in others.
 _SLOW_AT_TIMES = 5
-#: How many loops are measured after one that may have taken long.
-_MEASURED = 50
 
 #: For so long, the robot may still be importing modules.
 _FIRST_US = 1_000_000
 
-# Bound before `runtime.patches.install` replaces the names.
-_real_time, _processor_time = time.perf_counter, time.thread_time
+# Bound before `runtime.patches.install` replaces the name.
+_processor_time = time.thread_time
 
 
 @dataclass(frozen=True)
@@ -46,15 +44,10 @@ class MatchHints:
 
 
 class LoopTimes:
-    """Measures the processor time of loops of a `TimedRobot`, which has been started.
-
-    It is read only for the loops that follow one which took longer than its period in real time: no loop needs more
-    processor time than that, and simple loops are not slowed down.
-    """
+    """Measures the processor time of loops of a `TimedRobot`, which has been started."""
 
     def __init__(self, run: RobotRun) -> None:
         self._longest: list[float] = [0.0] * (_SLOW_AT_TIMES + 1)
-        self._measures_next = 0
         self.period = PACKET_US / 1_000_000
         if (main := run.timed_loop.main) is not None:
             self.period = main.period_us / 1_000_000
@@ -66,17 +59,10 @@ class LoopTimes:
         return self._longest[-1]
 
     def _measured(self, call: Callable[[], Any]) -> Callable[[], Any]:
-        period, real_time, processor_time = self.period, _real_time, _processor_time
+        processor_time = _processor_time
 
         def measured() -> None:
             __tracebackhide__ = True
-            if not self._measures_next:
-                began = real_time()
-                call()
-                if real_time() - began > period:
-                    self._measures_next = _MEASURED
-                return
-            self._measures_next -= 1
             began = processor_time()
             call()
             took = processor_time() - began

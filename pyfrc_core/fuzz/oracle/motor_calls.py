@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import starmap
 from typing import Any
 
 from ...hal import HalData
+from ...runtime.patch_table import Patch, patched
 from ...wpi import motor_controllers
-from ..prepared_patches import PreparedPatches
-
-_watches = PreparedPatches(motor_controllers.replacements)
 
 
-def watch_motor_calls() -> AbstractContextManager[motor_controllers.MotorCalls]:
+@contextmanager
+def watch_motor_calls() -> Iterator[motor_controllers.MotorCalls]:
     """Watch until the context ends; the robot's modules must be imported."""
-    return _watches.watching(motor_controllers.MotorCalls)
-
-
-def prepare_motor_watch(prepare: bool = True) -> None:
-    """Prepare `watch_motor_calls` for the forks of this process, or undo that; the robot's modules must be imported."""
-    if prepare:
-        _watches.prepare(motor_controllers.MotorCalls())
-    else:
-        _watches.undo()
+    calls = motor_controllers.MotorCalls()
+    with patched(starmap(Patch, motor_controllers.replacements(calls))):
+        yield calls
 
 
 class InertMotors:
