@@ -94,10 +94,11 @@ def found_by_host(project: RobotProject) -> dict[str, object]:
     printed = ""
     with Simulation(Project(project.path / "robot.py"), SimOptions(paused=True, speed=0)) as simulation:
         settle(simulation)
+        output = simulation.output_cursor()
 
         def complete() -> bool:
             nonlocal printed
-            printed += simulation.take_output()
+            printed += output.read()
             return "grün" in printed
 
         wait(simulation, complete)

@@ -270,7 +270,7 @@ def test_workers_play_the_matches(cluster: Cluster, make_project) -> None:
     project = make_project({"robot.py": robot, "pyproject.toml": SETTINGS})
     result = project.run("fuzz", "--runs", "2", "--seed", "1", "--scheduler", cluster.address)
     assert result.code == 1, result.output
-    assert "robot.py:5" in result.stdout
+    assert "robot.py:5" in result.stdout, result.output
     assert [file.name for file in project.path.rglob("tests/fuzz/*.jsonl")] == ["valueerror-robot-teleopperiodic.jsonl"]
     assert cluster.left_on_workers() == []
 
