@@ -12,7 +12,7 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import dedent
@@ -322,6 +322,16 @@ def add_settings(directory: Path, text: str) -> None:
     """Append this text to the ``pyproject.toml`` of the project in this directory."""
     with (directory / "pyproject.toml").open("a", encoding="utf-8") as pyproject:
         pyproject.write(text)
+
+
+def sampled(values: Iterable[Any], *daily: Any) -> list[Any]:
+    """Return parameters of which all but the `daily` ones are marked as slow."""
+    return [
+        value
+        if value in daily
+        else pytest.param(*(value if isinstance(value, tuple) else [value]), marks=pytest.mark.slow)
+        for value in values
+    ]
 
 
 MakeProject = Callable[[Mapping[str, str]], RobotProject]

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject, RobotProject, sampled
 from skips import require
 
 require("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"])
@@ -22,7 +22,7 @@ NOISE = "do not repeat exactly, because REV's library draws the noise of their v
 SETTINGS = "\n[tool.pyfrc.match]\nautonomous = 2\npause = 0.1\nteleop = 2\n"
 
 
-@pytest.fixture(params=[pytest.param(name, marks=pytest.mark.slow) if name == "tank_arm" else name for name in NAMES])
+@pytest.fixture(params=sampled(NAMES, "magic_swerve", "rev_swerve"))
 def project(request: pytest.FixtureRequest, make_project: MakeProject) -> RobotProject:
     made = make_project({})
     made.copy(ROBOTS / request.param)

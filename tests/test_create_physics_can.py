@@ -6,6 +6,7 @@ import shutil
 import sys
 from pathlib import Path
 
+import pytest
 from conftest import MakeProject, RobotProject
 from skips import require
 
@@ -187,6 +188,7 @@ def test_swerve_on_sparks_drives(make_project: MakeProject) -> None:
     run_test(project, DRIVING.format(tolerance=0.05))
 
 
+@pytest.mark.slow
 def test_swerve_on_talons_moves(make_project: MakeProject) -> None:
     """Its devices run in real time, so how far and how straight it drives depends on how busy the machine is."""
     project = competition_robot(make_project, "ctre_swerve")

@@ -18,6 +18,7 @@ from pathlib import Path
 
 import pytest
 from at_terminal import run_at_terminal
+from conftest import sampled
 from roborio import Proxy, Roborio, require_roborio
 from skips import missing_programs, require
 
@@ -483,7 +484,7 @@ def test_a_lost_connection_is_reported_and_the_next_deploy_works(robot: Roborio,
     assert result.code == 0, result.output
 
 
-@pytest.mark.parametrize("as_json", [False, True])
+@pytest.mark.parametrize("as_json", sampled([False, True], False))
 def test_ctrl_c_leaves_all_whole(as_json: bool, robot: Roborio, make_project) -> None:
     project = make_project(program(1))
     assert deploy(project, robot).code == 0

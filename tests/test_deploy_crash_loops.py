@@ -27,6 +27,7 @@ def robot() -> Iterator[Roborio]:
         yield robot
 
 
+@pytest.mark.slow
 def test_crashes_in_a_row_lead_back_to_the_program_that_ran(robot: Roborio, make_project) -> None:
     deploy = ["deploy", "--skip-tests", "--robot", robot.where]
     project = make_project({"robot.py": ROBOT.format(init="pass")})

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 from collections.abc import Generator
 from pathlib import Path
 
 import pytest
+from conftest import sampled
 from roborio.local import ROBOT_PY, Agents, Disk, LocalRobot, directory_in_memory, project_of
 
 from pyfrc_core.deploy.agent_client import AgentClient
@@ -37,7 +39,7 @@ WRITTEN: Files = {"log.txt": b"1\n2\n", "state/odometer": b"17"}
 
 SCENARIOS = ["first", "update", "renamed", "taken over"]
 #: Cut at each step: by day, an update; by night, all.
-SAMPLED_SCENARIOS = [name if name == "update" else pytest.param(name, marks=pytest.mark.slow) for name in SCENARIOS]
+SAMPLED_SCENARIOS = sampled(SCENARIOS, "update")
 
 
 #: By scenario, the disks on which a deploy after a cut was seen to work.
@@ -108,8 +110,9 @@ def directory() -> Generator[Path]:
         yield directory
 
 
-@pytest.mark.parametrize("name", [pytest.param("first", marks=pytest.mark.slow), "update"])
-@pytest.mark.parametrize("way", ["to", "from"])
+@pytest.mark.parametrize(
+    ("name", "way"), sampled(itertools.product(["first", "update"], ["to", "from"]), ("update", "from"))
+)
 def test_cut_after_every_kth_byte(name: str, way: str, directory: Path, agents: Agents) -> None:
     """More than 300 places in all, the last of them within the last bytes."""
     scenario = Scenario(name, directory, agents)
@@ -151,7 +154,7 @@ def agent(robot: LocalRobot, agents: Agents, **options: int | bool) -> Generator
         session.close()
 
 
-@pytest.mark.parametrize("loses", [pytest.param(False, marks=pytest.mark.slow), True])
+@pytest.mark.parametrize("loses", sampled([False, True], True))
 def test_rollback_killed_at_each_step(directory: Path, agents: Agents, loses: bool) -> None:
     """From a program with another start command, and with files that it has written."""
     before = LocalRobot.new(directory / "before")

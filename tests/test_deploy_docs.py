@@ -16,6 +16,7 @@ ROOT = Path(__file__).parents[1]
 GUIDE = (ROOT / "docs/deploy.md").read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_the_guides_commands_work_one_after_the_other(make_project) -> None:
     require_roborio()
     project = make_project({})

@@ -6,6 +6,7 @@ import socket
 import threading
 from pathlib import Path
 
+import pytest
 from roborio import PATIENCE, Roborio, require_roborio
 from roborio.local import project_of
 from roborio.machine import LETS_PROGRAMS_SURVIVE
@@ -36,6 +37,7 @@ def programs_on(robot: Roborio) -> list[str]:
     return [line for line in lines if "/home/lvuser/py/robot.py" in line]
 
 
+@pytest.mark.slow
 def test_a_kill_that_takes_two_seconds_and_restarts_at_once(make_project) -> None:
     require_roborio()
     project = make_project({})
@@ -79,6 +81,7 @@ def test_the_console_is_silent_without_a_driver_station(tmp_path: Path) -> None:
             robot.close()
 
 
+@pytest.mark.slow
 def test_a_program_that_survives_the_kill_script_is_ended_and_the_script_replaced(make_project) -> None:
     require_roborio()
     project = make_project({})

@@ -13,13 +13,13 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings, trace_hash
+from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings, sampled, trace_hash
 
 ROBOTS = Path(__file__).parent / "robots"
 NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
 
 #: How often a new interpreter tests each robot. Another one, forked from a third where that can be, tests it once.
-TESTED_IN_ONE = 7
+TESTED_IN_ONE = 3
 
 #: Its own tests count the loops of a match of the real length.
 WHOLE_MATCHES = "timed"
@@ -72,7 +72,7 @@ def hashes(directory: Path) -> Iterator[tuple[str, str]]:
             yield test, trace_hash(trace)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES, "timed", "worker", "command"))
 def test_sample_robot_passes_all_tests_and_does_the_same_again_and_again(
     name: str, project: RobotProject, tmp_path: Path
 ) -> None:

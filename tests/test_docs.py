@@ -12,7 +12,7 @@ from pathlib import Path
 
 import click
 import pytest
-from conftest import SHORT_MATCH, add_settings
+from conftest import SHORT_MATCH, add_settings, sampled
 
 from pyfrc_cli.main import COMMANDS, cli
 from pyfrc_core.config.settings import FuzzSettings
@@ -118,6 +118,7 @@ def test_the_examples_in_the_replay_guide_work(project) -> None:
         assert result.code == 0, result.output
 
 
+@pytest.mark.slow
 def test_the_examples_in_the_fuzzing_guide_work(make_project) -> None:
     """The robot has a bug, which is found, kept and replayed; repaired, it has none."""
     document = "docs/fuzzing.md"
@@ -151,6 +152,7 @@ def test_the_examples_in_the_fuzzing_guide_work(make_project) -> None:
         assert result.code == 0, result.output
 
 
+@pytest.mark.slow
 def test_the_examples_in_the_simulation_guide_work(project) -> None:
     pytest.importorskip("PIL")
     document = "docs/simulation.md"
@@ -196,6 +198,7 @@ def test_the_commands_that_take_the_place_of_others_exist(document: str) -> None
         assert {word for word in words[1:] if word.startswith("-")} <= options, words
 
 
+@pytest.mark.slow
 def test_the_commands_in_the_measuring_guide_work(project) -> None:
     for command in commands("docs/measuring.md"):
         if "--html profile.html" in command:
@@ -223,7 +226,9 @@ def test_the_examples_of_a_slow_and_a_fast_robot_work(make_project) -> None:
     assert medians["fast"] < medians["slow"]
 
 
-@pytest.mark.parametrize("command", commands("docs/testing.md") + commands("docs/physics.md"))
+@pytest.mark.parametrize(
+    "command", sampled(commands("docs/testing.md") + commands("docs/physics.md"), *commands("docs/testing.md")[::4])
+)
 def test_the_commands_in_the_guides_work(command: str, project) -> None:
     program, *arguments = shlex.split(command)
     assert program == "pyfrc"

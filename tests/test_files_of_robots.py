@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from conftest import SHORT_MATCH, MakeProject
+from conftest import SHORT_MATCH, MakeProject, sampled
 
 #: Keeps a log under a name that is the same in every run, and fails if another run has changed its file.
 WRITES = """
@@ -56,20 +56,21 @@ def robot(name: str, init: str = "robotInit") -> str:
     return WRITES.replace("{imports}", IMPORTS).replace("{name}", NAMES[name]).replace("{init}", init)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES, "random", "beside the code"))
 def test_tests_at_the_same_time(make_project: MakeProject, name: str) -> None:
     project = make_project({"robot.py": robot(name), "pyproject.toml": SHORT_MATCH})
     result = project.run("test", "--builtin", "-j", "4")
     assert result.code == 0, result.output
 
 
-@pytest.mark.parametrize("isolation", ["fork", "spawn"])
+@pytest.mark.parametrize("isolation", sampled(["fork", "spawn"], "fork"))
 def test_either_isolation(make_project: MakeProject, isolation: str) -> None:
     project = make_project({"robot.py": robot("random"), "pyproject.toml": SHORT_MATCH})
     result = project.run("test", "--builtin", "-j", "3", "--isolation", isolation)
     assert result.code == 0, result.output
 
 
+@pytest.mark.slow
 def test_a_command_that_a_test_starts_does_not_wait_for_the_test(make_project: MakeProject) -> None:
     test = """
         import subprocess
@@ -93,6 +94,7 @@ def test_a_command_that_a_test_starts_does_not_wait_for_the_test(make_project: M
     assert result.code == 0, result.output
 
 
+@pytest.mark.slow
 def test_matches_and_replays(make_project: MakeProject) -> None:
     project = make_project({"robot.py": robot("random"), "pyproject.toml": SHORT_MATCH})
     result = project.run("fuzz", "--runs", "6", "-j", "3")

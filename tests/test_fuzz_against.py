@@ -62,6 +62,7 @@ def test_a_change_is_found_with_its_moment_path_and_values(repository) -> None:
     assert repository.run("replay", str(file)).code == 0
 
 
+@pytest.mark.slow
 def test_a_failure_that_only_one_of_both_has_is_a_difference(repository) -> None:
     repository.write({"robot.py": RAISES})
     result = fuzz(repository, "HEAD")
@@ -70,6 +71,7 @@ def test_a_failure_that_only_one_of_both_has_is_a_difference(repository) -> None
     assert "ValueError: 3" in result.stdout
 
 
+@pytest.mark.slow
 def test_a_refactoring_does_the_same(repository) -> None:
     repository.write({"robot.py": SAME})
     result = fuzz(repository, "HEAD", runs=16)

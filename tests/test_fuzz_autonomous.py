@@ -65,6 +65,7 @@ def test_nothing_is_pressed_in_autonomous(make_project: Any) -> None:
     assert (result.code, "a driver moves" in result.output) == (0, False), result.output
 
 
+@pytest.mark.slow
 def test_auto_joysticks_let_drivers_press_there(make_project: Any) -> None:
     project = make_project(
         {"robot.py": FAILS_IN_AUTONOMOUS, "pyproject.toml": SHORT, "sim/config.json": AUTO_JOYSTICKS}
@@ -74,7 +75,10 @@ def test_auto_joysticks_let_drivers_press_there(make_project: Any) -> None:
     assert "a driver moves the robot in autonomous" in result.output
 
 
-@pytest.mark.parametrize("command", [("fuzz", "--runs", "12"), ("test", "tests/fuzz_test.py")])
+@pytest.mark.parametrize(
+    "command",
+    [pytest.param(("fuzz", "--runs", "12"), marks=pytest.mark.slow), ("test", "tests/fuzz_test.py")],
+)
 def test_a_script_of_teleop_becomes_none_of_autonomous(command: tuple[str, ...], make_project: Any) -> None:
     project = make_project(
         {

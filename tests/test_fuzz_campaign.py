@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
+from conftest import sampled
 
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork, wait_for_any
 from pyfrc_core.runtime.scripts.script import load_script
@@ -98,6 +99,7 @@ def test_a_bug_is_found_kept_and_gone_when_it_is_repaired(campaign, make_project
     assert project.run("test").code == 0
 
 
+@pytest.mark.slow
 def test_the_same_campaign_writes_the_same_files_in_however_many_processes(campaign, make_project) -> None:
     in_one, by_one = campaign
     in_two = copy_of("buggy/chord", make_project, seconds=4.0)
@@ -156,7 +158,7 @@ FAULTY = """
     """
 
 
-@pytest.mark.parametrize("kind", FAULTS)
+@pytest.mark.parametrize("kind", sampled(FAULTS, "not_a_number", "stuck_modes", "process_ended", "ZeroDivisionError"))
 def test_what_is_a_failure(kind: str, make_project) -> None:
     code, message = FAULTS[kind]
     slow = f"hang_seconds = {0.1 if kind == 'hangs' else 0.2}\n    out_of_range = true"
@@ -175,7 +177,10 @@ def test_what_is_a_failure(kind: str, make_project) -> None:
         assert project.run("test").code == 1
 
 
-@pytest.mark.parametrize("kind", [kind for kind in FAULTS if kind.islower() and kind not in ("hangs", "process_ended")])
+@pytest.mark.parametrize(
+    "kind",
+    sampled([kind for kind in FAULTS if kind.islower() and kind not in ("hangs", "process_ended")], "not_a_number"),
+)
 def test_what_can_be_switched_off(kind: str, make_project) -> None:
     code, _ = FAULTS[kind]
     off = "slow_loops = false" + ("" if kind == "slow_loops" else f"\n    {kind} = false")
@@ -184,6 +189,7 @@ def test_what_can_be_switched_off(kind: str, make_project) -> None:
     assert result.code == 0, result.output
 
 
+@pytest.mark.slow
 def test_motors_that_drive_on_their_own_are_heard_through_the_drive(make_project) -> None:
     robot = """
         import wpilib
@@ -288,7 +294,7 @@ def test_unknown_settings_are_told(make_project) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for one process")
 @pytest.mark.usefixtures("hangup_ends_programs")
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("name", sampled(["SIGINT", "SIGTERM", "SIGHUP"], "SIGINT"))
 def test_an_interrupted_campaign_keeps_what_was_found_and_nothing_else(make_project, tmp_path: Path, name: str) -> None:
     project = make_project({"robot.py": FAULTY.format("1 / self.motor.get()")})
     temporary = tmp_path / "of the campaign"
@@ -336,7 +342,9 @@ EXITING = """
     ("isolation", "where", "code", "message", "name"),
     [
         ("auto", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"),
-        ("spawn", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"),
+        pytest.param(
+            *("spawn", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"), marks=pytest.mark.slow
+        ),
         ("auto", 2, "raise KeyboardInterrupt", "KeyboardInterrupt", "keyboardinterrupt-robot-autonomousinit"),
         ("auto", 1, "sys.exit(5)", "exit(5) was called", "systemexit-robot-robotinit"),
         ("auto", 0, "exit(False)", "exit(False) was called", "systemexit-robot-__init__"),
@@ -405,6 +413,7 @@ ONCE = """
     """
 
 
+@pytest.mark.slow
 def test_a_start_that_fails_once_does_not_end_the_campaign(make_project) -> None:
     project = make_project({"robot.py": ONCE, "pyproject.toml": SHORT_MATCHES.format(1.0, "")})
     result = project.run("fuzz", "--runs", "8", "--seed", "1")

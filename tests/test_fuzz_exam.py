@@ -37,6 +37,7 @@ def test_there_are_enough_of_each() -> None:
     assert len(CORRECT) >= 25
 
 
+@pytest.mark.slow
 def test_each_patch_fits_and_its_line_is_there(made: Made, tmp_path: Path) -> None:
     for name, bug in BUGS.items():
         project = Path(shutil.copytree(made(bug["robot"]), tmp_path / name))

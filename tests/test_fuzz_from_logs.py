@@ -48,6 +48,7 @@ def robot() -> dict[str, str]:
     return {"robot.py": ROBOT, "pyproject.toml": SETTINGS, "entered.jsonl": ENTERED}
 
 
+@pytest.mark.slow
 def test_a_campaign_goes_on_from_a_log(make_project) -> None:
     project = make_project(robot())
     assert project.run("sim", "--ui", "none", "--script", "entered.jsonl").code == 0

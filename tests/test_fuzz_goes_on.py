@@ -58,6 +58,7 @@ def test_after_misbehavior_the_match_goes_on(make_project) -> None:
     assert "2 failures" in result.stdout
 
 
+@pytest.mark.slow
 def test_one_misbehavior_does_not_hide_another_from_its_script(make_project) -> None:
     teleop = "self.motor.set(float('nan')) if self.gamepad.getAButton() else None"
     project = make(make_project, disabled="self.motor.set(0.2)", teleop=teleop, seconds=20)
@@ -101,6 +102,7 @@ def test_pwm_controllers_are_not(created: str, disabled: str, make_project) -> N
 # -- known failures ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_later_matches_find_what_is_behind_a_known_failure(make_project) -> None:
     teleop = """
             1 / int(abs(self.gamepad.getLeftY()) < 0.1)

@@ -101,6 +101,7 @@ CHORD = """
     """
 
 
+@pytest.mark.slow
 def test_a_chord_of_triggers_by_both_drivers_is_found(make_project: Any) -> None:
     project = make_project({"robot.py": CHORD, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 8.0\n"})
     result = project.run("fuzz", "--seed", "1", "--runs", "8")

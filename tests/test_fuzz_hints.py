@@ -56,6 +56,7 @@ ROBOT = """
     """
 
 
+@pytest.mark.slow
 def test_a_campaign_ends_with_hints(make_project: Any) -> None:
     project = make_project({"robot.py": ROBOT})
     fuzzed = project.run("fuzz", "--seed", "3", "--runs", "12")

@@ -10,6 +10,7 @@ from typing import Any
 
 import ntcore
 import pytest
+from conftest import sampled
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.fuzz.inputs.match_plan import FieldData
@@ -132,7 +133,10 @@ RARE = {"an absolute encoder that begins again"}
 RUNS = ("8", "24", "24", "24", "24", "24")
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "kind",  # by day, one of each source
+    sampled(KINDS, "a camera's numbers", "a subscription to a struct", "a preference that is 0", "a brown-out"),
+)
 def test_each_kind_of_input_is_varied(kind: str, make_project: Any) -> None:
     first, then = KINDS[kind]
     settings = f"[tool.pyfrc.fuzz]\nmatch_seconds = {15 if kind in RARE else 5}\n"
@@ -174,7 +178,7 @@ NO_INPUTS = {
 }
 
 
-@pytest.mark.parametrize("kind", NO_INPUTS)
+@pytest.mark.parametrize("kind", sampled(NO_INPUTS, "telemetry that no one reads"))
 def test_what_the_program_publishes_or_only_simulations_read_is_no_input(kind: str, make_project: Any) -> None:
     first, then, simulated = NO_INPUTS[kind]
     robot = f"{ROBOT.format(first, then).rstrip()}\n\n        def simulationPeriodic(self):\n            {simulated}\n"
@@ -183,6 +187,7 @@ def test_what_the_program_publishes_or_only_simulations_read_is_no_input(kind: s
     assert result.code == 0, result.output
 
 
+@pytest.mark.slow
 def test_stories_have_the_names_of_the_robots_code(make_project: Any) -> None:
     """Not `CAN["Gyro:ADXRS450[0]"]`."""
     robot = """
@@ -204,6 +209,7 @@ def test_stories_have_the_names_of_the_robots_code(make_project: Any) -> None:
     assert "CAN[" not in result.stdout
 
 
+@pytest.mark.slow
 def test_pulses_and_poses_do_not_matter_to_a_correct_robot(make_project: Any) -> None:
     robot = (Path(__file__).parents[1] / "benchmarks/fuzz_exam/correct/counted_pulses/robot.py").read_text("utf-8")
     project = make_project({"robot.py": robot, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"})
@@ -211,6 +217,7 @@ def test_pulses_and_poses_do_not_matter_to_a_correct_robot(make_project: Any) ->
     assert (result.code, "100% of the robot's lines" in result.stdout) == (0, True), result.output
 
 
+@pytest.mark.slow
 def test_tunables_are_varied(make_project: Any) -> None:
     robot = """
         import magicbot

@@ -6,6 +6,7 @@ import re
 from typing import Any
 
 import pytest
+from conftest import sampled
 
 from pyfrc_core.runtime.scripts.script import load_script
 
@@ -64,7 +65,10 @@ def test_a_motor_that_autonomous_leaves_running_is_found(make_project: Any) -> N
 
 @pytest.mark.parametrize(
     ("teleop", "disabled"),
-    [("self.intake.set(0.7)", "pass"), ("pass", "self.intake.set(0)"), ("pass", "self.intake.stopMotor()")],
+    sampled(
+        [("self.intake.set(0.7)", "pass"), ("pass", "self.intake.set(0)"), ("pass", "self.intake.stopMotor()")],
+        ("pass", "self.intake.set(0)"),
+    ),
     ids=["set again", "stopped when disabled", "stopped in C++"],
 )
 def test_a_motor_that_code_sets_or_stops_is_none(teleop: str, disabled: str, make_project: Any) -> None:

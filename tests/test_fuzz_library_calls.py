@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
+import pytest
+
 ROBOT = """
     import operator
     from functools import partial
@@ -27,6 +29,7 @@ ROBOT = """
     """
 
 
+@pytest.mark.slow
 def test_exceptions_in_libraries_show_the_calls_and_differ_by_them(make_project: Any) -> None:
     project = make_project({"robot.py": ROBOT, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"})
     result = project.run("fuzz", "--seed", "1", "--runs", "16")

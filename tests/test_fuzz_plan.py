@@ -92,6 +92,7 @@ def test_match_numbers_are_those_of_events() -> None:
     assert highest == {"practice": 60, "qualification": 130, "elimination": 16}
 
 
+@pytest.mark.slow
 def test_a_bug_late_in_a_match_and_one_of_a_restart_are_found(make_project: Any) -> None:
     robot = """
         import wpilib

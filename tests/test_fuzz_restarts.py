@@ -5,6 +5,8 @@ from __future__ import annotations
 import random
 from typing import Any
 
+import pytest
+
 from pyfrc_core.config.settings import MatchSettings
 from pyfrc_core.fuzz.inputs.match_plan import plan_match
 from pyfrc_core.runtime.scripts.boots import boots_of
@@ -103,6 +105,7 @@ def test_a_replay_without_failure(make_project: Any) -> None:
     ), replayed.output
 
 
+@pytest.mark.slow
 def test_fuzz_starts_the_program_again(make_project: Any) -> None:
     """The value that fails in the next boot is no constant of the code, so that fuzzing alone does not write it."""
     code = """

@@ -65,6 +65,7 @@ def whole(make_shared_project) -> Any:
     return project
 
 
+@pytest.mark.slow
 def test_four_shards_find_together_what_one_machine_finds(whole, make_shared_project, tmp_path: Path) -> None:
     scripts = [name for name in written(whole) if name.endswith(".jsonl")]
     assert (len(scripts), "tests/fuzz/assertionerror-robot-robotinit.jsonl" in scripts) == (3, True)
@@ -104,6 +105,7 @@ def test_an_interrupted_campaign_goes_on_where_it_was(whole, make_shared_project
     assert (parts.path / ".pyfrc/.gitignore").read_text() == "*\n"
 
 
+@pytest.mark.slow
 def test_after_a_change_of_the_code_matches_that_reach_nothing_are_dropped(make_shared_project) -> None:
     project = copy(make_shared_project)
     project.run("fuzz", "--runs", "8")

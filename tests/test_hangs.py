@@ -307,6 +307,7 @@ def test_a_loop_of_the_robots_own_ends_with_its_notifier(make_project: MakeProje
     assert (project.path / "closed").read_text() == "49"
 
 
+@pytest.mark.slow
 def test_a_simulation_says_where_the_robot_stands(make_project: MakeProject) -> None:
     robot = ROBOT.replace('trouble = ""', 'trouble = "child process"')
     project = make_project({"robot.py": robot})

@@ -103,6 +103,7 @@ def test_a_broken_rule_is_found_shrunk_explained_and_replayed(project) -> None:
         assert repaired.code == 0, repaired.output
 
 
+@pytest.mark.slow
 def test_the_same_finding_in_new_processes(project) -> None:
     """A rule in a package of tests, with a neighbor that it imports; each match imports all of it."""
     project.write(
@@ -199,6 +200,7 @@ def test_a_file_whose_only_decorator_is_misspelled_is_named(project) -> None:
     assert f"{RULES}:3: AttributeError: module 'pyfrc' has no attribute 'invarient'" in result.output, result.output
 
 
+@pytest.mark.slow
 def test_a_rule_that_hangs_is_named(project) -> None:
     settings = SETTINGS.replace("match_seconds = 10", "match_seconds = 2\n    hang_seconds = 0.1")
     project.write({RULES: rule("while True: pass"), "pyproject.toml": settings})

@@ -10,7 +10,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
-from conftest import MakeProject, Result, RobotProject
+from conftest import MakeProject, Result, RobotProject, sampled
 
 needs_fork = pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="tests are not forked here")
 
@@ -446,7 +446,7 @@ def few_outcomes(result: Result) -> list[tuple[str, str]]:
 ONE_AND_TWO = [("test_one", "PASSED"), ("test_two", "FAILED")]
 
 
-@pytest.mark.parametrize("jobs", ["1", "2"])
+@pytest.mark.parametrize("jobs", sampled(["1", "2"], "2"))
 def test_x_stops_at_the_first_failure(few: RobotProject, jobs: str) -> None:
     result = few.run("test", "-j", jobs, "--", "-v", "-x")
     assert result.code == 1
@@ -595,6 +595,7 @@ def test_nothing_that_a_crashed_robot_has_started_is_left(make_project: MakeProj
     assert not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
 
 
+@pytest.mark.slow
 @needs_fork
 def test_standard_output_that_is_closed_and_a_parent_that_ignores_its_children(few: RobotProject) -> None:
     """Both are inherited from what starts pyfrc: a service, an editor, a script."""

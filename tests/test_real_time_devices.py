@@ -326,6 +326,7 @@ ONCE = """\
     """
 
 
+@pytest.mark.slow
 def test_a_failure_that_does_not_repeat_is_kept(with_phoenix: PhoenixProject) -> None:
     """With its story and script, marked; the regression tests leave it out."""
     with_phoenix.project.write({"robot.py": ROBOT.partition("        def teleopPeriodic")[0] + ONCE})

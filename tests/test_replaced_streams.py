@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from conftest import SHORT_MATCH, MakeProject, RobotProject
+from conftest import SHORT_MATCH, MakeProject, RobotProject, sampled
 
 #: Recorders of the console, as robots have them: some in place of the stream only, and with other attributes.
 ROBOT = """
@@ -62,7 +62,14 @@ def make(make_project: MakeProject, what: str, at_import: bool = False) -> Robot
 AT_IMPORT = [(what, True) for what in REPLACES if what not in ("none", "closed")]
 
 
-@pytest.mark.parametrize(("what", "at_import"), [*((what, False) for what in REPLACES), *AT_IMPORT])
+@pytest.mark.parametrize(
+    ("what", "at_import"),
+    [
+        *((what, False) for what in REPLACES),
+        *(pytest.param(*each, marks=pytest.mark.slow) for each in AT_IMPORT[1:]),
+        AT_IMPORT[0],
+    ],
+)
 def test_tests_and_replays(make_project: MakeProject, what: str, at_import: bool) -> None:
     project = make(make_project, what, at_import)
     tested = project.run("test", "--builtin", "--record", "scripts")
@@ -76,7 +83,7 @@ def test_tests_and_replays(make_project: MakeProject, what: str, at_import: bool
         assert "ERROR:root:logged\n" in replayed.stdout
 
 
-@pytest.mark.parametrize("what", REPLACES)
+@pytest.mark.parametrize("what", sampled(REPLACES, "closed"))
 @pytest.mark.parametrize("options", [["--no-isolation"], ["--no-isolation", "--", "-s"], ["--", "-s"]])
 def test_other_ways_to_run_tests(make_project: MakeProject, what: str, options: list[str]) -> None:
     result = make(make_project, what).run("test", "--builtin", *options)
@@ -84,7 +91,7 @@ def test_other_ways_to_run_tests(make_project: MakeProject, what: str, options: 
     assert "4 passed" in result.stdout
 
 
-@pytest.mark.parametrize("what", REPLACES)
+@pytest.mark.parametrize("what", sampled(REPLACES, "closed"))
 @pytest.mark.parametrize(
     ("command", "last"),
     [

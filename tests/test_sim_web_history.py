@@ -185,6 +185,7 @@ def test_console_lines_have_levels_places_and_a_limit(tmp_path) -> None:
     assert len(console.since(console.count - 1)[0].text) < 5000
 
 
+@pytest.mark.slow
 def test_a_flood_evicts_no_warnings_and_warnings_no_errors(tmp_path) -> None:
     console = Console(tmp_path)
     console.add("Warning: one\nValueError: two\n", 1.0)

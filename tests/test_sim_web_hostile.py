@@ -89,6 +89,7 @@ def test_odd_messages_change_nothing_and_print_nothing(role: str, server: Served
     assert outside == []
 
 
+@pytest.mark.slow
 def test_those_who_look_are_limited_and_drivers_are_not(server: Served) -> None:
     with ExitStack() as pages:
         for _ in range(32):

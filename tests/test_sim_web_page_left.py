@@ -125,6 +125,7 @@ def test_those_who_look_are_no_drivers(make_project: Any) -> None:
         assert server.simulation.snapshot.practice_since is None
 
 
+@pytest.mark.slow
 def test_a_page_that_does_not_respond_counts_as_gone(make_project: Any) -> None:
     """As after a computer went to sleep, or its network was lost: nothing ends the connection."""
     with served(make_project(FILES), speed=1, paused=False) as server:

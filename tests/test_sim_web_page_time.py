@@ -16,6 +16,7 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
     shared_browser,
     shared_server,
 )
+from conftest import sampled
 from sim_robots import PATIENCE
 from skips import require
 from web_pages import served
@@ -241,6 +242,7 @@ def test_a_crash_shows_the_line_and_the_way_back(person: Seen) -> None:
     assert person.simulation.snapshot.time < failed_at + 60
 
 
+@pytest.mark.slow
 def test_a_robot_that_floods_the_console_or_hangs_leaves_the_page_alive(person: Seen) -> None:
     page = person.page
     person.button("Enable").click()
@@ -342,6 +344,7 @@ def test_the_page_says_that_the_simulation_was_closed(browser, make_project) -> 
         person.wrong.clear()  # the browser's own words about the lost connection
 
 
+@pytest.mark.slow
 def test_a_server_that_was_silent_is_connected_again(browser, server) -> None:
     with page_of(browser, server) as person:
         page = person.page
@@ -366,7 +369,7 @@ def test_a_server_that_was_silent_is_connected_again(browser, server) -> None:
         person.wrong.clear()  # the browser's own words about attempts that came to nothing
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("scheme", sampled(["light", "dark"], "light"))
 def test_everything_fits_and_can_be_read(browser, server, scheme) -> None:
     with page_of(browser, server, color_scheme=scheme) as person:
         page = person.page

@@ -192,6 +192,7 @@ def paused_after(commands: list[str], paused: bool) -> bool:
     return paused
 
 
+@pytest.mark.slow
 @settings(max_examples=250)
 @given(words=st.lists(st.sampled_from([*COMMANDS, *GOINGS, *HAPPENINGS]), max_size=14), paused=st.booleans())
 def test_every_sequence_of_commands_ends_as_the_user_wants(project: Project, words: list[str], paused: bool) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 import skips
+from conftest import sampled
 
 pytestmark = pytest.mark.bare
 
@@ -64,7 +65,7 @@ def suite(make_project) -> Path:
     return path
 
 
-@pytest.mark.parametrize("args", [[], ["-n", "2"]])
+@pytest.mark.parametrize("args", sampled([[], ["-n", "2"]], []))
 def test_everything_that_was_skipped_is_in_the_last_line_by_kind_and_counted(suite: Path, args: list[str]) -> None:
     done = run(suite, *args)
     assert done.returncode == 0, done.stdout + done.stderr

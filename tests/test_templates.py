@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings
+from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings, sampled
 from roborio import Roborio, require_roborio
 
 from pyfrc_cli.main import COMMANDS
@@ -77,10 +77,7 @@ every_template = pytest.mark.parametrize("project", TEMPLATES, indirect=True)
 #: By day, the one that people begin with, and one for each library of commands; by night, all.
 sampled_templates = pytest.mark.parametrize(
     "project",
-    [
-        name if name in ("timed", "command", "magic") else pytest.param(name, marks=pytest.mark.slow)
-        for name in TEMPLATES
-    ],
+    sampled(TEMPLATES, "timed", "command", "magic"),
     indirect=True,
 )
 
@@ -112,6 +109,7 @@ def test_its_workflow_passes_as_it_stands_in_the_file(project: RobotProject, tmp
     assert "tests/pyfrc_test.py ....." in result.stdout
 
 
+@pytest.mark.slow
 def test_what_the_workflows_install_is_installed_here(project_of: Callable[[str], RobotProject]) -> None:
     """pip reads it, and finds all of it; all lists at once, each once."""
     lists: dict[str, Path] = {}
@@ -135,7 +133,7 @@ def test_it_goes_through_a_match_in_the_simulator(project: RobotProject, templat
     assert (float(driven[1]) > 1) == (template != "elevator-arm")  # which has no wheels
 
 
-@pytest.mark.parametrize("project", ["timed", "command", "magic"], indirect=True)
+@pytest.mark.parametrize("project", sampled(["timed", "command", "magic"], "command"), indirect=True)
 def test_fuzzing_finds_no_failure(project: RobotProject) -> None:
     """For a robot of each kind; the others are fuzzed for one match by their own tests."""
     result = project.run("fuzz", "--runs", "1", "--seed", "7", "--jobs", "1")

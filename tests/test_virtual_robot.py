@@ -201,6 +201,7 @@ def test_a_program_that_crashes_is_started_again_and_again(project: RobotProject
         assert "\7" not in "".join(robot.printed) + result.output
 
 
+@pytest.mark.slow
 def test_ctrl_c_ends_everything_and_a_later_start_has_the_same_programs_key_and_port(
     project: RobotProject, directory: Path
 ) -> None:

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import MakeProject, Result
+from conftest import MakeProject, Result, sampled
 from test_failures import ANY_TEST, ROBOT
 
 TESTS = {"tests/test_a.py": ANY_TEST}
@@ -428,7 +428,7 @@ EIGHT_TESTS = """
 """
 
 
-@pytest.mark.parametrize("how", ["-j 2", "--isolation none"])
+@pytest.mark.parametrize("how", sampled(["-j 2", "--isolation none"], "-j 2"))
 def test_one_bug_is_explained_once_and_the_other_tests_point_there(make_project: MakeProject, how: str) -> None:
     project = make_project({"robot.py": ONE_BUG, "tests/test_a.py": EIGHT_TESTS})
     result = project.run("test", *how.split(), "--", "--junitxml=junit.xml")
