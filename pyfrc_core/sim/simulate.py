@@ -5,10 +5,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Literal
 
 from ..disk_space import check_disk_space
 from ..errors import UsageError
@@ -22,49 +20,10 @@ from .engine.options import NT4_PORT, SimOptions
 from .engine.simulation import Simulation
 from .engine.watch import watching
 from .page_file import PageFile, place_in
-from .ui.choose import FRONT_ENDS, FrontEndOptions, default_name, make_front_end
-from .ui.headless import Headless, HeadlessMode
+from .ui.choose import FRONT_ENDS, SimRequest, default_name, make_front_end
+from .ui.headless import Headless
 
-
-@dataclass(frozen=True)
-class SimRequest:
-    """The options of the command.
-
-    :param ui: the name of the front end; None: the one that the other options need, or that this machine allows
-    :param mode: what a headless simulation puts the robot through
-    :param seconds: the end, in robot time; `start_at` likewise
-    :param speed: robot seconds per second; None: real time, or as fast as possible when unattended
-    :param nt_port: None: the usual port, or none when unattended; 0: none
-    :param quiet: print only the robot's output and what is wrong
-    :param share: what clients on the network may do; None: they are not served. Those who may drive get NetworkTables
-    :param port: where to serve a page; None: at any free port
-    :param allow_host: where else browsers find a page, through a forwarded port
-    """
-
-    ui: str | None = None
-    mode: HeadlessMode | None = None
-    seconds: float | None = None
-    script: Path | None = None
-    start_at: float = 0.0
-    speed: float | None = None
-    paused: bool = False
-    start_position: str | None = None
-    watch: bool = False
-    record: Path | None = None
-    wpilog: Path | None = None
-    picture: Path | None = None
-    page: Path | None = None
-    nt_port: int | None = None
-    extensions: tuple[str, ...] = ()
-    quiet: bool = False
-    share: Literal["view", "drive"] | None = None
-    port: int | None = None
-    allow_host: tuple[str, ...] = ()
-
-    @property
-    def is_for_page(self) -> bool:
-        """Whether options are given that only a page has."""
-        return self.share == "view" or self.port is not None or bool(self.allow_host)
+__all__ = ["OutputFiles", "SimRequest", "draw_script", "simulate"]
 
 
 def simulate(project: Project, request: SimRequest, say: Callable[[str], object]) -> int:
@@ -78,7 +37,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         raise UsageError("--mode is for simulations without a window", remedy="Add --ui none.")
     if not kind.is_served and request.is_for_page:
         raise UsageError("--share, --port and --allow-host are for the simulator in a browser", remedy="Add --ui web.")
-    front_end = make_front_end(ui, _front_end_options(request, say))
+    front_end = make_front_end(ui, request, say)
     ends_by_itself = any(each is not None for each in (request.mode, request.seconds, request.script))
     unattended = not kind.interactive and ends_by_itself
     port = request.nt_port if request.nt_port is not None else 0 if unattended else NT4_PORT
@@ -139,19 +98,6 @@ def _front_end_name(request: SimRequest, say: Callable[[str], object]) -> str:
     if why and not request.quiet:
         say(f"No page: {why}. This is --ui none.\n")
     return name
-
-
-def _front_end_options(request: SimRequest, say: Callable[[str], object]) -> FrontEndOptions:
-    return FrontEndOptions(
-        say,
-        request.mode,
-        request.seconds,
-        watching=request.watch,
-        quiet=request.quiet,
-        share=request.share,
-        port=request.port or 0,
-        allowed_hosts=request.allow_host,
-    )
 
 
 def _what(project: Project, request: SimRequest) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 from ...browser import is_ci, why_no_browser
@@ -19,29 +20,49 @@ from ..engine.simulation import Simulation
 from . import FrontEnd
 from .headless import Headless, HeadlessMode
 
+#: Prints to the terminal.
+Say = Callable[[str], object]
+
 
 @dataclass(frozen=True)
-class FrontEndOptions:
-    """What the user asks of a front end.
+class SimRequest:
+    """The options of the command.
 
-    :param say: prints to the terminal
-    :param mode: what a front end without a person puts the robot through
-    :param seconds: for how long, in robot time
-    :param watching: whether saved files bring new code
+    :param ui: the name of the front end; None: the one that the other options need, or that this machine allows
+    :param mode: what a headless simulation puts the robot through
+    :param seconds: the end, in robot time; `start_at` likewise
+    :param speed: robot seconds per second; None: real time, or as fast as possible when unattended
+    :param nt_port: None: the usual port, or none when unattended; 0: none
     :param quiet: print only the robot's output and what is wrong
-    :param share: what clients on the network may do, if they are served
-    :param port: where to serve a page; 0: at any free port
-    :param allowed_hosts: where else browsers find a page, through a forwarded port
+    :param share: what clients on the network may do; None: they are not served. Those who may drive get NetworkTables
+    :param port: where to serve a page; None: at any free port
+    :param allow_host: where else browsers find a page, through a forwarded port
     """
 
-    say: Callable[[str], object]
+    ui: str | None = None
     mode: HeadlessMode | None = None
     seconds: float | None = None
-    watching: bool = False
+    script: Path | None = None
+    start_at: float = 0.0
+    speed: float | None = None
+    paused: bool = False
+    start_position: str | None = None
+    watch: bool = False
+    record: Path | None = None
+    wpilog: Path | None = None
+    picture: Path | None = None
+    page: Path | None = None
+    nt_port: int | None = None
+    extensions: tuple[str, ...] = ()
     quiet: bool = False
     share: Literal["view", "drive"] | None = None
-    port: int = 0
-    allowed_hosts: tuple[str, ...] = ()
+    port: int | None = None
+    allow_host: tuple[str, ...] = ()
+
+    @property
+    def is_for_page(self) -> bool:
+        """Whether options are given that only a page has."""
+        return self.share == "view" or self.port is not None or bool(self.allow_host)
 
 
 @dataclass(frozen=True)
@@ -58,7 +79,7 @@ class FrontEndKind:
     :param is_served: whether it is a page, which can be shared with the network
     """
 
-    make: Callable[[FrontEndOptions], FrontEnd]
+    make: Callable[[SimRequest, Say], FrontEnd]
     interactive: bool = True
     needs_display: bool = False
     opens_display: bool = False
@@ -68,7 +89,7 @@ class FrontEndKind:
     is_served: bool = False
 
 
-def _make_tk(options: FrontEndOptions) -> FrontEnd:
+def _make_tk(request: SimRequest, say: Say) -> FrontEnd:
     try:
         from .tk import TkFrontEnd
     except ImportError as missing:
@@ -78,20 +99,20 @@ def _make_tk(options: FrontEndOptions) -> FrontEnd:
     return TkFrontEnd()
 
 
-def _make_web(options: FrontEndOptions) -> FrontEnd:
+def _make_web(request: SimRequest, say: Say) -> FrontEnd:
     from .web.front_end import WebFrontEnd
     from .web.server import WebOptions
 
-    served = WebOptions(options.share, options.port, options.allowed_hosts, watching=options.watching)
-    return WebFrontEnd(options.say, served, options.quiet)
+    options = WebOptions(request.share, request.port or 0, request.allow_host, watching=request.watch)
+    return WebFrontEnd(say, options, request.quiet)
 
 
-def _make_wpilib(options: FrontEndOptions) -> FrontEnd:
+def _make_wpilib(request: SimRequest, say: Say) -> FrontEnd:
     return WpilibWindow()
 
 
-def _make_headless(options: FrontEndOptions) -> FrontEnd:
-    return Headless(options.say, options.mode, options.seconds, options.watching, options.quiet)
+def _make_headless(request: SimRequest, say: Say) -> FrontEnd:
+    return Headless(say, request.mode, request.seconds, request.watch, request.quiet)
 
 
 FRONT_ENDS: dict[str, FrontEndKind] = {
@@ -115,7 +136,7 @@ def default_name() -> tuple[str, str]:
     return "web", ""
 
 
-def make_front_end(name: str, options: FrontEndOptions) -> FrontEnd:
+def make_front_end(name: str, request: SimRequest, say: Say) -> FrontEnd:
     """Return the front end of this name in `FRONT_ENDS`.
 
     :raises UsageError: when it cannot work here, saying what to do
@@ -126,7 +147,7 @@ def make_front_end(name: str, options: FrontEndOptions) -> FrontEnd:
             f"--ui {name} needs a display, and there is none",
             remedy=WITHOUT_DISPLAY,
         )
-    return kind.make(options)
+    return kind.make(request, say)
 
 
 class WpilibWindow(FrontEnd):

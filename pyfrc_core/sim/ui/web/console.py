@@ -22,8 +22,6 @@ MOST_AT_ONCE = 60_000
 
 _ERROR = re.compile(r"\s*(error|traceback|fatal|critical|\w+(\.\w+)*(Error|Exception)\b:)", re.IGNORECASE)
 _WARNING = re.compile(r"\s*(warning|warn\b|\S+:\d+: \w*Warning:|watchdog|.*\boverrun)", re.IGNORECASE)
-#: One of these words is in each line that these two match, for a quick look through a flood.
-_PERHAPS = ("error", "exception", "traceback", "fatal", "critical", "warn", "watchdog", "overrun")
 #: Lines inside a traceback.
 _TRACE = re.compile(r'  File "|    |During handling of|The above exception')
 _PLACE = re.compile(r'File "(?P<file>[^"]+\.py)", line (?P<line>\d+)|(?P<short>[\w./\\-]+\.py):(?P<number>\d+)')
@@ -84,10 +82,7 @@ class Console:
         if len(text) > MOST_AT_ONCE:  # only a program looks at so much
             cut = len(text) - MOST_AT_ONCE
             begin = text.find("\n", cut, -1) + 1 or cut
-            skipped = text.count("\n", 0, begin)
-            important = [line for line in _perhaps_important(text[:begin]) if self._level_of(line) != "info"]
-            skipped -= len(important)
-            text = "\n".join([*important, text[begin:]])
+            skipped, text = text.count("\n", 0, begin), text[begin:]
         *whole, self._open = text.split("\n")
         if len(self._open) > _MOST_LENGTH:
             whole, self._open = [*whole, self._open], ""
@@ -120,27 +115,6 @@ class Console:
                 if whole.is_relative_to(root) and ".." not in file.parts and whole.is_file():
                     return whole.relative_to(root).as_posix(), int(match["line"] or match["number"])
         return "", 0
-
-
-def _perhaps_important(text: str) -> list[str]:
-    """Return the last lines of a flood that may be warnings or errors."""
-    lower = text.lower()
-    if len(lower) != len(text):  # letters with which places would not agree
-        lower = text
-    starts = set()
-    for word in _PERHAPS:
-        at = len(lower)
-        for _ in range(MOST_IMPORTANT):
-            if (at := lower.rfind(word, 0, at)) < 0:
-                break
-            at = lower.rfind("\n", 0, at) + 1
-            starts.add(at)
-    return [_line_at(text, start) for start in sorted(starts)[-MOST_IMPORTANT:]]
-
-
-def _line_at(text: str, start: int) -> str:
-    end = text.find("\n", start)
-    return text[start : len(text) if end < 0 else end]
 
 
 def _places(text: str) -> Iterator[re.Match[str]]:
