@@ -145,7 +145,7 @@ def _values(template: Template, team: int | None) -> Mapping[str, str]:
     if team is None:
         number = "# team_number = 9999  # your team's, for: pyfrc deploy"
     else:
-        from .deploy.discovery import MAX_TEAM
+        from .deploy.targets import MAX_TEAM
 
         if not 1 <= team <= MAX_TEAM:
             raise UsageError(f"{team} is no team number: one is from 1 to {MAX_TEAM}", where="--team")

@@ -9,10 +9,11 @@ from pathlib import Path
 import pytest
 from skips import missing_programs, require
 
-from pyfrc_core.deploy.discovery import Address, addresses_of, team_of
+from pyfrc_core.deploy.discovery import Address, addresses_of
 from pyfrc_core.deploy.errors import HostKeyError, KeyFileError
 from pyfrc_core.deploy.host_keys import KNOWN_HOSTS, HostKey, HostKeys, RobotKeys
 from pyfrc_core.deploy.target_connection import load_robot_keys
+from pyfrc_core.deploy.targets import team_of_host
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.deploy.team import find_target
 from pyfrc_core.errors import UsageError
@@ -100,7 +101,7 @@ def test_what_is_known_by_itself_is_not_the_team_s(address: Address, tmp_path: P
     refused(at(tmp_path, address), UNKNOWN)
 
 
-@pytest.mark.parametrize("address", [address for address in OF_TEAM if team_of(address)], ids=str)
+@pytest.mark.parametrize("address", [address for address in OF_TEAM if team_of_host(address.host)], ids=str)
 def test_a_team_s_address_named_by_robot_is_the_team_s(address: Address, tmp_path: Path) -> None:
     at(tmp_path, USB).check(ONE)
     assert at(tmp_path, address, None).check(ONE).new_for is None

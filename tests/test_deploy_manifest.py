@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.manifest import LARGE, build_manifest, is_excluded
-from pyfrc_core.passes.contents import read_contents
+from pyfrc_core.passes.memory import read_contents
 from pyfrc_core.project import Project
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="names and links that Windows has not")

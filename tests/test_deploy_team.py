@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from pyfrc_core.deploy.discovery import MAX_TEAM
+from pyfrc_core.deploy.targets import MAX_TEAM
 from pyfrc_core.deploy.team import RobotTarget, find_target
 from pyfrc_core.errors import PyfrcError, SettingsError, UsageError
 from pyfrc_core.project import find_project

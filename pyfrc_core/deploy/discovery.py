@@ -17,7 +17,7 @@ from typing import Any
 
 from ..errors import UsageError
 from .errors import DeployError, OnTheFieldError
-from .targets import ControllerKind, team_of_host
+from .targets import MAX_TEAM, ControllerKind
 
 #: Time limit for each address, in seconds: enough for a radio that loses packets.
 CONNECT_SECONDS = 5.0
@@ -25,9 +25,6 @@ CONNECT_SECONDS = 5.0
 RESOLVE_SECONDS = 5.0
 #: Time limit for connecting to the Driver Station, in seconds. Windows takes long to refuse a connection.
 DRIVER_STATION_SECONDS = 1.0
-
-#: The highest team number that an address 10.TE.AM.2 can contain.
-MAX_TEAM = 25_599
 
 _BANNER = b"SSH-"
 
@@ -139,12 +136,6 @@ def addresses_of(team: int, controller: ControllerKind, resolve: bool = True) ->
     """
     every = [(Address(host), kind) for host, kind in controller.addresses(team)]
     return [(address, kind) for address, kind in every if resolve or not address.is_name]
-
-
-def team_of(address: Address) -> int | None:
-    """Return the team to which an address belongs, or None if it belongs to no team or to all (the USB cable)."""
-    team = team_of_host(address.host) if address.port == 22 else None
-    return team if team is not None and 1 <= team <= MAX_TEAM else None
 
 
 def find_robot(

@@ -23,9 +23,9 @@ from pathlib import Path
 
 from ..errors import UsageError
 from ..text_files import keep_out_of_version_control, write_whole
-from .discovery import Address, addresses_of, team_of
+from .discovery import Address, addresses_of
 from .errors import HostKeyError, KeyFileError
-from .targets import ControllerKind, is_shared_host
+from .targets import ControllerKind, is_shared_host, team_of_host
 
 KNOWN_HOSTS = Path(".pyfrc", "known_hosts")
 
@@ -66,7 +66,7 @@ class KnownKey:
     @property
     def teams(self) -> set[int]:
         """Return the teams whose addresses are among its hosts."""
-        return {team for host in self.hosts if (team := team_of(Address(host))) is not None}
+        return {team for host in self.hosts if (team := team_of_host(host)) is not None}
 
     def is_for(self, host: str) -> bool:
         """Return whether it is pinned for this host. Upper and lower case are the same."""
@@ -121,7 +121,8 @@ class HostKeys:
         :param team: its team; default: the team of the address, if any
         :param project_team: the project's team, for a robot that the user named by its address
         """
-        team = team_of(address) if team is None else team
+        if team is None and address.port == 22:
+            team = team_of_host(address.host)
         if team is None and is_shared_host(_host(address)):
             team = project_team
         return RobotKeys(self, address, controller, team, project_team)

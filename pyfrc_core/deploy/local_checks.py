@@ -106,10 +106,8 @@ def prepare(project: Project, options: DeployOptions, talk: UserInterface) -> Ch
                 _refuse_untested(before, manifest, talk)
     with progress.phase("files") as phase:
         phase.detail = f"{counted(len(manifest.entries), 'file')}, {size_text(manifest.total_bytes)}"
-        main = project.main_file.name
-        imports = ImportSearch(manifest, project.root, main)
-        packages = load_robot_packages(project.pyproject)
-        return CheckedProgram(manifest, main, _deploy_json(project.root), packages, imports, importing)
+    main, record, packages = project.main_file.name, _deploy_json(project.root), load_robot_packages(project.pyproject)
+    return CheckedProgram(manifest, main, record, packages, ImportSearch(manifest, project.root, main), importing)
 
 
 def size_text(count: int) -> str:

@@ -15,9 +15,9 @@ from ..project import Project
 from ..season import CURRENT
 from ..text_files import write_whole
 from .connection import NONE_OFFERED, Credentials
-from .discovery import MAX_TEAM, parse_address
+from .discovery import parse_address
 from .progress import Questions
-from .targets import ControllerKind, controller_of
+from .targets import MAX_TEAM, ControllerKind, controller_of
 
 PREFERENCES = Path(".wpilib", "wpilib_preferences.json")
 _OLD_FILE = ".deploy_cfg"

@@ -9,8 +9,7 @@ from typing import Any
 import pytest
 
 from ..compat.unrepeatable import real_time_libraries
-from ..passes.contents import loaded_from_elsewhere
-from ..passes.memory import Passes
+from ..passes.memory import Passes, loaded_from_elsewhere
 from ..project import Project
 from ..wording import counted
 from .options import TestOptions

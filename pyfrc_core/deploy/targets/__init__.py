@@ -12,6 +12,7 @@ from .roborio import ROBORIO
 
 __all__ = [
     "CONTROLLERS",
+    "MAX_TEAM",
     "AdministratorTask",
     "ControllerKind",
     "controller_named",
@@ -21,6 +22,8 @@ __all__ = [
 ]
 
 CONTROLLERS = (ROBORIO,)
+#: The highest team number that an address 10.TE.AM.2 can contain.
+MAX_TEAM = 25_599
 
 
 def controller_of(season: Season) -> ControllerKind:
@@ -36,7 +39,7 @@ def controller_named(name: str) -> ControllerKind:
 def team_of_host(host: str) -> int | None:
     """Return the team to which a host name or an address belongs; None: to no team, or to all."""
     teams = (each.team_of_host(host) for each in CONTROLLERS)
-    return next((team for team in teams if team is not None), None)
+    return next((team for team in teams if team is not None and 1 <= team <= MAX_TEAM), None)
 
 
 def is_shared_host(host: str) -> bool:

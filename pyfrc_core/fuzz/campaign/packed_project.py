@@ -8,7 +8,7 @@ from hashlib import sha256
 from pathlib import Path, PurePosixPath
 
 from ...errors import PyfrcError
-from ...passes.contents import project_files
+from ...passes.memory import project_files
 from ...project import Project
 
 
