@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 
+from ...wpi import source
 from .can_devices import CanMotor, known_gearing
 from .module_text import ModuleText
 from .motors import Motor
@@ -23,8 +24,8 @@ _WHEEL_DIAMETER, _DRIVE_GEARING, _STEER_GEARING = 0.1016, 6.75, 21.43
 
 _SWERVE_NUMBERS = """
 # The swerve drive.
-DRIVE_MOTOR = DCMotor.{drive}({drives})
-STEER_MOTOR = DCMotor.{steer}({steers})
+DRIVE_MOTOR = {drive}
+STEER_MOTOR = {steer}
 DRIVE_GEARING = {drive_gearing:.4g}  # turns of the motor for one turn of the wheel
 STEER_GEARING = {steer_gearing:.4g}
 WHEEL_DIAMETER = {diameter}  # metres
@@ -35,7 +36,7 @@ STEER_INERTIA = 0.01  # kg m²
 
 _MECHANISM_NUMBERS = """
 # {motor}
-{name}_MOTOR = DCMotor.{model}({count})
+{name}_MOTOR = {made}
 {name}_GEARING = {gearing:.4g}  # turns of the motor for one turn of what it moves
 {name}_INERTIA = {inertia:.3g}  # of what it moves, in kg m²
 {name}_LOW, {name}_HIGH = None, None  # its end stops, in turns from the start
@@ -56,7 +57,7 @@ def wheel_numbers(motors: Sequence[Motor]) -> str:
         return ""
     return (
         "GEARING = 10.71  # turns of a motor for one turn of its wheel\n"
-        f"WHEEL_MOTOR = DCMotor.{first.model}(1)  # on each motor controller\n"
+        f"WHEEL_MOTOR = {source.motor(first.model, 1)}  # on each motor controller\n"
         "WHEEL_CIRCUMFERENCE = 0.479  # metres\n"
     )
 
@@ -69,7 +70,7 @@ def wheel_motors(text: ModuleText, motors: Sequence[Motor], wanted: str) -> tupl
     if not isinstance(motors[0], CanMotor):
         return text.motor(motors[0], wanted), []
     names = []
-    text.needs_dc_motor = True
+    text.needs_motors = True
     for motor in motors:
         if isinstance(motor, CanMotor):
             names.append(text.name(wanted))
@@ -83,10 +84,8 @@ def add_swerve(text: ModuleText, modules: list[Module]) -> None:
     units = (math.pi * _WHEEL_DIAMETER, math.pi * _WHEEL_DIAMETER / 0.0254, 1.0, math.tau, 360.0)
     text.numbers.append(
         _SWERVE_NUMBERS.format(
-            drive=drive.model,
-            drives=drive.count,
-            steer=steer.model,
-            steers=steer.count,
+            drive=source.motor(drive.model, drive.count),
+            steer=source.motor(steer.model, steer.count),
             drive_gearing=known_gearing(drive, 3.0, 12.0, *units) or _DRIVE_GEARING,
             steer_gearing=known_gearing(steer, 5.0, 60.0, 1.0, math.tau, 360.0) or _STEER_GEARING,
             diameter=_WHEEL_DIAMETER,
@@ -94,7 +93,7 @@ def add_swerve(text: ModuleText, modules: list[Module]) -> None:
         )
     )
     text.from_can_motors |= {"Mechanism", "SwerveDrive", "SwerveModule"}
-    text.needs_dc_motor = True
+    text.needs_motors = True
     text.setup += ["", "# `zero`: what a wheel's encoder measures when the wheel points ahead, in turns."]
     text.setup.append("self.drivetrain = SwerveDrive(")
     for module in modules:
@@ -135,14 +134,13 @@ def add_mechanism(text: ModuleText, motor: CanMotor, encoder: Encoder | None, ch
         _MECHANISM_NUMBERS.format(
             motor=motor,
             name=number,
-            model=motor.model,
-            count=motor.count,
+            made=source.motor(motor.model, motor.count),
             gearing=gearing,
             inertia=inertia * motor.count,
         )
     )
     text.from_can_motors.add("Mechanism")
-    text.needs_dc_motor = True
+    text.needs_motors = True
     made = controller(text, motor, f"{number}_MOTOR", f"{number}_GEARING")
     text.setup += [
         "",
@@ -160,8 +158,7 @@ def add_mechanism(text: ModuleText, motor: CanMotor, encoder: Encoder | None, ch
         shaft = text.encoder(encoder, f"{name}_encoder", f"{number}_ENCODER_UNITS")
         text.update.append(f"self.{shaft}.turn_to(self.{name}.turns, self.{name}.speed)")
     if channel is not None:
-        text.sims.add("DutyCycleEncoderSim")
         text.numbers.append(f"{number}_ZERO = 0.0  # what its absolute encoder measures at the start, in turns\n")
         absolute = text.name(f"{name}_absolute_encoder")
-        text.setup.append(f"self.{absolute} = DutyCycleEncoderSim({channel})")
+        text.simulate(absolute, source.duty_cycle_encoder(channel))
         text.update.append(f"self.{absolute}.set((self.{name}.turns + {number}_ZERO) % 1)")

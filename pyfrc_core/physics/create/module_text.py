@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import re
 from keyword import kwlist
 from unicodedata import normalize
 
+from ...wpi import source
 from .motors import Motor
 from .survey import Encoder
 
@@ -17,9 +17,9 @@ class ModuleText:
     def __init__(self) -> None:
         self.imports: set[str] = set()
         self.sims: set[str] = set()
-        #: The names from `pyfrc.physics.can_motors`, and whether wpimath's `DCMotor` is used.
+        #: The names from `pyfrc.physics.can_motors`, and whether WPILib's motors are used.
         self.from_can_motors: set[str] = set()
-        self.needs_dc_motor = False
+        self.needs_motors = False
         self.numbers: list[str] = []
         self.setup: list[str] = []
         self.update: list[str] = []
@@ -45,22 +45,20 @@ class ModuleText:
         """Add the set-up of a motor; return the expression for its output."""
         name = self.name(wanted)
         if motor.channel is not None:
-            self.sims.add("PWMSim")
-            self.setup.append(f"self.{name} = PWMSim({motor.channel})")
-            return f"self.{name}.getSpeed()"
-        self.sims.add("SimDeviceSim")
-        self.setup.append(f"self.{name} = SimDeviceSim({quoted(motor.device)}).getDouble({quoted(motor.value)})")
+            self.simulate(name, source.pwm(motor.channel))
+            return source.power_of_pwm(f"self.{name}")
+        self.simulate(name, source.number(motor.device, motor.value))
         return f"self.{name}.get()"
 
     def encoder(self, encoder: Encoder, wanted: str, units: str) -> str:
         """Add the set-up of an encoder; return its name."""
-        self.sims.add("EncoderSim")
         name = self.name(wanted)
-        how = f"createForChannel({encoder.channels[0]})" if encoder.channels else f"createForIndex({encoder.index})"
-        self.setup.append(f"self.{name} = EncoderShaft(EncoderSim.{how}, {units})")
+        simulation = source.encoder(encoder.channels, encoder.index)
+        self.sims.add(simulation.name)
+        self.setup.append(f"self.{name} = EncoderShaft({simulation.made}, {units})")
         return name
 
-
-def quoted(text: str) -> str:
-    """Return `text` as a Python literal."""
-    return json.dumps(text, ensure_ascii=False)
+    def simulate(self, name: str, simulation: source.Simulation) -> None:
+        """Add the simulation of a device, as an attribute of this name."""
+        self.sims.add(simulation.name)
+        self.setup.append(f"self.{name} = {simulation.made}")

@@ -6,10 +6,12 @@ import re
 from textwrap import wrap
 
 from ...errors import PyfrcError
+from ...wpi import names as robot_names
+from ...wpi import source
 from . import can_text
 from .can_devices import CanMotor
 from .drivetrain import CORNERS, DrivetrainLayout, Mecanum, Tank
-from .module_text import ModuleText, quoted
+from .module_text import ModuleText
 from .motors import Motor
 from .names import one_line
 from .report import notes
@@ -31,13 +33,13 @@ TRACK_WIDTH = {track_width}  # from the left wheels to the right ones
 _WHEELBASE = "WHEELBASE = 22 * units.inch  # from the front wheels to the rear ones\n"
 
 _UNITS = """
-# The unit of the robot's setDistancePerPulse(), which is assumed: 1 for metres, 3.281 for feet,
+# The unit of the robot's {sets_distance}, which is assumed: 1 for metres, 3.281 for feet,
 # 39.37 for inches.
 ENCODER_UNITS = 1.0
 """
 
 _COUNTS = """
-# The robot uses counts of some encoders: it does not call setDistancePerPulse().
+# The robot uses counts of some encoders: it does not call {sets_distance}.
 COUNTS_PER_TURN = 360  # of a wheel
 WHEEL_DIAMETER = 6 * units.inch
 ENCODER_COUNTS = COUNTS_PER_TURN / (math.pi * WHEEL_DIAMETER.m_as("meter"))
@@ -46,9 +48,9 @@ ENCODER_COUNTS = COUNTS_PER_TURN / (math.pi * WHEEL_DIAMETER.m_as("meter"))
 _ENGINE = '''
 
 class PhysicsEngine:
-    """Created after the robot's robotInit; update_sim is called after each loop of the robot."""
+    """Created after the robot's {initialization}; update_sim is called after each loop of the robot."""
 
-    def __init__(self, physics_controller: PhysicsInterface, robot: wpilib.RobotBase) -> None:
+    def __init__(self, physics_controller: PhysicsInterface, robot: {robot}) -> None:
         self.physics_controller = physics_controller
 {setup}
     def update_sim(self, now: float, tm_diff: float) -> None:
@@ -98,16 +100,19 @@ def checked(text: str) -> str:
 def _assembled(text: ModuleText, remarks: list[str]) -> str:
     numbers = "".join(text.numbers)
     imports = ["import math\n"] if any("math." in part for part in (numbers, *text.update)) else []
-    sims = f"from wpilib.simulation import {', '.join(sorted(text.sims))}\n" if text.sims else ""
-    plant = "from wpimath.system.plant import DCMotor\n" if text.needs_dc_motor else ""
-    imports.append(f"import wpilib\n{sims}{plant}")
+    imports.append(source.imports(text.sims, motors=text.needs_motors))
     names = ", ".join(sorted(text.from_can_motors))
     ours = {"from pyfrc.physics.core import PhysicsInterface", *text.imports}
     ours |= {f"from pyfrc.physics.can_motors import {names}"} if names else set()
-    ours |= {"from pyfrc.physics.encoders import EncoderShaft"} if "EncoderSim" in text.sims else set()
+    ours |= {"from pyfrc.physics.encoders import EncoderShaft"} if source.ENCODER in text.sims else set()
     imports.append("\n".join(sorted(ours, key=_import_order)) + "\n")
     comments = [wrap(one_line(remark), 98, initial_indent="# ", subsequent_indent="# ") for remark in remarks]
-    engine = _ENGINE.format(setup=_indented(text.setup), update=_indented(text.update))
+    engine = _ENGINE.format(
+        initialization=robot_names.INITIALIZATION,
+        robot=source.ROBOT,
+        setup=_indented(text.setup),
+        update=_indented(text.update),
+    )
     return "".join(
         [
             f"{_HEAD}\n",
@@ -168,7 +173,7 @@ def _drivetrain(text: ModuleText, drivetrain: Tank | Mecanum, layout: Drivetrain
     for wheel, name, sign in on_can:
         turns = text.name(f"{name}_turns")
         text.setup.append(f"self.{turns} = 0.0")
-        speed = _signed(sign, f"{_wheel_speed(wheel)} / WHEEL_CIRCUMFERENCE")
+        speed = _signed(sign, f"{source.wheel_speed('wheels', wheel)} / WHEEL_CIRCUMFERENCE")
         text.update += [
             f"self.{turns} += {speed} * tm_diff",
             f"self.{name}.measure(self.{turns}, {speed}, tm_diff)",
@@ -176,14 +181,9 @@ def _drivetrain(text: ModuleText, drivetrain: Tank | Mecanum, layout: Drivetrain
     for wheel, name in encoders:
         distance = text.name(f"{name}_distance")
         text.setup.append(f"self.{distance} = 0.0")
-        speed = _wheel_speed(wheel)
+        speed = source.wheel_speed("wheels", wheel)
         text.update += [f"self.{distance} += {speed} * tm_diff", f"self.{name}.turn_to(self.{distance}, {speed})"]
     _gyros(text, gyros, "math.degrees(speeds.omega * tm_diff)")
-
-
-def _wheel_speed(wheel: str) -> str:
-    first, *rest = wheel.split("_")
-    return "wheels." + first + "".join(map(str.capitalize, rest))
 
 
 def _wheel_encoders(text: ModuleText, layout: DrivetrainLayout) -> list[tuple[str, str]]:
@@ -192,9 +192,9 @@ def _wheel_encoders(text: ModuleText, layout: DrivetrainLayout) -> list[tuple[st
     if not found:
         return []
     if any(not encoder.counts for _, encoder in found):
-        text.numbers.append(_UNITS)
+        text.numbers.append(_UNITS.format(sets_distance=source.SETS_DISTANCE))
     if any(encoder.counts for _, encoder in found):
-        text.numbers.append(_COUNTS)
+        text.numbers.append(_COUNTS.format(sets_distance=source.SETS_DISTANCE))
     text.setup.append("")
     return [
         (wheel, text.encoder(encoder, f"{wheel}_encoder", "ENCODER_COUNTS" if encoder.counts else "ENCODER_UNITS"))
@@ -231,20 +231,19 @@ def _gyro(text: ModuleText, gyro: Gyro) -> None:
     rate = f"{'-' if gyro.clockwise else ''}turned / tm_diff"
     text.update.append(f"# This gyro counts {'clockwise' if gyro.clockwise else 'counter-clockwise'}, in degrees.")
     if gyro.channel is not None:
-        text.sims.add("AnalogGyroSim")
         name = text.name(name)
-        text.setup += ["", f"self.{name} = AnalogGyroSim({gyro.channel})"]
-        text.update += [f"self.{name}.setAngle(self.{name}.getAngle() {sign} turned)", f"self.{name}.setRate({rate})"]
+        text.setup.append("")
+        text.simulate(name, source.analog_gyro(gyro.channel))
+        text.update += source.turned_gyro(f"self.{name}", f" {sign} turned", rate)
         return
-    text.sims.add("SimDeviceSim")
-    device = f"SimDeviceSim({quoted(gyro.device)})"
     angle = text.name(f"{name}_angle")
-    text.setup += ["", f"self.{angle} = {device}.getDouble({quoted(gyro.angle)})"]
+    text.setup.append("")
+    text.simulate(angle, source.number(gyro.device, gyro.angle))
     turned = f"self.{angle}.get() {sign} turned"
     text.update.append(f"self.{angle}.set({f'math.remainder({turned}, 360)' if gyro.wraps else turned})")
     if gyro.rate:
         rate_value = text.name(f"{name}_rate")
-        text.setup.append(f"self.{rate_value} = {device}.getDouble({quoted(gyro.rate)})")
+        text.simulate(rate_value, source.number(gyro.device, gyro.rate))
         text.update.append(f"self.{rate_value}.set({rate})")
 
 
@@ -255,7 +254,7 @@ def _mechanism(text: ModuleText, motor: Motor, encoder: Encoder) -> None:
     ]
     name = text.name("_".join(purpose) or "mechanism")
     number = name.upper()
-    unit = "counts" if encoder.counts else "the units of its setDistancePerPulse()"
+    unit = "counts" if encoder.counts else f"the units of its {source.SETS_DISTANCE}"
     text.numbers.append(
         f"\n# TODO: how fast does {motor} turn {encoder}?\n"
         f"# At full power, in {unit} per second. It stands still at 0.\n"
