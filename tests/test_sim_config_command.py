@@ -101,30 +101,6 @@ def test_strict_makes_warnings_fail(make_project: MakeProject) -> None:
     assert many.stdout.endswith("sim/config.json: no mistakes, but more than 20 warnings\n")
 
 
-def test_the_file_is_named_from_where_the_user_is(make_project: MakeProject) -> None:
-    settings = '[tool.pyfrc]\nmain = "src/robot.py"\n'
-    project = make_project(
-        {
-            "src/robot.py": ROBOT,
-            "pyproject.toml": settings,
-            "src/sim/config.json": '{"pyfrc": {\n"robt": 1}}',
-            "x/y": "",
-        }
-    )
-    for place, arguments, name in [
-        (".", (), "src/sim/config.json"),
-        (".", ("--main", "src/robot.py"), "src/sim/config.json"),
-        ("src/sim", (), "config.json"),
-        ("x", ("--main", "../src/robot.py"), "../src/sim/config.json"),
-    ]:
-        checked = project.run("config", "check", *arguments, cwd=project.path / place)
-        assert f"warning: {name}:2: unknown" in checked.stdout
-        assert f"\n{name}: no mistakes" in checked.stdout
-    project.write({"src/sim/config.json": '{"pyfrc": {\n"robot": 1}}'})
-    for subcommand in ("check", "show"):
-        assert project.run("config", subcommand).first_error.startswith("src/sim/config.json:2: pyfrc.robot = 1")
-
-
 @pytest.mark.parametrize("place", ["config.json", "tests/sim/config.json", "Sim/config.json", "sim/Config.json"])
 def test_a_file_in_the_wrong_place_is_told(make_project: MakeProject, place: str) -> None:
     project = make_project({"robot.py": ROBOT, place: '{"pyfrc": {}}'})

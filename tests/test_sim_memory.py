@@ -12,8 +12,6 @@ import pytest
 from sim_robots import run, settle, wait
 
 from pyfrc_core.project import find_project
-from pyfrc_core.runtime.robot import RobotRun
-from pyfrc_core.runtime.scripts.recorder import Recorder
 from pyfrc_core.sim.engine import history, snapshot_builder
 from pyfrc_core.sim.engine.options import SimOptions
 from pyfrc_core.sim.engine.simulation import Simulation
@@ -128,20 +126,3 @@ def test_a_long_trail_is_thinned_out(make_project, monkeypatch: pytest.MonkeyPat
     first = next(each.scene.trail[0] for each in lengths if each is not None and each.scene.trail)
     assert trail[0] == first
     assert len(set(trail)) == len(trail)
-
-
-def test_the_robots_process_keeps_no_steps() -> None:
-    robot_run = RobotRun()
-    robot_run.open()
-    try:
-        recorder = Recorder(robot_run)
-        for _ in range(5):
-            recorder.on_packet_out_of_turn()
-        everything = recorder.steps_from(0)
-        recorder.forget_before(3)
-        assert (recorder.steps_from(3), recorder.steps_from(4)) == (everything[3:], everything[4:])
-        recorder.on_packet_out_of_turn()
-        recorder.forget_before(5)
-        assert len(recorder.steps_from(0)) == 1
-    finally:
-        robot_run.close()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import threading
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -152,25 +151,6 @@ def test_what_cannot_be_drawn_is_said(call, told: str, renderer: UserRenderer) -
     with pytest.raises(UsageError, match=told):
         call(renderer)
     assert renderer.drawings() == ()
-
-
-def test_many_threads_draw_at_once(renderer: UserRenderer) -> None:
-    together = threading.Barrier(8)
-
-    def draw(thread: int) -> None:
-        together.wait()
-        for number in range(50):
-            renderer.draw_line([(thread, number), (number, thread)])
-            renderer.drawings()
-
-    threads = [threading.Thread(target=draw, args=(number,)) for number in range(8)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert {line.points for line in renderer.drawings()} == {
-        ((thread, number), (number, thread)) for thread in range(8) for number in range(50)
-    }
 
 
 # -- the field -------------------------------------------------------------------------------------------------------

@@ -80,19 +80,6 @@ def test_errors_of_a_dict_name_the_place(
     assert store.values == {"speed": 0.5, "count": 2, "const": 7}
 
 
-def test_listeners_of_a_value_and_of_its_alias(store: Store) -> None:
-    heard: list[tuple[str, Any]] = []
-    store.tree.register("count", lambda key, value: heard.append((key, value)))
-    assert heard == []
-    store.tree.register("alias", lambda key, value: heard.append((key, value)), notify=True)
-    assert heard == [("alias", 2)]
-    store.tree["alias"] = 3
-    assert heard[1:] == [("count", 3), ("alias", 3)]
-    store.tree["speed"] = 1
-    store.tree["count"] = 3
-    assert heard[3:] == [("count", 3), ("alias", 3)]
-
-
 # -- lists -------------------------------------------------------------------------------------------------------------
 
 
