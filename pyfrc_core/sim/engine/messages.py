@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from ...project import Project
 from ...runtime.scripts.script import InputScript, Step
 from .commands import Command, TimeState
+from .options import SimOptions
 from .scene import Line, Point, Pose, Tag, Target, Text
 from .snapshot import Chooser, Failure
 
@@ -45,30 +45,19 @@ class Job:
     :param forward_to_us: the moment to replay to, as fast as possible
     :param time_state: the state of time from there on
     :param commands: carried out there, before time goes on
-    :param recording: whether to report the inputs, and what the robot does in each packet
     :param station: the driver station at `forward_to_us`
-    :param nt_port: where to serve NetworkTables to dashboards; None: nowhere
-    :param nt_shared: whether dashboards on other computers can connect
-    :param wpilog: where to write WPILib's data log
-    :param extensions: WPILib's simulation extensions to load, by name
     :param tags: the field's tags, if they are known already
-    :param network_values: whether to report the values of NetworkTables
     :param reports_replay: whether to report what the robot does in the replay: its code has changed since
     """
 
     project: Project
+    options: SimOptions
     script: InputScript
     forward_to_us: int = 0
     time_state: TimeState = field(default_factory=TimeState)
     commands: tuple[Command, ...] = ()
-    recording: bool = True
     station: StationState = StationState()
-    nt_port: int | None = None
-    nt_shared: bool = False
-    wpilog: Path | None = None
-    extensions: tuple[str, ...] = ()
     tags: tuple[Tag, ...] | None = None
-    network_values: bool = False
     reports_replay: bool = False
 
 

@@ -271,18 +271,13 @@ class Simulation(Controls):
         options = self.options
         job = Job(
             project=replace(self.project),
+            options=replace(options, script=None),
             script=recording.past,
             forward_to_us=forward_to_us,
             time_state=time,
             commands=commands,
-            recording=options.recording,
             station=recording.station,
-            nt_port=options.nt_port,
-            nt_shared=options.nt_shared,
-            wpilog=options.wpilog,
-            extensions=options.extensions,
             tags=self._tags,
-            network_values=options.network_values,
             reports_replay=recording.is_open,
         )
         with self._sending, self.reports:

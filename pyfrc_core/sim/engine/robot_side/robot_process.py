@@ -48,8 +48,8 @@ def run_robot(job: Job, connection: Connection, log: CrashLog) -> None:
 
     :param log: written to when the process ends by itself
     """
-    load_extensions(job.extensions)
-    if WINDOW not in job.extensions:
+    load_extensions(job.options.extensions)
+    if WINDOW not in job.options.extensions:
         _run(job, connection, log)
         return
     robot = threading.Thread(target=_run, name="robot", args=(job, connection, log), daemon=True)
@@ -80,8 +80,8 @@ def _run(job: Job, connection: Connection, log: CrashLog) -> None:
             def construct() -> None:
                 if physics is not None:
                     physics.attach(run)
-                if job.wpilog is not None:
-                    closing.enter_context(_logged(run, job.wpilog))
+                if job.options.wpilog is not None:
+                    closing.enter_context(_logged(run, job.options.wpilog))
                 run.construct(robot_class)
                 gc.freeze()  # or a collection of all modules would hold up the loop
 

@@ -64,10 +64,10 @@ class Session:
         self._time = job.time_state
         self._carried_out = self._recorded = 0
         self._pace = Pace(self._time.speed, self._time.paused)
-        if job.extensions:  # which have changed the initial state: that counts as an input, too
+        if job.options.extensions:  # which have changed the initial state: that counts as an input, too
             station.reset_driver_station()
-        self._recorder = Recorder(run) if job.recording else None
-        self._traces = Traces(run.hal_data, NetworkTrace(self._robot_pose) if job.network_values else None)
+        self._recorder = Recorder(run) if job.options.recording else None
+        self._traces = Traces(run.hal_data, NetworkTrace(self._robot_pose) if job.options.network_values else None)
         self._renderer = UserRenderer(self._robot_pose)
         self._drawings: tuple[Any, ...] = ()
         self._vision: tuple[Target, ...] = ()
@@ -78,7 +78,7 @@ class Session:
         self._packet_began = wall()
         self._steps_sent = self._own_steps_from = 0
         self._sent_at = 0.0
-        self._update_seconds = _UPDATE_SECONDS if job.recording else _UNRECORDED_UPDATE_SECONDS
+        self._update_seconds = _UPDATE_SECONDS if job.options.recording else _UNRECORDED_UPDATE_SECONDS
         self._packets_at_once = 1
         # The next target in robot time, and the last target beyond which the robot was waiting.
         self._target_us = self._awaited_us = -1
@@ -99,9 +99,9 @@ class Session:
         """
         run, job = self._run, self._job
         from_the_start = job.forward_to_us <= job.script.start_us
-        self._traces.is_on = job.recording and (from_the_start or job.reports_replay)
+        self._traces.is_on = job.options.recording and (from_the_start or job.reports_replay)
         self._replaying = not from_the_start
-        if job.recording:
+        if job.options.recording:
             run.clock.before_packet.append(self._packet_begins)
             run.observe(self._packet_is_over)
         LoopLimit(run, job.project.files, job.project.settings, lambda error: self._notes.append(error.note))
@@ -111,7 +111,7 @@ class Session:
         self._target_us = max(job.forward_to_us, _INITIALIZED_BY_US)
         try:
             Player(job.script, run).start()
-            if self._recorder is not None and not job.extensions:
+            if self._recorder is not None and not job.options.extensions:
                 self._own_steps_from = len(self._recorder.steps_from(0))  # those before are the script's
             self._mark_position()
             if job.reports_replay:
@@ -131,17 +131,17 @@ class Session:
         run, job = self._run, self._job
         self._taken_over, self._replaying = True, False
         self._station.take_over()
-        if job.recording:
+        if job.options.recording:
             self._traces.skip_hal(run.clock.now)
         for command in job.commands:
             self._carry_out(command)
-        if job.nt_port is not None:
-            self._served = Served(job.nt_port, job.nt_shared, self._write)
+        if job.options.nt_port is not None:
+            self._served = Served(job.options.nt_port, job.options.nt_shared, self._write)
             if self._served.problem:
                 self._notes.append(self._served.problem)
         self._connection.send(self._ready())
         self.send_update(dict(run.hal_data.leaves()))
-        self._traces.is_on = job.recording
+        self._traces.is_on = job.options.recording
         self._pace.begin(run.clock.now_us)
 
     @property
@@ -192,7 +192,7 @@ class Session:
         began, from_us = self._advance_began
         took = wall() - began
         pace.ran(now_us)
-        if not self._job.recording:
+        if not self._job.options.recording:
             packets = max(1, (now_us - from_us) // PACKET_US)
             pace.took(took / packets, packets)
         if took > _CHUNK_SECONDS:
@@ -307,7 +307,7 @@ class Session:
         :param base: all values, where the changes do not continue those sent before
         """
         run, pace = self._run, self._pace
-        if not self._job.recording and base is None:
+        if not self._job.options.recording and base is None:
             self._traces.look_at_hal(run.clock.now)
         steps_from = max(self._own_steps_from, self._steps_sent - 2)
         steps = () if self._recorder is None else self._recorder.steps_from(steps_from)

@@ -21,6 +21,9 @@ from .console import plain_lines
 from .history import MISSING
 from .runs import Position
 
+#: The attributes of `Status` that pages get as they are, and those in seconds, which are rounded.
+_AS_IT_IS = ("state", "speed", "late_packets", "overruns", "note", "responding", "starts", "network_address")
+_SECONDS = ("packet_seconds", "worst_packet_seconds", "worst_loop_seconds", "length")
 _PLACE = re.compile(r"(?P<file>[^\s:]+\.py):(?P<line>\d+)")
 
 
@@ -108,10 +111,7 @@ class UpdateBuilder:
         if former is None or scene.targets is not former.scene.targets:
             found["targets"] = [{"x": each.x, "y": each.y, "in_view": each.in_view} for each in scene.targets]
         if former is None or snapshot.choosers is not former.choosers:
-            found["choosers"] = [
-                {"name": each.name, "options": each.options, "default": each.default, "active": each.active}
-                for each in snapshot.choosers
-            ]
+            found["choosers"] = [vars(each) for each in snapshot.choosers]
 
     @staticmethod
     def _add_values(found: dict[str, Any], before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
@@ -172,20 +172,10 @@ def _status(status: Status, wants_to_run: bool) -> dict[str, Any]:
     failure = status.failure
     place = None if failure is None else _PLACE.search(failure.headline)
     return {
-        "state": status.state,
-        "speed": status.speed,
+        **{name: getattr(status, name) for name in _AS_IT_IS},
+        **{name: round(getattr(status, name), 5) for name in _SECONDS},
         "reached": round(status.reached, 3),
         "average": round(status.average, 3),
-        "packet_seconds": round(status.packet_seconds, 5),
-        "worst_packet_seconds": round(status.worst_packet_seconds, 5),
-        "late_packets": status.late_packets,
-        "overruns": status.overruns,
-        "worst_loop_seconds": round(status.worst_loop_seconds, 5),
-        "length": round(status.length, 6),
-        "note": status.note,
-        "responding": status.responding,
-        "starts": status.starts,
-        "network_address": status.network_address,
         "wants_to_run": wants_to_run,
         "failure": None
         if failure is None
@@ -218,21 +208,7 @@ def _station(snapshot: Snapshot | None, status: Status) -> dict[str, Any]:
 
 
 def _panel(panel: Panel) -> dict[str, Any]:
-    rows = [
-        {
-            "kind": row.kind,
-            "paths": row.paths,
-            "label": row.label,
-            "low": row.low,
-            "high": row.high,
-            "decimals": row.decimals,
-            "unit": row.unit,
-            "tooltip": row.tooltip,
-            "settable": row.kind in SETTABLE,
-        }
-        for row in panel.rows
-    ]
-    return {"title": panel.title, "rows": rows}
+    return {"title": panel.title, "rows": [vars(row) | {"settable": row.kind in SETTABLE} for row in panel.rows]}
 
 
 def _drawing(drawing: Line | Text) -> dict[str, Any]:
