@@ -16,6 +16,7 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`
 from playwright.sync_api import expect
 from sim_robots import PATIENCE
 from skips import require
+from web_pages import served
 
 require("the page of pyfrc sim in a browser", missing_browser())
 
@@ -110,6 +111,12 @@ PLACE_OF_ROBOT = """(canvas) => {
     }
     return found[Math.floor(found.length / 2)];
 }"""
+
+
+@pytest.fixture(scope="module", name="server")
+def server_of_many_devices(make_shared_project):
+    with served(make_shared_project(ROBOT), speed=1, paused=False) as server:
+        yield server
 
 
 def script_writes(person: Seen, path: str) -> list[Any]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ...engine.changes import Change, RunBegan
 from ...engine.messages import MODE
@@ -35,7 +35,6 @@ _BUTTONS = tuple(f"joysticks[{number}].buttons" for number in range(6))
 class State:
     """What there is to show at one moment.
 
-    :param network: the values of NetworkTables with their types, by path
     :param wants_to_run: whether robot time is to go on
     :param run: the number of the present run, and the moment where it went on
     :param known_from: the moment from which on values are known; 0 until the oldest are forgotten
@@ -44,7 +43,6 @@ class State:
     snapshot: Snapshot | None
     status: Status
     field: Field
-    network: Mapping[str, Any]
     panels: tuple[Panel, ...]
     branches: tuple[Branch, ...]
     wants_to_run: bool
@@ -73,8 +71,6 @@ class Collector:
         self._hal, self._network = simulation.change_cursor(), simulation.network_cursor()
         self._project = simulation.project
         self._rows = DeviceRows(simulation.project.sim_config)
-        self._network_values: Mapping[str, Any] = {}
-        self._network_changed = False
         #: Whether the last look has left changes for the next one.
         self._has_more = False
         self._run = (0, 0.0)
@@ -138,9 +134,6 @@ class Collector:
                 if line.level in ("error", "warning"):
                     self.marks.add(now, line.level, line.text.strip())
         changes = self._read_changes()
-        if self._network_changed:
-            self._network_changed = False
-            self._network_values = self.runs.network_values()
         self.state = state = self._state_of(snapshot, status)
         self._note_events(state, now)
         self._shown = self.console.count, self.marks.count
@@ -170,7 +163,6 @@ class Collector:
             snapshot=snapshot,
             status=status,
             field=simulation.field,
-            network=self._network_values,
             panels=self._rows.panels,
             branches=self.runs.branches,
             wants_to_run=simulation.wants_to_run,
@@ -192,7 +184,6 @@ class Collector:
                 self.marks.look_at_buttons(event.time, path, event.values[path])
 
     def _look_at_network(self, event: RunBegan | Change) -> None:
-        self._network_changed = True
         if isinstance(event, Change) and MODE in event.values:
             self.marks.add(event.time, "mode", str(event.values[MODE]))
 

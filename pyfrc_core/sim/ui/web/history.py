@@ -182,6 +182,11 @@ class ValueHistory:
         last = self.packets if end is None else self._packet_at(end)
         return self._between(path, self._packet_at(begin) + 1, last)
 
+    def changed_since(self, packet: int) -> dict[str, Any]:
+        """Return the values that have changed since the packet with this number; `MISSING` for those that are gone."""
+        changed = (path for path, changes in self._changes.items() if changes.packets[-1] >= packet)
+        return {path: self._now.get(path, MISSING) for path in changed}
+
     def since(self, packet: int, path: str) -> Iterator[tuple[float, Any]]:
         """Yield a value's changes from the packet with this number on: their times, and the values."""
         return zip(*self._between(path, packet, self.packets), strict=True)

@@ -214,10 +214,18 @@ class Runs:
         with self._lock:
             return self._position()
 
-    def network_values(self) -> dict[str, Any]:
-        """Return a copy of all present values of NetworkTables."""
+    def changed_since(self, after: Position | None) -> tuple[dict[str, Any], Position, bool]:
+        """Return the values that have changed since a position, the next position, and whether these are all values.
+
+        Those that are gone are `MISSING`. All values are returned for another run, and for no position.
+        """
+        changed: dict[str, Any] = {}
         with self._lock:
-            return self._histories["network"].now.copy()
+            position = self._position()
+            is_all = after is None or after.numbers != position.numbers
+            for source, history in self._histories.items():
+                changed |= history.changed_since(0 if is_all or after is None else after.packets[source])
+        return changed, position, is_all
 
     def _position(self) -> Position:
         packets: dict[Source, int] = {source: history.packets for source, history in self._histories.items()}

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
@@ -39,8 +39,9 @@ class UpdateBuilder:
         self._parts: dict[str, Any] = {}
         self._status: dict[str, Any] = {}
         self._station: dict[str, Any] = {}
-        self._hal: Mapping[str, Any] = {}
-        self._network: Mapping[str, Any] = {}
+        #: The paths of the values that the page has, and the place among the changes up to which it has them.
+        self._paths: set[str] = set()
+        self._place: Position | None = None
         self._trail: tuple[Point, ...] = ()
         self._lines = self._marks = 0
         self._run = (0, 0.0)
@@ -65,8 +66,7 @@ class UpdateBuilder:
         self._differences(found, "station", self._station, _station(state.snapshot, state.status))
         if (snapshot := state.snapshot) is not None and (self._state is None or self._state.snapshot is not snapshot):
             self._add_snapshot(found, snapshot)
-        if state.network is not self._network:
-            self._add_network(found, state.network)
+        self._add_values(found)
         before = self._state
         if before is None or state.panels is not before.panels:
             found["panels"] = [_panel(panel) for panel in state.panels]
@@ -99,8 +99,6 @@ class UpdateBuilder:
         self._part(found, "t", round(snapshot.time, 6))
         robot = scene.robot
         self._part(found, "robot", None if robot is None else [robot.x, robot.y, robot.angle])
-        before, self._hal = self._hal, snapshot.values
-        self._add_values(found, before, snapshot.values)
         if scene.trail is not self._trail:
             start, self._trail = len(self._trail) if _continues(self._trail, scene.trail) else 0, scene.trail
             if start < len(scene.trail) or start == 0:
@@ -113,31 +111,19 @@ class UpdateBuilder:
         if former is None or snapshot.choosers is not former.choosers:
             found["choosers"] = [vars(each) for each in snapshot.choosers]
 
-    @staticmethod
-    def _add_values(found: dict[str, Any], before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
-        changed = {}
-        for path, value in now.items():
-            known = before.get(path, MISSING)
-            # Only values that have changed are new objects.
-            if known is not value and (known != value or type(known) is not type(value)):
-                changed[path] = value
-        if changed:
-            found.setdefault("values", {}).update(changed)
-        if len(before) + len(changed) != len(now) and (gone := [path for path in before if path not in now]):
-            found.setdefault("gone", []).extend(gone)
-
-    def _add_network(self, found: dict[str, Any], network: Mapping[str, Any]) -> None:
-        before, self._network = self._network, network
-        changed: dict[str, Any] = {}
-        self._add_values(changed, before, network)
-        values = changed.get("values", {})
-        types = {VALUE + path[len(TYPE) :]: value for path, value in values.items() if path.startswith(TYPE)}
-        if types:
-            found["types"] = types
-        if values := {path: value for path, value in values.items() if not path.startswith(TYPE)}:
-            found.setdefault("values", {}).update(values)
-        if gone := [path for path in changed.get("gone", ()) if not path.startswith(TYPE)]:
-            found.setdefault("gone", []).extend(gone)
+    def _add_values(self, found: dict[str, Any]) -> None:
+        changed, self._place, is_all = self._collector.runs.changed_since(self._place)
+        gone = [path for path, value in changed.items() if value is MISSING and path in self._paths]
+        if is_all:
+            gone += [path for path in self._paths if path not in changed]
+        values = {path: value for path, value in changed.items() if value is not MISSING}
+        self._paths = (self._paths | values.keys()) - set(gone)
+        parts = {
+            "types": {VALUE + path[len(TYPE) :]: value for path, value in values.items() if path.startswith(TYPE)},
+            "values": {path: value for path, value in values.items() if not path.startswith(TYPE)},
+            "gone": [path for path in gone if not path.startswith(TYPE)],
+        }
+        found.update({name: part for name, part in parts.items() if part})
 
     def _add_lines(self, found: dict[str, Any]) -> None:
         console, marks = self._collector.console, self._collector.marks
