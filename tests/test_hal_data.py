@@ -294,15 +294,3 @@ def test_a_fork_has_a_tree_of_its_own(tree: HalData) -> None:
         os._exit(0 if dict(tree.leaves())["custom.x"] == 1 else 1)
     assert os.waitpid(child, 0)[1] == 0
     assert "custom.x" not in dict(tree.leaves())
-
-
-def test_reading_a_sim_device_does_not_list_its_values(tree: HalData, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A motor controller of REV's has some thirty values: listing them for each that is read took most of the time."""
-    device = hal.SimDevice("Sensor", 7)
-    device.createDouble("distance", hal.SimDevice.Direction.kInput, 1.5)
-    assert tree.read('CAN["Sensor[7]"].distance') == 1.5
-    listed: list[object] = []
-    real = sim.SimDeviceSim.enumerateValues
-    monkeypatch.setattr(sim.SimDeviceSim, "enumerateValues", lambda of: (listed.append(of), real(of))[1])
-    assert tree.read('CAN["Sensor[7]"].distance') == 1.5
-    assert listed == []

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from conftest import MakeProject, RobotProject, trace_hash
+from conftest import MakeProject, RobotProject
 from skips import require
 from wpilib.simulation import (
     DCMotorSim,
@@ -179,16 +179,3 @@ def test_a_simulated_spark_is_marked_and_the_rest_repeats(spark_project: RobotPr
     assert "The trace equals the recorded one." in output
     (trace,) = (spark_project.path / "recorded").glob("*.trace.jsonl")
     assert '"unrepeatable":{"CAN[\\"SPARK MAX [3]\\"]' in trace.read_text("utf-8")
-
-
-@pytest.mark.parametrize("spark_project", ["pass"], indirect=True)
-def test_a_spark_without_simulated_motion_repeats(spark_project: RobotProject) -> None:
-    for directory in ("first", "second"):
-        assert "repeat" not in words(spark_project, "test", "--trace", directory)
-    first, second = (
-        [trace_hash(each) for each in (spark_project.path / name).iterdir()] for name in ("first", "second")
-    )
-    assert first == second
-    (trace,) = (spark_project.path / "first").iterdir()
-    assert "SPARK MAX [3]" in trace.read_text("utf-8")
-    assert "unrepeatable" not in trace.read_text("utf-8")

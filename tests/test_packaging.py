@@ -111,14 +111,3 @@ def test_make_says_when_python_is_too_old(make_with, tmp_path: Path) -> None:
     assert done.returncode != 0
     assert "pyfrc needs Python 3.10 or newer" in done.stderr
     assert not (tmp_path / "venv").exists()
-
-
-@pytest.mark.parametrize("what", ["installed", "installed-dev"])
-def test_make_says_that_it_installs_before_pip_begins(what: str, tmp_path: Path) -> None:
-    require("the Makefile", missing_programs("make"))
-    command = ["make", "--dry-run", f"VENV={tmp_path}", str(tmp_path / what)]
-    planned = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    said, _, installing = planned.partition("-m pip install")
-    assert "Installing pyfrc" in said
-    assert str(tmp_path) in said.partition("Installing")[2]
-    assert installing

@@ -156,17 +156,6 @@ ROBOTS = {
             def endCompetition(self):
                 self.over = True
         """,
-    "a loop around WPILib's": """
-        import wpilib
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                wpilib.wait(0.5)
-                self.motor = wpilib.PWMSparkMax(0)
-
-            def startCompetition(self):
-                super().startCompetition()
-        """,
 }
 
 

@@ -78,17 +78,6 @@ def test_an_object_keeps_its_number(numbered: type) -> None:
     assert len({first, second, third}) == 3
 
 
-def test_numbers_of_objects_that_are_gone_are_forgotten(numbered: type) -> None:
-    from pyfrc_core.runtime.patches import object_hashes
-
-    kept = numbered()
-    before = len(object_hashes._numbered) + 1
-    for _ in range(100):
-        hash(numbered())
-    hash(kept)
-    assert len(object_hashes._numbered) == before
-
-
 @pytest.mark.parametrize(
     "names",
     [

@@ -12,7 +12,6 @@ from pyfrc_core.project import find_project
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine import history, output_log
 from pyfrc_core.sim.engine.changes import Change, RunBegan
-from pyfrc_core.sim.engine.history import History
 from pyfrc_core.sim.engine.output_log import OutputLog
 
 TALKATIVE = {
@@ -180,17 +179,3 @@ def test_a_run_that_never_came_up_is_passed_over(make_project) -> None:
         settle(simulation)
         numbers = [event.number for event in cursor.read() if isinstance(event, RunBegan)]
         assert numbers[-1] == simulation.status.starts
-
-
-def test_a_history_is_read_from_any_entry(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(history, "_BLOCK", 4)
-    whole: History[int] = History()
-    for number in range(50):
-        whole.append(number, number)
-    assert len(whole) == 50
-    for start in (0, 1, 4, 17, 46, 49, 50, 60):
-        assert list(whole.since(start)) == [(number, number) for number in range(start, 50)]
-    part = whole.until(21)
-    part.append(100, 100)
-    assert len(part) == 23
-    assert [item for _, item in part.since(20)] == [20, 21, 100]

@@ -236,27 +236,3 @@ def test_a_port_that_is_taken_is_said(make_project) -> None:
     assert result.code == 0, result.output
     warning = f"warning: Dashboards cannot connect: port {port} is taken. Is another simulation running?"
     assert warning in result.stdout.splitlines(), result.output
-
-
-def test_a_robot_that_reads_nothing_delays_nobody(make_project) -> None:
-    """A gamepad goes on sending while robot code is stuck in a call: it can be started again, and closed."""
-    robot = """
-        import os
-
-        import wpilib
-
-
-        class MyRobot(wpilib.TimedRobot):
-            def teleopInit(self):
-                os.read(os.pipe()[0], 1)
-    """
-    project = Project(make_project({"robot.py": robot}).path / "robot.py")
-    with Simulation(project, SimOptions(nt_port=None)) as simulation:
-        wait(simulation, lambda: simulation.snapshot is not None)
-        simulation.choose_mode("teleop")
-        simulation.enable()
-        for number in range(2000):
-            simulation.set_axis(0, 1, number % 2)
-        starts = simulation.status.starts
-        simulation.restart()
-        wait(simulation, lambda: simulation.status.starts > starts and simulation.snapshot is not None)

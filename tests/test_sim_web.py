@@ -207,33 +207,6 @@ def test_driving_on_from_the_past_keeps_the_former_run_as_a_branch(make_project)
         assert page.ask(type="first_difference", branch=77)["type"] == "error"
 
 
-def test_new_code_replays_the_inputs_and_keeps_what_the_old_code_did_as_a_branch(make_project) -> None:
-    made = make_project(FILES)
-    with served(made) as server, server.page() as page:
-        drive_and_mark(page)
-        robot = made.path / "robot.py"
-        robot.write_text(robot.read_text().replace("SPEED = 1.0", "SPEED = 0.5"))
-        page.command("reload")
-        page.until(
-            lambda: page.parts["branches"] and page.status["state"] == "paused" and page.time == pytest.approx(1.1)
-        )
-        assert (page.parts["run"]["number"], page.parts["run"]["t"]) == (2, 0)
-        assert any(mark["kind"] == "own" for mark in page.marks)
-        (branch,) = page.parts["branches"]
-        assert branch["name"] == "before the new code at 0:01.10"
-        now = page.ask(type="values", t=0.65)["values"]["pwm[0].value"]
-        before = page.ask(type="values", t=0.65, branch=branch["id"])["values"]["pwm[0].value"]
-        assert (now, before) == (pytest.approx(0.25, abs=0.01), pytest.approx(0.5, abs=0.01))
-        first = page.ask(type="first_difference", branch=branch["id"], paths=None)
-        assert "joysticks[0].axes" not in first["paths"]
-        first = page.ask(type="first_difference", branch=branch["id"], paths=["pwm[0].value", "joysticks[0].axes"])
-        assert (first["t"], first["paths"]) == (pytest.approx(0.12), ["pwm[0].value"])
-        page.run_for(0.2)
-        page.command("rewind", t=0.5)  # what the new code did until there is known
-        page.until(lambda: len(page.parts["branches"]) == 2 and page.status["state"] == "paused" and page.time == 0.5)
-        assert page.ask(type="values", t=0.45)["values"]["pwm[0].value"] == pytest.approx(0.25, abs=0.01)
-
-
 def test_a_page_that_does_not_read_gets_merged_updates(make_project) -> None:
     with (
         served(make_project(DASHBOARD)) as server,

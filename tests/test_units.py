@@ -157,13 +157,6 @@ def test_the_cache_is_in_the_users_cache_directory(tmp_path: Path) -> None:
     assert list((tmp_path / "pyfrc").glob("pint-*/*.pickle"))
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="there, home is no variable")
-def test_without_a_home_nothing_is_written_here(tmp_path: Path) -> None:
-    code = f"import os; os.chdir({str(tmp_path)!r}); os.path.expanduser = lambda path: path; {KNOWS_ITS_UNITS}"
-    assert python(code, XDG_CACHE_HOME="") == "1.0 60 counts_per_minute\n"
-    assert not list(tmp_path.iterdir())
-
-
 def test_pint_is_imported_when_units_are_used() -> None:
     code = "import sys; from pyfrc.physics.units import units; print('pint' in sys.modules)"
     assert python(code) == "False\n"

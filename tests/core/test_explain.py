@@ -71,7 +71,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "Create it once",
         ),
         ("wpilib.PWMSparkMax(42)", "there is no channel 42 for such a device", "PWM 0 to 9, DIO 0 to 9"),
-        ("a = [wpilib.Encoder(2 * i, 2 * i + 1) for i in range(9)]", "no more devices of this kind", "8 encoders"),
         (
             "t = rev.SparkMax.MotorType.kBrushed\na = rev.SparkMax(25, t)\nb = rev.SparkMax(25, t)",
             "CAN ID 25 is used already, by another SparkMax",
@@ -88,7 +87,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "set() got None, from speed()",
             "Does speed() return something?\n  It takes: set(value: number)",
         ),
-        ("wpilib.PWMSparkMax(1).set(0.5, 1)", "set() was called with 2 values, but takes 1", "set(value: number)"),
         (
             "x = wpilib.XboxController(0)\nwpilib.PWMSparkMax(1).set(x.getLeftY)",
             "set() got the function x.getLeftY, and not its value",
@@ -110,7 +108,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "get() is called on the class wpilib.Timer, and not on an object of it",
             "self.it = wpilib.Timer(...). Then call: self.it.get(...)",
         ),
-        ("wpilib.SmartDashboard()", "no object of SmartDashboard can be created", "wpilib.SmartDashboard.putNumber("),
         ("'a' + 3", 'can only concatenate str (not "int") to str', 'f"speed: {value}"'),
         ("[1][1]", "IndexError: list index out of range", "Indexes begin with 0"),
         ("for each in 5: pass", "'int' object is not iterable", "for number in range(5):"),
@@ -119,12 +116,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "UnboundLocalError",
             "Not every way through the function sets speed",
         ),
-        (
-            "c = wpilib.XboxController(0)\nspeed = 1 if -c.getLeftY else 0",
-            "c.getLeftY is a function, and not its value",
-            "Write c.getLeftY()",
-        ),
-        ("import time\ntime()", "time is a module, and cannot be called", "Write time.time(), or what else it has"),
         (
             "class Arm:\n    def up(self, speed): pass\na = Arm()\na.up(sped=1)",
             "a.up() was called with sped=",
@@ -154,7 +145,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ),
         ("wpilib.IterativeRobot", "wpilib has no IterativeRobot any more", "Instead: wpilib.TimedRobot."),
         ("wpilib.SendableChooser().addObject('a', 1)", "SendableChooser has no addObject any more", "addOption"),
-        ("this.x = 1", "NameError: name 'this' is not defined", "Did you mean self?"),
         ("rev.CANSparkMax", "rev has no CANSparkMax any more", "Instead: rev.SparkMax."),
         # Modules
         (

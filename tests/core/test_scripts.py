@@ -17,7 +17,7 @@ from pyfrc_core.hal.change_reader import same
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.scripts.player import Player
 from pyfrc_core.runtime.scripts.script import FORMAT, InputScript, ScriptError, Step, load_script, parse_script
-from pyfrc_core.runtime.scripts.targets import Countdown, Targets
+from pyfrc_core.runtime.scripts.targets import Targets
 from pyfrc_core.wpi import station
 
 HEADER = {"format": FORMAT, "end": 1.0}
@@ -144,28 +144,6 @@ def test_targets(tree: HalData) -> None:
     ):
         with pytest.raises(UsageError, match=message):
             targets.write(*wrong, 0)
-
-
-def test_the_match_time_counts_down_until_it_is_written(tree: HalData) -> None:
-    targets = Targets(tree)
-
-    def left() -> float:
-        return float(tree["time"]["remaining"])
-
-    targets.count_down(0)
-    targets.write("match_time", 15, 1_000_000)
-    assert left() == 15
-    targets.count_down(3_500_000)
-    assert left() == 12.5
-    targets.count_down(99_000_000)
-    assert left() == 0
-    targets.write("time.remaining", 7.0, 0)
-    targets.count_down(3_500_000)
-    assert left() == 7
-    countdown = Countdown()
-    assert countdown.left(5) is None
-    countdown.start(1.5, 500_000)
-    assert (countdown.left(500_000), countdown.left(1_000_000), countdown.left(2_000_001)) == (1.5, 1.0, 0.0)
 
 
 def test_targets_that_there_never_are(tree: HalData) -> None:
