@@ -370,12 +370,12 @@ def _forget(run: RobotRun, item: pytest.Item) -> None:
     """End the run and release its robot, so that the next robot in this process can create its devices."""
     import gc
 
+    from ..wpi import commands
+
     run.close()
     # Other references to the robot: the test's arguments, and the traceback of its failure.
     (getattr(item, "funcargs", None) or {}).clear()
     for name in ("last_exc", "last_value", "last_traceback"):
         vars(sys).pop(name, None)
-    commands2 = sys.modules.get("commands2")
-    if commands2 is not None:
-        commands2.CommandScheduler.resetInstance()
+    commands.forget_all()
     gc.collect()

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .season_2026 import dashboards as dashboards
     from .season_2026 import devices as devices
     from .season_2026 import encoders as encoders
+    from .season_2026 import fields as fields
     from .season_2026 import geometry as geometry
     from .season_2026 import joysticks as joysticks
     from .season_2026 import logs as logs

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from types import FunctionType
 from typing import TYPE_CHECKING
 
+from ...wpi import names
 from .code_warning import CodeWarning
 from .misspelled_methods import robot_classes
 
@@ -18,9 +19,9 @@ def find_missing_super(project: Project) -> Iterator[CodeWarning]:
     for cls in robot_classes(project):
         init = vars(cls).get("__init__")
         bases = [f"{base.__module__}.{base.__name__}" for base in cls.__mro__]
-        if "commands2.subsystem.Subsystem" not in bases or not isinstance(init, FunctionType):
+        if names.SUBSYSTEM not in bases or not isinstance(init, FunctionType):
             continue
-        if not {"__init__", "register", "registerSubsystem"}.intersection(init.__code__.co_names):
+        if not names.REGISTERING.intersection(init.__code__.co_names):
             yield CodeWarning(
                 f"{project.files.relative(init.__code__.co_filename)}:{init.__code__.co_firstlineno}",
                 f"{cls.__name__}.__init__ does not call super().__init__(): commands2 never calls its periodic()",

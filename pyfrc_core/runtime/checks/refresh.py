@@ -28,7 +28,7 @@ def explain_missing_refresh(run: RobotRun) -> str | None:
     place = f"{Path(code.co_filename).name}:{code.co_firstlineno}: " if code is not None else ""
     return (
         f"{place}{robot.__name__} still finds itself disabled while the driver station has enabled it: "
-        "its loop does not call wpilib.DriverStation.refreshData(). Call that at the beginning of each turn."
+        f"its loop does not call {names.REFRESH}. Call that at the beginning of each turn."
     )
 
 

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ...config.pictures import field_picture
 from ...errors import UsageError, nearest
 from ...physics.pose import METRES_PER_FOOT
-from ...season import CURRENT
 from .commands import ROBOT_ON_FIELD
-from .scene import Field, Pose, Shape, Tag
+from .scene import Field, Pose, Shape
 
 if TYPE_CHECKING:
-    from ...config.sim import FieldObject, SimConfig
+    from ...config.sim import FieldObject
     from ...project import Project
-
-#: A season's tags are drawn where the field's size differs from theirs by less than this, in feet.
-_SAME_SIZE = 1.0
 
 
 def field_of(project: Project) -> Field:
@@ -50,29 +44,6 @@ def _shape(given: FieldObject) -> Shape:
         x, y, w, h = given.rect  # type: ignore[union-attr]
         points = ((x, y), (x + w, y), (x + w, y + h), (x, y + h))
     return Shape(given.color, tuple(points))
-
-
-def tags_of(config: SimConfig) -> tuple[Tag, ...]:
-    """Return the AprilTags of the season, where `robotpy-apriltag` is installed and the field is the season's."""
-    if importlib.util.find_spec("robotpy_apriltag") is None:
-        return ()
-    from robotpy_apriltag import AprilTagField, AprilTagFieldLayout
-
-    season = str(config.field.season or CURRENT.year)
-    named = [field for name, field in AprilTagField.__members__.items() if season in name]
-    for name in named:
-        layout = AprilTagFieldLayout.loadField(name)
-        size = layout.getFieldLength() / METRES_PER_FOOT, layout.getFieldWidth() / METRES_PER_FOOT
-        if math.dist(size, (config.field.w, config.field.h)) < _SAME_SIZE:
-            return tuple(_tags(layout, config.field.h))
-    return ()
-
-
-def _tags(layout: object, height: float) -> Iterator[Tag]:
-    for tag in layout.getTags():  # type: ignore[attr-defined]
-        pose = tag.pose.toPose2d()
-        x, y = pose.X() / METRES_PER_FOOT, height - pose.Y() / METRES_PER_FOOT
-        yield Tag(tag.ID, x, y, -pose.rotation().radians())
 
 
 def start_named(field: Field, name: str | None) -> Pose:

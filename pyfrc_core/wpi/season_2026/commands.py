@@ -68,3 +68,10 @@ def is_state_of_machine(thing: object) -> bool:
     """Return whether this is a state of one of magicbot's state machines."""
     kind = type(thing)
     return kind.__name__ == STATE_OF_MACHINE.name and kind.__module__ == "magicbot.state_machine"
+
+
+def forget_all() -> None:
+    """Release what the scheduler holds of a robot, if it has imported commands2."""
+    commands2 = sys.modules.get("commands2")
+    if commands2 is not None:
+        commands2.CommandScheduler.resetInstance()

@@ -34,6 +34,12 @@ OF_A_COMMAND = frozenset({"initialize", "execute", "end", END_CONDITION})
 OF_A_SUBSYSTEM = frozenset({"periodic", "simulationPeriodic"})
 OF_A_COMPONENT = frozenset({"execute", "on_enable", "on_disable"})
 
+#: The class of subsystems that are registered by their constructor; and what registers others.
+SUBSYSTEM, REGISTERING = "commands2.subsystem.Subsystem", frozenset({"__init__", "register", "registerSubsystem"})
+
+#: What the loop of a plain `RobotBase` has to call in each turn, to take in what the driver station sends.
+REFRESH = "wpilib.DriverStation.refreshData()"
+
 #: All methods that robot code overrides, besides those of the modes.
 OVERRIDDEN = _OF_ALL_ROBOTS | OF_A_COMMAND | {"periodic", "runsWhenDisabled", "getInterruptionBehavior"}
 

@@ -32,10 +32,10 @@ from ....runtime.robot import RobotRun
 from ....runtime.seeds import seed_generators
 from ....wpi import robots
 from ..extensions import WINDOW, load_extensions
-from ..field import tags_of
 from ..messages import Failed, Job, Ready, WindowClosed
 from ..program_files import keep_no_bytecode_of_new_code
 from ..snapshot import Failure
+from .april_tags import tags_of
 from .session import Ended, Session
 from .wpilog import WpiLog
 
