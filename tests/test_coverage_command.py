@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 import pytest
 from conftest import MakeProject, RobotProject
 
-from pyfrc_core.measure.never_run import never_run
+from pyfrc_core.measure.coverage import never_run
 
 #: Each of its helpers runs in one place only.
 ROBOT = """

@@ -322,7 +322,6 @@ _MODULES = (
     "robot_paths",
     "release_record",
     "virtual",
-    "inventory",
     "activity",
     "carrying",
     "releases",

@@ -1,11 +1,11 @@
-"""Measure which of the project's own lines run, also in the processes of isolated tests."""
+"""Measure which of the project's own lines and functions run, also in the processes of isolated tests."""
 
 from __future__ import annotations
 
 import json
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import UsageError
 from ..project import Project
 from ..text_files import check_writable, write_whole
-from .never_run import never_run
+from ..wording import counted
 from .processes import announced, is_announced
 
 if TYPE_CHECKING:
@@ -138,3 +138,26 @@ def _report(combined: Coverage, options: CoverageOptions, as_json: Path) -> int:
         print(f"coverage: {total:.1f} % is less than the required {options.fail_under:g} %", file=sys.stderr)
         return 1
     return 0
+
+
+def never_run(report: Mapping[str, Any]) -> str:
+    """Return the functions that were never run as text: the files with most such lines first, in each file the longest
+    functions first. Empty when there are none.
+
+    :param report: coverage.py's JSON report
+    """
+    found = []
+    for file, measured in report["files"].items():
+        functions = sorted(
+            (-len(function["missing_lines"]), function.get("start_line", function["missing_lines"][0]), name)
+            for name, function in measured["functions"].items()
+            # Lines outside of functions have no name.
+            if name and function["missing_lines"] and not function["executed_lines"]
+        )
+        if functions:
+            found.append((sum(lines for lines, _, _ in functions), file, functions))
+    text = ["", "Functions never run, worst first:"]
+    for total, file, functions in sorted(found):
+        text.append(f"{file}: {counted(len(functions), 'function')}, {counted(-total, 'line')}")
+        text += [f"  {name} ({file}:{start}), {counted(-lines, 'line')}" for lines, start, name in functions]
+    return "\n".join(text) if found else ""

@@ -20,9 +20,8 @@ from ..project import Project
 from ..project.robot_files import RobotFiles
 from ..text_files import check_writable, write_whole
 from .figures import Figures, added_up
-from .flame import require_pyinstrument, write_flame
 from .processes import announced, is_announced
-from .profile_report import as_json, as_text
+from .profile_report import as_json, as_text, require_pyinstrument, write_flame
 
 
 @dataclass(frozen=True)

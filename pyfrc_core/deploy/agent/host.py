@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -15,7 +16,6 @@ from typing import Union
 
 from .console import PORTS
 from .disk import text_of
-from .inventory import find_other_languages
 from .release_record import Boot
 from .robot_paths import Refusal, RobotPaths
 from .virtual import VirtualRobotClient
@@ -203,3 +203,17 @@ def cpu_seconds(process: int) -> float:
     """
     fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def find_other_languages(paths: RobotPaths) -> list[str]:
+    """Return the files and directories of programs in Java and C++ that can be removed."""
+    layout = paths.layout
+    commands = [f"{layout.home}/{name}" for name in layout.command_files]
+    found = [file for file in commands if re.search(layout.other_start, text_of(paths.of(file)) or "")]
+    for pattern in layout.other_files:
+        parent, _, name = pattern.rpartition("/")
+        if name:
+            found += sorted(f"{parent}/{each.name}" for each in paths.of(parent).glob(name))
+        elif paths.of(parent).is_dir() and any(paths.of(parent).iterdir()):
+            found.append(parent)
+    return found
