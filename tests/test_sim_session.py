@@ -200,6 +200,36 @@ def test_putting_the_robot_elsewhere(simulation: Simulation) -> None:
         simulation.reset_position("lft")
 
 
+def test_putting_a_robot_elsewhere_that_shows_a_field_of_its_own(make_project) -> None:
+    robot = """
+        import wpilib
+        from wpimath.geometry import Pose2d
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.field = wpilib.Field2d()
+                wpilib.SmartDashboard.putData("Field", self.field)
+
+            def robotPeriodic(self):
+                self.field.setRobotPose(Pose2d(1, 2, 0))
+    """
+    physics = """
+        class PhysicsEngine:
+            def __init__(self, controller, robot):
+                pass
+
+            def update_sim(self, now, tm_diff):
+                pass
+    """
+    made = make_project({"robot.py": robot, "physics.py": physics})
+    with Simulation(Project(made.path / "robot.py"), STILL) as simulation:
+        settle(simulation)
+        run(simulation, 0.5)
+        simulation.place(20, 5, 90)
+        run(simulation, 0.5)
+        assert simulation.snapshot.scene.robot == pytest.approx((20, 5, math.pi / 2))
+
+
 def test_going_back_lands_on_the_same_snapshot(simulation: Simulation) -> None:
     """In the middle of a match; and what was driven from there on can be driven again."""
     simulation.practice()

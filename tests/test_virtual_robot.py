@@ -12,7 +12,7 @@ import socket
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
@@ -342,6 +342,34 @@ def test_a_stopped_robot_leaves_no_child_processes(project: RobotProject, direct
             robot.command.send_signal(signal.SIGINT)
             robot.command.wait()
         assert all(ended(child) for child in children)
+
+
+def test_silent_connections_stop_no_deploy(project: RobotProject, directory: Path) -> None:
+    """To every port at which the robot listens: SSH, console, control, and its program's."""
+    missing = ["Linux"] if sys.platform != "linux" else []
+    require("that silent connections stop no deploy", missing)
+    with started(project, directory) as robot, ExitStack() as silent:
+        deploy(robot, project)
+        program = robot.pid()
+        ports = listening_ports(parent_of(program)) | listening_ports(program)
+        assert len(ports) >= 3
+        for port in ports:
+            for _ in range(3):
+                silent.enter_context(socket.create_connection(("127.0.0.1", port), timeout=SECONDS))
+        project.write({"robot.py": ROBOT.replace("version 1", "version 2")})
+        assert "the program runs" in deploy(robot, project)
+        assert "release 2, running" in on(robot, project, "deploy-info")
+
+
+def parent_of(process: int) -> int:
+    return int(Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[1])
+
+
+def listening_ports(process: int) -> set[int]:
+    """Return the TCP ports at which a process listens."""
+    links = {os.readlink(each) for each in Path(f"/proc/{process}/fd").iterdir()}  # noqa: PTH115
+    rows = [row.split() for row in Path("/proc/net/tcp").read_text().splitlines()[1:]]
+    return {int(row[1].split(":")[1], 16) for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in links}
 
 
 def test_a_control_request_needs_the_key(project: RobotProject, directory: Path) -> None:

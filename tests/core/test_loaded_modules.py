@@ -45,20 +45,3 @@ def test_python_its_packages_and_pyfrc_are_left_out(modules: dict[str, ModuleTyp
     loaded = LoadedModules()
     assert names(loaded) == ["robot", "teamlib"]
     assert loaded.files_of_pyfrc() == [module_under_test.__file__]
-
-
-def test_each_look_finds_what_is_new_and_leaves_out_what_is_gone(modules: dict[str, ModuleType]) -> None:
-    loaded = LoadedModules()
-    expected = []
-    for number in range(400):  # more than one step of the search
-        name = f"m{number}"
-        modules[name] = module(name, f"/robot/{name}.py")
-        expected.append(name)
-        if number % 150 == 0:
-            assert names(loaded) == expected
-    assert names(loaded) == expected
-    del modules["m399"], modules["m7"]  # the newest one, by which the next look finds its place, and another
-    modules["last"] = module("last", "/robot/last.py")
-    assert names(loaded) == [name for name in expected if name not in ("m399", "m7")] + ["last"]
-    modules["m7"] = module("again", "/robot/m7.py")
-    assert "again" in names(loaded)

@@ -27,9 +27,3 @@ def test_a_notification_ends_a_wait() -> None:
         signal.notify_all()
     waiting.join(PATIENCE)
     assert not waiting.is_alive()
-
-
-def test_a_wait_ends_after_its_time() -> None:
-    signal = ReportSignal()
-    signal.wait_after(signal.count, 0.01)
-    assert signal.count == 0
