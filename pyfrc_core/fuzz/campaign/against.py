@@ -79,7 +79,7 @@ def compare(project: Project, revision: str, options: CampaignOptions) -> Compar
         matches, seconds = 0, 0.0
         while (options.runs is None or matches < options.runs) and (deadline is None or time.monotonic() < deadline):
             size = _BATCH if options.runs is None else min(_BATCH, options.runs - matches)
-            schedules = [stream.schedule(number) for number in range(matches, matches + size)]
+            schedules = [stream.scheduler.schedule(number) for number in range(matches, matches + size)]
             known = stream.reached
             generated = list(executor.play(FuzzTask(schedule, known) for schedule in schedules))
             for number, (schedule, match) in enumerate(zip(schedules, generated, strict=True), matches):

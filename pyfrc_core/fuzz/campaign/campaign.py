@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from ...errors import PyfrcError
 from ...runtime.scripts.script import InputScript
 from ...wording import counted
-from ..guidance.goals import Goal, share
+from ..guidance.goals import Goal
 from ..match.work import MOST_RUNS, FuzzTask, MatchResult, NoMoreWork, ReplayTask, ShrinkTask, Shrunk
 from ..oracle.failure import FuzzFailure
 from .corpus import Corpus, found_in
@@ -154,7 +154,9 @@ class _Runner:
             self._reached.update(*(stream.reached for stream in self._streams))
             return
         most = _MOST_REVISITED // len(self._streams)
-        revisited = [Match(stream, schedule) for stream in self._streams for schedule in stream.worthwhile()[-most:]]
+        revisited = [
+            Match(stream, schedule) for stream in self._streams for schedule in stream.scheduler.worthwhile()[-most:]
+        ]
         for stream in self._streams:
             stream.forget()
         self._playing.revisit(revisited)
@@ -211,7 +213,7 @@ class _Runner:
                     stream.ask_again(number, played)
                     is_complete = False
                 elif shrunk.repeats:
-                    stream.avoid(shrunk.failure, shrunk.script)
+                    stream.scheduler.avoid(shrunk.failure, shrunk.script)
         if is_complete:
             self._guided = self._guidance.snapshot()
             self._keep_guidance_at_times()
@@ -237,7 +239,9 @@ class _Runner:
         self.campaign.unrepeatable = self.campaign.unrepeatable or played.unrepeatable
         progress.matches += 1
         progress.simulated += played.script.end_us / 1e6
-        progress.covered = share(self._reached, self._all_lines) if self._reached else None
+        if self._reached:
+            lines = self._all_lines
+            progress.covered = len(lines.intersection(self._reached)) / len(lines) if lines else 1.0
         for each in played.each_failure():
             self._note_failure(match.number, each)
         if not self._playing.in_batches:
@@ -256,7 +260,7 @@ class _Runner:
     def _on_shrunk(self, failed: _Failed, shrunk: Shrunk) -> None:
         self._shrunk[failed.key] = shrunk
         if shrunk.repeats and not self._playing.in_batches and not failed.played.went_on:
-            self._streams[0].avoid(shrunk.failure, shrunk.script)
+            self._streams[0].scheduler.avoid(shrunk.failure, shrunk.script)
         self._count_shrinking()
         while self._to_save and (done := self._shrunk[self._to_save[0].key]) is not None:
             self._save(self._to_save.popleft(), done)

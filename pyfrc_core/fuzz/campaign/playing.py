@@ -120,7 +120,7 @@ class Playing:
         if not chosen:
             self.over = True
             return
-        matches = [Match(stream, stream.schedule(number), number) for number, stream in chosen]
+        matches = [Match(stream, stream.scheduler.schedule(number), number) for number, stream in chosen]
         if not self.in_batches:
             self._streams[0].skip(1)
             if self._takes_too_long(matches[0]):

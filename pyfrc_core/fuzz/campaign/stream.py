@@ -15,7 +15,6 @@ from ...runtime.scripts.script import InputScript
 from ..guidance.goals import Goal
 from ..guidance.seed_schedule import SeedSchedule, SeedScheduler
 from ..match.work import MatchResult
-from ..oracle.failure import FuzzFailure
 
 #: The number of streams in a campaign that can be divided between machines.
 STREAMS = 8
@@ -55,7 +54,7 @@ class Stream:
         self._seed = seed
         self._index = index
         self._count = count
-        self._scheduler = SeedScheduler(seed, recorded, begins_short=count == 1)
+        self.scheduler = SeedScheduler(seed, recorded, begins_short=count == 1)
         self._played = 0
         #: The first match in which each failure has occurred since `frequent_failures` was called.
         self._failed: dict[str, tuple[int | None, MatchResult]] = {}
@@ -70,18 +69,14 @@ class Stream:
         """Note that this many of the next matches were played."""
         self._played += count
 
-    def schedule(self, number: int) -> SeedSchedule:
-        """Return the seeds of the match with this number."""
-        return self._scheduler.schedule(number)
-
     def learn(self, schedule: SeedSchedule, number: int | None, played: MatchResult) -> None:
         """Note the goals that a match has reached, and how it ended.
 
         :param number: None for a match of an earlier campaign
         """
         new = {goal: at_us for goal, at_us in played.reached.items() if goal not in self.reached}
-        self._scheduler.learn(schedule, new)
-        self._scheduler.note_end(schedule, played.failure)
+        self.scheduler.learn(schedule, new)
+        self.scheduler.note_end(schedule, played.failure)
         if played.failure is not None:
             self._failed.setdefault(played.failure.cause, (number, replace(played, noted=())))
         self.reached = self.reached.union(new)
@@ -92,20 +87,12 @@ class Stream:
         Each has the number of its match.
         """
         failed, self._failed = self._failed, {}
-        return [failed[each.cause] for each in self._scheduler.frequent_failures() if each.cause in failed]
+        return [failed[each.cause] for each in self.scheduler.frequent_failures() if each.cause in failed]
 
     def ask_again(self, number: int | None, played: MatchResult) -> None:
         """Have `frequent_failures` return this one again."""
         assert played.failure is not None
         self._failed.setdefault(played.failure.cause, (number, played))
-
-    def avoid(self, failure: FuzzFailure, script: InputScript) -> None:
-        """Leave out what this shortest script of a failure needs in many later matches, if it ends many."""
-        self._scheduler.avoid(failure, script)
-
-    def worthwhile(self) -> list[SeedSchedule]:
-        """Return the seeds of the matches that are worth continuing, each once."""
-        return self._scheduler.worthwhile()
 
     def clear(self) -> None:
         """Begin again."""
@@ -115,15 +102,15 @@ class Stream:
     def forget(self) -> None:
         """Forget which goals were reached: the robot's code has changed."""
         self.reached = frozenset()
-        self._scheduler = SeedScheduler(self._seed, self._recorded, begins_short=self._count == 1)
+        self.scheduler = SeedScheduler(self._seed, self._recorded, begins_short=self._count == 1)
 
     def state(self) -> dict[str, Any]:
         """Return what `restore` needs, as values of JSON."""
         reached = sorted(map(list, self.reached), key=repr)
-        return {"played": self._played, "reached": reached, **self._scheduler.state()}
+        return {"played": self._played, "reached": reached, **self.scheduler.state()}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Go on where an earlier campaign ended."""
         self._played = int(state["played"])
         self.reached = frozenset(map(tuple, state["reached"]))
-        self._scheduler.restore(state)
+        self.scheduler.restore(state)

@@ -119,11 +119,6 @@ class InputGenerator:
         #: `writes` returns nothing before this time.
         self.next_us = 0
 
-    @property
-    def driven_by_physics(self) -> frozenset[str]:
-        """Return the targets that are not written, since the robot's simulation drives them, as far as is known."""
-        return frozenset(self._driven)
-
     def over(self, now_us: int) -> bool:
         """Return whether the match is over."""
         return now_us >= self._end_us

@@ -62,18 +62,6 @@ def imported_devices(project: Project) -> bool:
 
 
 @lru_cache(maxsize=1)
-def game_messages(project: Project) -> tuple[str, ...]:
-    """Return the messages that the field may send, if the project says which."""
-    return project.game_specific_messages
-
-
-@lru_cache(maxsize=1)
-def auto_joysticks(project: Project) -> bool:
-    """Return whether the driver station sends joystick data in autonomous."""
-    return project.auto_joysticks
-
-
-@lru_cache(maxsize=1)
 def next_tree() -> HalData:
     """Return the tree for the `hal_data` of the next run, in this process or in each of its forks."""
     return HalData(defaults=False)

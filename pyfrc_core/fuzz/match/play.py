@@ -41,8 +41,6 @@ from ..oracle.failure import FuzzFailure, failure_of
 from ..oracle.hints import HintWatch
 from ..oracle.misbehavior_notes import MisbehaviorNotes
 from .imported_robot import (
-    auto_joysticks,
-    game_messages,
     imported_devices,
     invariants_of,
     load,
@@ -93,7 +91,7 @@ def _plan(project: Project, schedule: SeedSchedule) -> _Start:
     if schedule.base is not None:
         return _Start(rng, schedule.base.plan())
     seconds = match_seconds(project, schedule)
-    return _Start(rng, plan_match(rng, seconds, project.settings.match, game_messages(project)))
+    return _Start(rng, plan_match(rng, seconds, project.settings.match, project.game_specific_messages))
 
 
 def _fuzz(
@@ -124,7 +122,7 @@ def _fuzz(
             base=task.schedule.base,
             asked_controls=closing.enter_context(watch_controls()).targets,
             published=task.published,
-            auto_joysticks=auto_joysticks(project),
+            auto_joysticks=project.auto_joysticks,
         )
         generator.left_out = task.schedule.left_out_at(begin.at_us)
         journal = closing.enter_context(closed(Journal(task.journal))) if task.journal else None

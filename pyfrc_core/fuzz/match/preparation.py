@@ -16,7 +16,7 @@ from ...runtime.patch_table import PatchTable
 from ...wpi import network
 from ..inputs.asked_controls import watch_controls
 from ..inputs.finders import prepare_search
-from .imported_robot import auto_joysticks, game_messages, imported_devices, next_tree, robot_constants
+from .imported_robot import imported_devices, next_tree, robot_constants
 
 
 class Preparation:
@@ -59,5 +59,4 @@ def _read_settings(project: Project) -> None:
     What is wrong in it is a matter of the robot's run.
     """
     with suppress(PyfrcError):
-        game_messages(project)
-        auto_joysticks(project)
+        _ = project.game_specific_messages
