@@ -350,6 +350,7 @@ class MyRobot(wpilib.TimedRobot):
 """
 
 
+@pytest.mark.slow
 def test_only_what_it_breaks_keeps_it_from_its_place(make_project: MakeProject) -> None:
     still = """
         def test_it_stands_still(control, robot):

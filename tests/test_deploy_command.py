@@ -447,6 +447,7 @@ def test_the_users_keys_are_offered_to_no_robot_otherwise(new_robot, make_projec
             agent.accept()
 
 
+@pytest.mark.slow
 def test_a_changed_host_key_is_refused_until_it_is_accepted(robot: Roborio, make_project) -> None:
     project = make_project(program())
     assert deploy(project, robot).code == 0

@@ -125,6 +125,7 @@ def test_cut_after_every_kth_byte(name: str, way: str, directory: Path, agents: 
         assert outcomes[-1], "the last byte comes when all is done"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SAMPLED_SCENARIOS)
 def test_agent_killed_at_each_step(name: str, directory: Path, agents: Agents) -> None:
     """Killed: its last step is the one before; what it had written stays."""
@@ -154,6 +155,7 @@ def agent(robot: LocalRobot, agents: Agents, **options: int | bool) -> Generator
         session.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("loses", sampled([False, True], True))
 def test_rollback_killed_at_each_step(directory: Path, agents: Agents, loses: bool) -> None:
     """From a program with another start command, and with files that it has written."""
@@ -181,6 +183,7 @@ def test_rollback_killed_at_each_step(directory: Path, agents: Agents, loses: bo
     assert {True, False} == set(outcomes)
 
 
+@pytest.mark.slow
 def test_undeploy_killed_at_each_step(directory: Path, agents: Agents) -> None:
     """The robot starts the program, or nothing; and can be deployed to."""
     before = LocalRobot.new(directory / "before")

@@ -86,6 +86,7 @@ def test_a_robot_with_python_alone_has_nothing_of_other_languages(robot: LocalRo
     assert look_at(robot).other_languages == ()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("patient_doctor")
 def test_a_deploy_suggests_removing_java_until_it_is_removed(make_project) -> None:
     require_roborio()

@@ -12,7 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
-from conftest import RobotProject
+from conftest import RobotProject, sampled
 from roborio import Roborio, require_roborio
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
@@ -69,7 +69,7 @@ def project(make_project) -> RobotProject:
     return make_project({"robot.py": GOOD})
 
 
-@pytest.fixture(params=["virtual robot", "look-alike"])
+@pytest.fixture(params=sampled(["virtual robot", "look-alike"], "look-alike"))
 def address(request: pytest.FixtureRequest, project: RobotProject, tmp_path: Path) -> Iterator[str]:
     """The address of a robot."""
     if request.param == "look-alike":

@@ -108,6 +108,7 @@ def test_the_examples_in_the_physics_guide_pass(directory: str, project) -> None
             assert any(test.startswith(f"{file.removeprefix(directory + '/')}::") for test in result.outcomes()), file
 
 
+@pytest.mark.slow
 def test_the_examples_in_the_replay_guide_work(project) -> None:
     (script,) = re.findall(r"^`(tests/.+[.]jsonl)`:$", (ROOT / "docs/replay.md").read_text("utf-8"), re.MULTILINE)
     project.write(files("docs/replay.md") | {script: blocks("docs/replay.md", "json")[0]})
@@ -173,7 +174,7 @@ def test_the_examples_in_the_simulation_guide_work(project) -> None:
 COMING_FROM = ("docs/from_pyfrc_2019.md", "docs/from_todays_pyfrc.md")
 
 
-@pytest.mark.parametrize("document", COMING_FROM)
+@pytest.mark.parametrize("document", sampled(COMING_FROM, COMING_FROM[1]))
 def test_the_project_of_those_who_come_from_elsewhere_works_as_it_is(document: str, make_project) -> None:
     """But for the length of teleop; autonomous is as long as the way that the robot is to drive in it."""
     project = make_project(files(document) | json_files(document))

@@ -408,6 +408,7 @@ HANGS = """
 """
 
 
+@pytest.mark.slow
 def test_hangs_that_no_python_code_can_end_are_named_too(make_project: MakeProject) -> None:
     """A call into C that never gives Python back; a thread that hangs while it is being stopped."""
     project = make_project(

@@ -56,7 +56,7 @@ def robot(name: str, init: str = "robotInit") -> str:
     return WRITES.replace("{imports}", IMPORTS).replace("{name}", NAMES[name]).replace("{init}", init)
 
 
-@pytest.mark.parametrize("name", sampled(NAMES, "random", "beside the code"))
+@pytest.mark.parametrize("name", sampled(NAMES, "random"))
 def test_tests_at_the_same_time(make_project: MakeProject, name: str) -> None:
     project = make_project({"robot.py": robot(name), "pyproject.toml": SHORT_MATCH})
     result = project.run("test", "--builtin", "-j", "4")
@@ -102,6 +102,7 @@ def test_matches_and_replays(make_project: MakeProject) -> None:
     assert not (project.path / "tests" / "fuzz").exists()
 
 
+@pytest.mark.slow
 def test_a_recorded_test_is_the_same_in_a_replay(make_project: MakeProject, tmp_path: Path) -> None:
     project = make_project({"robot.py": robot("random"), "pyproject.toml": SHORT_MATCH})
     assert project.run("test", "--builtin", "-j", "4", "--trace", "traces", "--record", "scripts").code == 0

@@ -92,6 +92,7 @@ def test_four_shards_find_together_what_one_machine_finds(whole, make_shared_pro
     assert (again.code, written(merged)) == (0, written(whole)), again.output
 
 
+@pytest.mark.slow
 def test_an_interrupted_campaign_goes_on_where_it_was(whole, make_shared_project) -> None:
     parts = copy(make_shared_project)
     first = parts.run("fuzz", *CAMPAIGN[:2], "--runs", "32", "-j", "1")

@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from conftest import sampled
 from packaging.requirements import Requirement
 
 from pyfrc_core._version import __version__, requirement
@@ -72,7 +73,7 @@ def test_the_environment_is_made_then_activated_then_filled_then_used(language: 
     assert rest == [f'pip install "{requirement()}"', "pyfrc doctor"]
 
 
-@pytest.mark.parametrize("language", ["bash", "powershell"])
+@pytest.mark.parametrize("language", sampled(["bash", "powershell"], "bash"))
 def test_a_checkout_is_installed_by_its_directory(language: str) -> None:
     (line,) = block("### From a checkout", language)
     *command, place = shlex.split(line, posix=language == "bash")

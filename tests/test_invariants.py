@@ -74,6 +74,7 @@ def project(make_project: Any) -> Any:
     return make_project({"robot.py": ELEVATOR, "pyproject.toml": SETTINGS})
 
 
+@pytest.mark.slow
 def test_a_broken_rule_is_found_shrunk_explained_and_replayed(project) -> None:
     project.write({RULES: RULE})
     result = project.run("fuzz", "--seed", "1", "--runs", "16")

@@ -280,6 +280,7 @@ def test_a_script_can_say_all_that_comes_from_outside(make_project) -> None:
     assert result.code == 0, result.output
 
 
+@pytest.mark.slow
 def test_a_script_may_be_longer_than_a_test_without_it(make_project) -> None:
     long = text({"t": 0, "set": {"mode": "disabled"}}, header=HEADER | {"end": 601})
     robot = "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
 from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
     Seen,
     missing_browser,
@@ -23,6 +24,7 @@ def written(person: Seen, target: str = KP) -> list[Any]:
     return [step.writes[target] for step in person.simulation.script().steps if target in step.writes]
 
 
+@pytest.mark.slow
 def test_a_number_keeps_its_digits_unless_it_is_edited(person: Seen) -> None:
     person.tab("NetworkTables").click()
     box = person.row(KP).locator("input")

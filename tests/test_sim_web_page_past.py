@@ -80,6 +80,7 @@ def test_a_key_steps_through_the_past_and_not_the_present(person: Seen) -> None:
     assert person.simulation.snapshot.time == time
 
 
+@pytest.mark.slow
 def test_a_branch_that_is_longer_than_the_present_is_shown_whole(person: Seen) -> None:
     page = person.page
     person.simulation.enable()

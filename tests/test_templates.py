@@ -74,10 +74,10 @@ def template(request: pytest.FixtureRequest) -> str:
 
 every_template = pytest.mark.parametrize("project", TEMPLATES, indirect=True)
 
-#: By day, the one that people begin with, and one for each library of commands; by night, all.
+#: By day, one; by night, all.
 sampled_templates = pytest.mark.parametrize(
     "project",
-    sampled(TEMPLATES, "timed", "command", "magic"),
+    sampled(TEMPLATES, "command"),
     indirect=True,
 )
 

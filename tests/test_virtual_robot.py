@@ -190,6 +190,7 @@ def test_the_program_is_disabled_finds_its_files_and_does_not_outlive_a_robot_th
         assert ended(pid)
 
 
+@pytest.mark.slow
 def test_a_program_that_crashes_is_started_again_and_again(project: RobotProject, directory: Path) -> None:
     """And what it prints does not control the terminal."""
     project.write({"robot.py": CRASHES})
