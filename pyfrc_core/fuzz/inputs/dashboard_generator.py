@@ -9,14 +9,10 @@ from typing import Any
 
 from ...runtime.clock import PACKET_US
 from ...runtime.scripts.network_entries import NETWORK, entry_target, parse_entry_target
-from ...wpi import network
+from ...wpi import dashboards, network
+from ...wpi import names as robot_names
 from .network_values import SEES_TARGET, NetworkRead, NetworkValues, is_setting
 from .values import UNKNOWN, Input, RobotConstants, Value, draw
-
-_DASHBOARD_TABLES = ("/SmartDashboard/", "/Shuffleboard/")
-
-#: Tables that WPILib itself writes.
-_NOT_INPUTS = ("/FMSInfo/", "/LiveWindow/")
 
 #: Seconds from one choice to the next, on average and at least; each entry that the robot reads makes them more.
 _PAUSE, _SHORTEST_PAUSE = 3.0, 0.3
@@ -53,26 +49,15 @@ class DashboardFinder:
         """
         names = network.entry_names()
         if names != self._names or self._searches % _UNCHANGED == 0:
-            self._names, self._found = names, sorted(self._inputs(names))
+            self._names, self._found = names, sorted(_inputs(names))
         self._searches += 1
         return self._found
 
-    def _inputs(self, names: Sequence[str]) -> Iterator[Input]:
-        for name in names:
-            table, _, entry = name.rpartition("/")
-            if not name.startswith(_DASHBOARD_TABLES) or entry.startswith("."):
-                continue
-            made_by = network.text_of(f"{table}/.type")
-            if made_by == "String Chooser":
-                if entry == "options" and (options := network.texts_of(name)):
-                    yield Input(f"{NETWORK}{table}/selected", "choice", table, tuple(options))
-            elif made_by == "Command":
-                if entry == "running":
-                    yield Input(NETWORK + name, "command", table)
-            elif made_by and network.type_of(name) == "boolean":
-                yield Input(NETWORK + name, "flag", name)
-            elif made_by and network.type_of(name) == "double":
-                yield Input(NETWORK + name, "number", name)
+
+def _inputs(names: Sequence[str]) -> Iterator[Input]:
+    for widget in map(dashboards.widget_of, names):
+        if widget is not None:
+            yield Input(NETWORK + widget.entry, widget.kind, widget.owner, widget.options)
 
 
 class DashboardGenerator:
@@ -182,7 +167,7 @@ class DashboardGenerator:
     def _entry(self, read: NetworkRead) -> Input | None:
         """Return the input that an entry is; None if it is none, or not of the type that the robot reads."""
         table, _, last = read.name.rpartition("/")
-        if read.name.startswith(_NOT_INPUTS) or last.startswith(".") or read.name in self._published:
+        if read.name.startswith(robot_names.WRITTEN_BY_WPILIB) or last.startswith(".") or read.name in self._published:
             return None
         type_name, published = read.type_name, network.type_of(read.name)
         if published and published != type_name:

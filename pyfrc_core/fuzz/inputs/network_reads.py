@@ -17,8 +17,6 @@ from ...runtime.patch_table import Patch, patched
 from ...wpi import names, network_reads
 from .network_values import STRUCTS, NetworkRead
 
-#: The library file that reads on behalf of robot code: MagicBot's tunables.
-_TUNABLES = "magic_tunable.py"
 #: The file that runs in simulations only.
 _PHYSICS = "physics.py"
 
@@ -40,7 +38,7 @@ class NetworkReads:
         """
         frame = get_frame(2)
         file = frame.f_code.co_filename
-        if not self._files.is_robot_code(file) and not file.endswith(_TUNABLES):
+        if not self._files.is_robot_code(file) and not file.endswith(names.TUNABLES_FILE):
             return
         if _is_of_simulation(frame):  # the robot may read it later
             return

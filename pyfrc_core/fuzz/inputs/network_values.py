@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...runtime.scripts.network_entries import NOT_A_NUMBER
+from ...wpi import names
 from .values import RobotConstants, Value
-
-_SETTINGS = ("/SmartDashboard/", "/Shuffleboard/", "/Preferences/")
 
 #: What cameras measure, by the last part of the entry's name; the first match counts. The limits are Limelight's.
 _MEASURED: tuple[tuple[str, float, float], ...] = (
@@ -73,7 +72,7 @@ class NetworkRead:
 
 def is_setting(name: str) -> bool:
     """Return whether an entry belongs to a dashboard or to the preferences."""
-    return name.startswith(_SETTINGS)
+    return name.startswith(names.SETTINGS)
 
 
 class NetworkValues:

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import os
-import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import IO
 
 from ...processes.memory_file import memory_file
-
-_ERROR = re.compile(rb"^Error at ([^\n]*)\n", re.MULTILINE)
-#: Reports that are no fault of the robot's code: joysticks that are not plugged in; slow loops, which are detected in a
-#: better way; drives without a command for a tenth of a second, which every robot has while it stands still.
-_NO_FAULT = re.compile(rb"Joystick .*not (?:available|attached|plugged)|Loop time of|Output not updated", re.IGNORECASE)
+from ...wpi import reports
 
 
 class HalReports:
@@ -38,8 +33,8 @@ class HalReports:
         new = os.pread(descriptor, size - begin, begin) if hasattr(os, "pread") else self._read_again(size)
         whole = new[: new.rfind(b"\n") + 1]
         self._read += len(whole)
-        for found in _ERROR.finditer(whole):
-            if not _NO_FAULT.search(found[1]):
+        for found in reports.ERROR.finditer(whole):
+            if not reports.NO_FAULT.search(found[1]):
                 return found[1].decode(errors="replace").strip()
         return None
 

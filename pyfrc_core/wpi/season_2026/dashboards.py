@@ -1,14 +1,17 @@
-"""What dashboards show: fields, with the robot on them."""
+"""What dashboards show: fields with the robot on them, and what their user can change."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal, NamedTuple
 
 import wpilib
 from wpilib import Field2d
 from wpimath.geometry import Pose2d
 
-__all__ = ["Field2d", "place_robot", "robot_pose", "show_field", "show_poses", "shown"]
+from . import network
+
+__all__ = ["Field2d", "place_robot", "robot_pose", "show_field", "show_poses", "shown", "widget_of"]
 
 
 def robot_pose(field: Field2d) -> Pose2d:
@@ -37,3 +40,39 @@ def shown(name: str) -> object | None:
         return wpilib.SmartDashboard.getData(name)
     except RuntimeError:  # nothing has this name
         return None
+
+
+#: The tables whose entries dashboards show.
+_TABLES = ("/SmartDashboard/", "/Shuffleboard/")
+
+
+class Widget(NamedTuple):
+    """What the user of a dashboard can change of an object that robot code shows.
+
+    :param kind: a choice, the button of a command, a switch, or a number
+    :param entry: the entry that the dashboard writes
+    :param owner: what it belongs to: the table of the object, or the entry itself
+    :param options: what can be chosen
+    """
+
+    kind: Literal["choice", "command", "flag", "number"]
+    entry: str
+    owner: str
+    options: tuple[str, ...] = ()
+
+
+def widget_of(name: str) -> Widget | None:
+    """Return what the user of a dashboard can change by an entry of this name; None if that is nothing."""
+    table, _, entry = name.rpartition("/")
+    if not name.startswith(_TABLES) or entry.startswith("."):
+        return None
+    made_by = network.text_of(f"{table}/.type")
+    if made_by == "String Chooser":
+        options = network.texts_of(name) if entry == "options" else []
+        return Widget("choice", f"{table}/selected", table, tuple(options)) if options else None
+    if made_by == "Command":
+        return Widget("command", name, table) if entry == "running" else None
+    type_name = network.type_of(name) if made_by else ""
+    if type_name == "boolean":
+        return Widget("flag", name, name)
+    return Widget("number", name, name) if type_name == "double" else None

@@ -43,6 +43,12 @@ REFRESH = "wpilib.DriverStation.refreshData()"
 #: All methods that robot code overrides, besides those of the modes.
 OVERRIDDEN = _OF_ALL_ROBOTS | OF_A_COMMAND | {"periodic", "runsWhenDisabled", "getInterruptionBehavior"}
 
+#: The tables of NetworkTables whose entries are settings, and those that only WPILib itself writes.
+SETTINGS = ("/SmartDashboard/", "/Shuffleboard/", "/Preferences/")
+WRITTEN_BY_WPILIB = ("/FMSInfo/", "/LiveWindow/")
+#: The file of a library that reads entries on behalf of robot code: magicbot's tunables.
+TUNABLES_FILE = "magic_tunable.py"
+
 #: The functions with which robot code asks for what is rarely asked for, by the path in `hal_data` of what they return.
 ASKED_BY = {
     "roborio.cpu_temp": "getCPUTemp",

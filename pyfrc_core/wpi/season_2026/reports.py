@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import wpiutil._wpiutil
@@ -15,6 +16,13 @@ SET_STACK_TRACE_HOOK = PrivateName(
     "wpiutil._wpiutil:_setup_stack_trace_hook",
     "runtime.patches.robot_stack has WPILib's errors come with the robot's lines by it",
 )
+
+
+#: An error as WPILib writes it to standard error; the group is its text.
+ERROR = re.compile(rb"^Error at ([^\n]*)\n", re.MULTILINE)
+#: Errors that are no fault of the robot's code: joysticks that are not plugged in; slow loops, which pyfrc detects in a
+#: better way; drives without a command for a tenth of a second, which every robot has while it stands still.
+NO_FAULT = re.compile(rb"Joystick .*not (?:available|attached|plugged)|Loop time of|Output not updated", re.IGNORECASE)
 
 
 def show_stack(lines: Callable[[], str]) -> None:
