@@ -4,7 +4,8 @@
 reached; known lines are not observed. Only code in functions counts: all other code runs on import.
 
 Python 3.12 and newer report the lines and branches of the robot's functions alone (`sys.monitoring`). Before that, a
-trace function is called for every function of the process, which takes more of the processor, and it gets lines only.
+trace function is called for every function of the process, libraries' too. Nearly all of its cost are these calls, so
+fewer lines to watch would not help. It gets lines only.
 """
 
 from __future__ import annotations
