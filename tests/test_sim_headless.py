@@ -11,7 +11,6 @@ from sim_robots import FILES
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.sim.engine.extensions import check_installed
-from pyfrc_core.sim.ui.headless import WholeLines
 from pyfrc_core.sim.ui.picture import check_pictures
 
 pytestmark = pytest.mark.bare
@@ -159,17 +158,3 @@ def test_a_robot_without_physics(make_project) -> None:
     result = made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "1")
     assert result.code == 0, result.output
     assert "there is no physics.py (pyfrc create-physics writes one)" in result.stdout
-
-
-def test_a_line_that_the_robot_has_begun_is_not_cut_by_a_warning() -> None:
-    said: list[str] = []
-    lines = WholeLines(said.append)
-    for output in ("one\nD", "efault", " mode\ntwo", ""):
-        lines.pass_on(output)
-        if output == "one\nD":
-            lines.own("warning: a port\n")
-            lines.own("warning: another\n")
-    lines.end()
-    lines.own("done\n")
-    assert "".join(said) == "one\nDefault mode\nwarning: a port\nwarning: another\ntwo\ndone\n"
-    assert said[:2] == ["one\nD", "efault"], "the robot's output is not held up"

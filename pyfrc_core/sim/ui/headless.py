@@ -74,37 +74,6 @@ def _text_of(failure: Failure) -> str:
     return f"failed at {failure.time:.2f} s: {failure.headline}"
 
 
-class WholeLines:
-    """Prints the robot's output as it comes, and pyfrc's own lines between its lines."""
-
-    def __init__(self, say: Callable[[str], object]) -> None:
-        self._say = say
-        #: Whether the robot's output has ended a line, and what is printed when it does.
-        self._at_line_start, self._waiting = True, ""
-
-    def pass_on(self, output: str) -> None:
-        """Print output of the robot, and after its next line what waits for that."""
-        line, newline, rest = output.partition("\n")
-        if self._waiting and newline:
-            self._say(line + newline + self._waiting)
-            self._waiting, self._at_line_start, output = "", True, rest
-        if output:
-            self._say(output)
-            self._at_line_start = output.endswith("\n")
-
-    def own(self, text: str) -> None:
-        """Print lines of pyfrc's, as soon as the robot's line is at its end."""
-        if self._at_line_start:
-            self._say(text)
-        else:
-            self._waiting += text
-
-    def end(self) -> None:
-        """End the robot's last line."""
-        if not self._at_line_start:
-            self.pass_on("\n")
-
-
 class Headless(FrontEnd):
     """Runs the robot for some time, and prints a summary.
 
@@ -130,7 +99,8 @@ class Headless(FrontEnd):
         self._watching = watching
         self._simulation: Simulation | None = None
         self._output: OutputCursor | None = None
-        self._lines = WholeLines(say)
+        #: Whether the robot's output has ended a line.
+        self._at_line_start = True
         self._reported: Failure | None = None
         self._noted = ""
         self._notice = StandstillNotice()
@@ -160,17 +130,18 @@ class Headless(FrontEnd):
             status.late_packets,
         )
         self._print(simulation)
-        self._lines.end()
         if not self._quiet:
             for line in self.summary.lines():
-                self._say(f"{line}\n")
+                self._say_line(line)
         elif status.failure is not None:
-            self._say(f"{_text_of(status.failure)}\n")
+            self._say_line(_text_of(status.failure))
         if interrupted and status.failure is None and simulation.snapshot is None:
-            self._say(f"interrupted while {simulation.project.main_file.name} was still being imported and started\n")
+            self._say_line(
+                f"interrupted while {simulation.project.main_file.name} was still being imported and started"
+            )
             return 2
         if interrupted and end is not None:
-            self._say("interrupted\n")
+            self._say_line("interrupted")
             return 2
         return 0 if status.failure is None else status.failure.exit_code
 
@@ -192,7 +163,7 @@ class Headless(FrontEnd):
             return
         seconds = 0.0 if self._simulation is None else self._time_us(self._simulation) / 1_000_000
         verb = "was" if len(files) == 1 else "were"
-        self._lines.own(f"{', '.join(files)} {verb} saved: going on with the new code at {seconds:.2f} s\n")
+        self._say_line(f"{', '.join(files)} {verb} saved: going on with the new code at {seconds:.2f} s")
 
     def _drive(self, simulation: Simulation, end: float | None) -> None:
         """Run the robot to the end."""
@@ -238,18 +209,24 @@ class Headless(FrontEnd):
             return (MatchPeriods(simulation.project.settings.match).length_us) / 1_000_000 + 0.5
         return None if self._mode is None else DEFAULT_SECONDS
 
+    def _say_line(self, text: str) -> None:
+        """Print a line of pyfrc's own, after the robot's."""
+        self._say(f"{text}\n" if self._at_line_start else f"\n{text}\n")
+        self._at_line_start = True
+
     def _print(self, simulation: Simulation) -> None:
         if self._output is not None and (output := self._output.read()):
-            self._lines.pass_on(output)
+            self._say(output)
+            self._at_line_start = output.endswith("\n")
         status = simulation.status
         if status.note not in ("", self._noted):
             self._noted = status.note
-            self._lines.own(f"warning: {status.note}\n")
+            self._say_line(f"warning: {status.note}")
         if (text := self._notice.look(status.standstill)) is not None:
-            self._lines.own(f"{text}\n")
+            self._say_line(text)
         if self._watching and status.failure is not None and status.failure is not self._reported:
             self._reported = status.failure
             if status.state == "failed":  # otherwise it is over, and the summary says so
-                self._lines.own(f"{_text_of(status.failure)}\n")
+                self._say_line(_text_of(status.failure))
                 if not self._quiet:
-                    self._lines.own("waiting for the correction to be saved\n")
+                    self._say_line("waiting for the correction to be saved")
