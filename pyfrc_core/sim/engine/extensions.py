@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import importlib.util
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from ...errors import UsageError
 class Extension:
     """A known extension.
 
-    :param module: the module with the function ``loadExtension``
+    :param module: the module that is loaded
     :param package: the package to install
     """
 
@@ -31,7 +30,8 @@ EXTENSIONS = {
 
 #: WPILib's simulator window, which needs the process's main thread.
 WINDOW = "gui"
-_LOADABLE = {**EXTENSIONS, WINDOW: Extension("halsim_gui", "robotpy-halsim-gui")}
+#: All that a simulation can load.
+LOADABLE = {**EXTENSIONS, WINDOW: Extension("halsim_gui", "robotpy-halsim-gui")}
 
 
 def check_installed(names: Sequence[str]) -> None:
@@ -40,9 +40,9 @@ def check_installed(names: Sequence[str]) -> None:
     :raises UsageError: naming the package to install
     """
     for name in names:
-        if name not in _LOADABLE:
+        if name not in LOADABLE:
             raise UsageError(f"there is no extension {name!r}", remedy=f"There is: {', '.join(EXTENSIONS)}.")
-        extension = _LOADABLE[name]
+        extension = LOADABLE[name]
         if importlib.util.find_spec(extension.module.partition(".")[0]) is None:
             raise UsageError(
                 "WPILib's simulator window is not installed"
@@ -50,9 +50,3 @@ def check_installed(names: Sequence[str]) -> None:
                 else f"the extension {name} is not installed",
                 remedy=f"Install it with: pip install {extension.package}",
             )
-
-
-def load_extensions(names: Sequence[str]) -> None:
-    """Load these extensions into this process."""
-    for name in names:
-        importlib.import_module(_LOADABLE[name].module).loadExtension()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeGuard
@@ -164,6 +165,11 @@ def run_program(robot_class: type[Any]) -> bool:
 def set_deploy_directory(directory: Path) -> None:
     """Set the directory in which robot code finds its files."""
     wpilib.getDeployDirectory = lambda: str(directory)
+
+
+def load_extension(module: str) -> None:
+    """Load an extension of WPILib's simulation beside the simulated HAL, such as ``halsim_gui``."""
+    import_module(module).loadExtension()
 
 
 def show_window() -> None:

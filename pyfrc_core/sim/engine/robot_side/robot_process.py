@@ -31,7 +31,7 @@ from ....runtime.patches.install import patches
 from ....runtime.robot import RobotRun
 from ....runtime.seeds import seed_generators
 from ....wpi import robots
-from ..extensions import WINDOW, load_extensions
+from ..extensions import LOADABLE, WINDOW
 from ..messages import Failed, Job, Ready, WindowClosed
 from ..program_files import keep_no_bytecode_of_new_code
 from ..snapshot import Failure
@@ -48,7 +48,8 @@ def run_robot(job: Job, connection: Connection, log: CrashLog) -> None:
 
     :param log: written to when the process ends by itself
     """
-    load_extensions(job.options.extensions)
+    for name in job.options.extensions:
+        robots.load_extension(LOADABLE[name].module)
     if WINDOW not in job.options.extensions:
         _run(job, connection, log)
         return
