@@ -235,13 +235,14 @@ def _the_same(environment: Mapping[str, str], started_with: Mapping[str, str]) -
 def _hides(places: Iterable[str], modules: set[str]) -> bool:
     """Whether one of these directories has a module with a name that is imported already; there, it would come first.
 
-    pytest imports from directories below them, too.
+    pytest imports from directories below them, too; but modules of packages have longer names.
     """
     for place in places:
-        for _, directories, files in os.walk(place):
+        for directory, directories, files in os.walk(place):
             directories[:] = [name for name in directories if not name.startswith(".")]
             sources = (name.removesuffix(".py") for name in files if name.endswith(".py"))
-            if not modules.isdisjoint((*directories, *sources)):
+            is_package = "__init__.py" in files and directory != place
+            if not is_package and not modules.isdisjoint((*directories, *sources)):
                 return True
     return False
 

@@ -199,7 +199,8 @@ def test_its_end_is_reported(end: str, make_project: MakeProject) -> None:
     [
         ("numbers.py", {}, False),
         ("below/coverage.py", {}, False),
-        ("parts/numbers.txt", {}, True),
+        ("below/numbers.txt", {}, True),
+        ("package/numbers.py", {}, True),
         ("robot.py", {"PYTHONDEVMODE": "1"}, False),
         ("robot.py", {"PYFRC_COVERAGE": "1"}, False),
         ("robot.py", {"PYTHONHASHSEED": "1"}, False),
@@ -209,7 +210,7 @@ def test_its_end_is_reported(end: str, make_project: MakeProject) -> None:
 def test_a_new_interpreter_starts_where_a_fork_would_differ(
     module: str, variable: dict[str, str], is_warm: bool, make_project: MakeProject
 ) -> None:
-    project = make_project({module: ""})
+    project = make_project({module: "", "package/__init__.py": ""})
     program = project.start_with([0, 1, 2], "--version", env=variable)
     assert program.wait() == 0
     assert isinstance(program, forked.Forked) is is_warm
