@@ -83,7 +83,8 @@ def going_back(project: Project) -> None:
         simulation.rewind(120)
         simulation.wait_for(lambda: simulation.status.state == "paused")
         took = time.perf_counter() - began
-        print(f"back from 300 s to 120 s: {took:.2f} s; the snapshot is the same: {simulation.snapshot == there}")
+        same = robots_values(simulation.snapshot) == robots_values(there)
+        print(f"back from 300 s to 120 s: {took:.2f} s; the robot is the same: {same}")
 
 
 def drive(simulation: Simulation) -> None:
@@ -91,6 +92,12 @@ def drive(simulation: Simulation) -> None:
     simulation.enable()
     simulation.set_axis(0, 1, -0.7)
     simulation.set_axis(1, 1, -0.6)
+
+
+def robots_values(snapshot: Snapshot | None) -> dict[str, object]:
+    """Values of a snapshot without the joysticks, which are released when a person goes back."""
+    values = {} if snapshot is None else snapshot.values
+    return {path: value for path, value in values.items() if not path.startswith("joysticks")}
 
 
 def time_of(simulation: Simulation) -> float:
