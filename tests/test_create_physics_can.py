@@ -179,6 +179,7 @@ def test_driving(control, hal_data, robot, physics_controller):
 """
 
 
+@pytest.mark.slow
 def test_swerve_on_sparks_drives(make_project: MakeProject) -> None:
     """Its absolute encoders do not measure 0 when its wheels point ahead: each has another offset in the code."""
     project = competition_robot(make_project, "rev_swerve")

@@ -81,6 +81,7 @@ def address(request: pytest.FixtureRequest, project: RobotProject, tmp_path: Pat
             yield virtual.address
 
 
+@pytest.mark.slow
 def test_after_three_late_crashers_a_rollback_goes_to_the_program_that_runs(
     project: RobotProject, address: str
 ) -> None:

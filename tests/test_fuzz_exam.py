@@ -50,6 +50,7 @@ def test_each_patch_fits_and_its_line_is_there(made: Made, tmp_path: Path) -> No
         assert (fuzz_exam.EXAM / "witnesses" / f"witness_{name}.py").is_file()
 
 
+@pytest.mark.slow
 def test_each_correct_robot_is_there(made: Made) -> None:
     for robot in CORRECT.values():
         assert (made(robot) / "robot.py").is_file()

@@ -63,6 +63,7 @@ def test_a_motor_that_autonomous_leaves_running_is_found(make_project: Any) -> N
     assert project.run("fuzz", "--seed", "1", "--runs", "8").code == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("teleop", "disabled"),
     sampled(

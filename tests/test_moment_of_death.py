@@ -56,6 +56,7 @@ def test_in_a_simulation(make_project: MakeProject, death: str) -> None:
     assert MOMENT in result.output
 
 
+@pytest.mark.slow
 def test_in_a_campaign(make_project: MakeProject) -> None:
     """And in the replay of what it keeps."""
     settings = "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"

@@ -345,6 +345,7 @@ def test_a_stopped_robot_leaves_no_child_processes(project: RobotProject, direct
         assert all(ended(child) for child in children)
 
 
+@pytest.mark.slow
 def test_silent_connections_stop_no_deploy(project: RobotProject, directory: Path) -> None:
     """To every port at which the robot listens: SSH, console, control, and its program's."""
     missing = ["Linux"] if sys.platform != "linux" else []

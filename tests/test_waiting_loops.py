@@ -178,6 +178,7 @@ def test_the_limit_can_be_set(make_project: MakeProject) -> None:
     assert "loop_seconds" in project.run("test").output
 
 
+@pytest.mark.slow
 def test_campaigns_find_it_and_keep_a_script(make_project: MakeProject) -> None:
     """Its script fails in a replay in the same way."""
     robot = TIMED.replace("while not self.gamepad.getAButton():", "while True:")
