@@ -104,7 +104,7 @@ class FuzzSettings:
 
     __pydantic_config__ = STRICT
 
-    #: How long each match is, in robot time.
+    #: How long each match is, in robot time. A check that waits for longer finds nothing.
     match_seconds: Seconds = 30.0
     #: Processor seconds without progress in robot time, after which robot code counts as hanging.
     hang_seconds: Seconds = 2.0

@@ -56,6 +56,8 @@ def _set_led_data(strip: sim.AddressableLEDSim, colours: list[list[int]]) -> Non
 
 
 F = DeviceField  # a short name, for a compact table
+
+#: The devices. CONTRIBUTING.md ("Add a device") says what else each needs to be seen in the simulator and in fuzz.
 KINDS = (
     DeviceKind(
         "pwm",

@@ -13,7 +13,7 @@ from .fields import HAS_SOURCE, INITIALIZED, DeviceField, group
 from .kinds import BOOL, FLOAT, choice
 from .paths import join
 
-HUB_COMPRESSOR = choice({"disabled": 0, "digital": 1, "analog": 2, "hybrid": 3})
+HUB_COMPRESSOR_MODE = choice({"disabled": 0, "digital": 1, "analog": 2, "hybrid": 3})
 
 MODULES = 63  # CAN device numbers 0 to 62; the HAL does not check beyond
 CHANNELS = 24  # of a power distribution module
@@ -28,7 +28,7 @@ COMPRESSOR = (
 PCM_COMPRESSOR = (*COMPRESSOR, DeviceField("closed_loop_enabled", "ClosedLoopEnabled", BOOL))
 HUB_COMPRESSOR_FIELDS = (
     *COMPRESSOR,
-    DeviceField("config_type", "CompressorConfigType", HUB_COMPRESSOR),
+    DeviceField("config_type", "CompressorConfigType", HUB_COMPRESSOR_MODE),
     DeviceField(
         "closed_loop_enabled",
         "CompressorConfigType",

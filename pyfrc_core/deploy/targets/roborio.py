@@ -46,6 +46,10 @@ _LAYOUT = Layout(
 
 
 def _addresses(team: int) -> list[tuple[str, str]]:
+    """Return where a team's robot may be, and how it is connected there.
+
+    An address that robots of several teams can have is one of `shared_hosts`, too: its host key is of no one team.
+    """
     name = f"roboRIO-{team}-FRC"
     return [
         (f"10.{team // 100}.{team % 100}.2", "radio or Ethernet"),

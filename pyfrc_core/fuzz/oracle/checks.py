@@ -23,7 +23,7 @@ from ...runtime.time.timed_loop import Periodic
 from ...wpi import motor_controllers, station
 from .failure import MisbehaviorError, place_of, user_frame
 from .hal_reports import HalReports, hal_reports
-from .left_running import STOPS_WITHIN_US, MotorsLeftRunning
+from .left_running import NEGLIGIBLE_POWER, STOPS_WITHIN_US, MotorsLeftRunning
 from .misbehavior_notes import LastMisbehavior
 from .motor_calls import InertMotors, watch_motor_calls
 
@@ -33,8 +33,6 @@ _STOPS_WITHIN_US = 500_000
 _LEAVES_WITHIN_US = 3_000_000
 #: Rounding errors of floating-point sums may exceed 1 by this much.
 _ROUNDING = 1e-6
-#: Powers up to this one do not move a motor.
-_NEGLIGIBLE_POWER = 0.02
 
 
 #: Called with each misbehavior; returns whether the run ends with it.
@@ -101,8 +99,8 @@ class _Oracle:
     def _misbehaved(self, what: str, kind: str, place: tuple[str, str]) -> None:
         threads = self._run.threads
         if threads.failure is None and not threads.ending:
-            where = f"\n  (Disable this check with {kind} = false under [tool.pyfrc.fuzz] in pyproject.toml.)"
-            error = MisbehaviorError(what + where, kind, *place)
+            setting = f"\n  (Disable this check with {kind} = false under [tool.pyfrc.fuzz] in pyproject.toml.)"
+            error = MisbehaviorError(what + setting, kind, *place)
             if self._ends_run(error):
                 threads.fail(error)
 
@@ -123,7 +121,7 @@ class _Oracle:
                     self._misbehaved(what, "out_of_range", self._caller())
             elif (
                 self._mode == "disabled"
-                and abs(number) > _NEGLIGIBLE_POWER
+                and abs(number) > NEGLIGIBLE_POWER
                 and settings.motors_while_disabled
                 and self._is_long_disabled()
                 and not self._inert_motors.is_inert(motor)

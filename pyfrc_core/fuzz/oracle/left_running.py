@@ -21,7 +21,7 @@ from .failure import user_frame
 #: How long after the beginning of teleop a motor may still have its value from autonomous.
 STOPS_WITHIN_US = 1_000_000
 #: Powers up to this one do not move a motor.
-_NEGLIGIBLE_POWER = 0.02
+NEGLIGIBLE_POWER = 0.02
 
 
 @dataclass
@@ -89,4 +89,4 @@ class MotorsLeftRunning:
 
     def _runs_on(self, noted: SetMotor) -> bool:
         now = motor_controllers.power_of(noted.motor)
-        return abs(noted.power) > _NEGLIGIBLE_POWER and now == noted.power and not self._in_group(noted.motor)
+        return abs(noted.power) > NEGLIGIBLE_POWER and now == noted.power and not self._in_group(noted.motor)
