@@ -15,6 +15,7 @@ import io
 import json
 import os
 import pkgutil
+import re
 import runpy
 import secrets
 import select
@@ -28,6 +29,7 @@ import types
 import weakref
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import redirect_stdout, suppress
+from importlib.util import find_spec
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
@@ -37,6 +39,7 @@ import pyfrc_cli
 import pyfrc_core
 from pyfrc_cli import start
 from pyfrc_core.processes import spawn
+from pyfrc_core.season import CURRENT
 
 #: Whether programs can be forked here: where Linux reports the end of a process by a descriptor.
 POSSIBLE = hasattr(os, "pidfd_open") and "PYFRC_COLD_STARTS" not in os.environ
@@ -305,6 +308,11 @@ def _standard_stream(number: int, errors: str) -> io.TextIOWrapper:
     )
 
 
+_NEEDS_TK = re.compile(r"\.ui\.tk\b" if find_spec("tkinter") is None else r"(?!)")
+#: The packages that are written for another season's WPILib; those in `season` import none.
+_OTHER_SEASON = re.compile(rf"(?<!core\.season)\.season_(?!{CURRENT.year}\b)")
+
+
 def main() -> None:
     """Be the process that forks."""
     listener = socket.socket(fileno=int(sys.argv[1]))
@@ -314,10 +322,12 @@ def main() -> None:
         pytest.main(["-VV"])  # imports its plugins, in its own way
     for package in (pyfrc_cli, pyfrc_core):
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            if "cluster" not in module.name:  # it imports Dask
+            # Not what imports Dask, nor what imports another season's WPILib; nor the window where there is no Tk.
+            if not ("cluster" in module.name or _OTHER_SEASON.search(module.name) or _NEEDS_TK.search(module.name)):
                 importlib.import_module(module.name)
     for name in _IMPORTED:
-        importlib.import_module(name)
+        with suppress(ImportError):  # of another season, or an optional package
+            importlib.import_module(name)
     # The seed is fixed already: Python need not be started again.
     start._restart_with_fixed_seed = lambda: os.environ.update(PYTHONHASHSEED="0")  # type: ignore[assignment]
     spawn.popen = functools.partial(popen, listener.getsockname().decode())

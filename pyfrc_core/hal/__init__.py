@@ -8,6 +8,10 @@ Traces and recordings find what has changed by one mechanism: `tree_reader` read
 through WPILib's bindings, and `change_reader` compares. Which of the roboRIO's 290 possible devices exist, the HAL
 reports (`created_devices`). It reports no SimDevices to Python, so these are listed at each look (`sim_device_list`).
 
+A season's devices, and how WPILib spells them, are in a package of their own (`season_2026`). As in `wpi`, another
+season is a package beside it with modules of the same names, and what is asked of this package is the season's whose
+WPILib is installed: ``from ..hal import device_table``.
+
 Importing this package does not change the HAL, and imports WPILib only when the tree is used: the simulator's window
 needs paths and no tree.
 
@@ -18,14 +22,25 @@ robot is disabled (`output_gate`).
 from __future__ import annotations
 
 from functools import cache
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from ..season import CURRENT
 from .containers import LiveDict, LiveList
 from .kinds import Choice
 from .paths import format_path, parse_path
 
 if TYPE_CHECKING:
     from .data import HalData
+    from .season_2026 import accessors as accessors
+    from .season_2026 import counters as counters
+    from .season_2026 import device_table as device_table
+    from .season_2026 import driver_station as driver_station
+    from .season_2026 import outputs as outputs
+    from .season_2026 import pneumatics as pneumatics
+
+#: The modules of each season's package.
+_OF_A_SEASON = ("accessors", "counters", "device_table", "driver_station", "outputs", "pneumatics")
 
 __all__ = [
     "Choice",
@@ -44,6 +59,8 @@ def __getattr__(name: str) -> Any:
         from .data import HalData
 
         return HalData
+    if name in _OF_A_SEASON:
+        return import_module(f"{__name__}.season_{CURRENT.year}.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

@@ -9,12 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import hal
-from hal import simulation as hs
-from wpilib.simulation import SimDeviceSim
-
+from ..wpi import sim_devices
 from .sim_device_list import Signature, sim_device_list
 
 #: Patterns for the device names of motor controllers, and of other devices on the bus.
@@ -55,9 +52,7 @@ _POSITION_MODES = (3, 5)
 
 
 class _Output(NamedTuple):
-    raw: hal.SimValue
-    get: Callable[[], Any]
-    put: Callable[[Any], None]
+    value: sim_devices.SimValue
     #: Whether the value is a target position.
     is_position: Callable[[], bool] | None
 
@@ -79,9 +74,9 @@ class CanOutputs:
             self._devices = devices
             self._outputs = [output for name, _handle, values in devices for output in _outputs_of(name, values)]
         for output in self._outputs:
-            value = output.get()
+            value = output.value.get()
             if value and (output.is_position is None or not output.is_position()):
-                output.put(type(value)(0))
+                output.value.set(type(value)(0))
                 yield _Written(output, value).restore
 
 
@@ -91,52 +86,36 @@ class _Written:
     def __init__(self, output: _Output, before: object) -> None:
         self._output, self._before = output, before
         self._written = False
-        # Called for every write, even if the value does not change.
-        self._watch: object = hs.registerSimValueChangedCallback(output.raw, self._note, False)
+        self._watch: object = sim_devices.watch(output.value, self._note)
 
-    def _note(self, *_: object) -> None:
+    def _note(self) -> None:
         self._written = True
 
     def restore(self) -> None:
         self._watch = None
         if not self._written:
-            self._output.put(self._before)
+            self._output.value.set(self._before)
 
 
 def _outputs_of(name: str, values: tuple[str, ...]) -> Iterator[_Output]:
-    device = SimDeviceSim(name)
+    device = sim_devices.open_device(name)
     is_motor = bool(_MOTOR.search(name)) and not _NO_MOTOR.search(name)
     mode = next((value for value in values if _plain(value) == _MODE), None)
-    for value in values:
-        raw, what = device.getValue(value), _plain(value)
-        if raw.type == hal.Type.DOUBLE:
-            access: Any = device.getDouble(value)
-        elif raw.type == hal.Type.INT:
-            access = device.getInt(value)
-        else:
+    for each in values:
+        value, what = sim_devices.access(device, each), _plain(each)
+        if value.kind not in ("number", "whole"):
             continue
-        if what in _OUTPUTS or (what in _COMMANDS and is_motor and _only_robot_writes(raw)):
-            yield _Output(raw, access.get, access.set, None)
-        elif what == _SETPOINT and (is_motor or _only_robot_writes(raw)):
-            yield _Output(raw, access.get, access.set, None if mode is None else partial(_is_position, device, mode))
+        if what in _OUTPUTS or (what in _COMMANDS and is_motor and sim_devices.only_robot_writes(value)):
+            yield _Output(value, None)
+        elif what == _SETPOINT and (is_motor or sim_devices.only_robot_writes(value)):
+            yield _Output(value, None if mode is None else partial(_is_position, device, mode))
 
 
-def _only_robot_writes(raw: hal.SimValue) -> bool:
-    """Return whether the value is an output only. `enumerateValues` does not distinguish values for both directions; a
-    callback receives the direction.
-    """
-    directions: list[int] = []
-    hs.registerSimValueChangedCallback(raw, lambda _n, _h, direction, _v: directions.append(int(direction)), True)
-    return directions == [hal.SimDevice.Direction.kOutput.value]
-
-
-def _is_position(device: SimDeviceSim, mode: str) -> bool:
-    raw = device.getValue(mode)
-    if raw.type == hal.Type.ENUM:
-        value = device.getEnum(mode)
-        options = SimDeviceSim.getEnumOptions(value)
-        return re.search("position|motion", options[value.get()], re.IGNORECASE) is not None
-    return raw.type == hal.Type.INT and device.getInt(mode).get() in _POSITION_MODES
+def _is_position(device: sim_devices.Device, mode: str) -> bool:
+    value = sim_devices.access(device, mode)
+    if value.kind == "option":
+        return re.search("position|motion", value.options[value.get()], re.IGNORECASE) is not None
+    return value.kind == "whole" and value.get() in _POSITION_MODES
 
 
 def _plain(name: str) -> str:

@@ -6,14 +6,10 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from typing import Any
 
-import hal
-from wpilib import simulation as sim
-
 from ..wpi import station
-from . import devices, driver_station
+from . import device_table, driver_station
 from .change_reader import ChangeReader
 from .containers import LiveDict, LiveList, Slot, plain, stored
-from .fields import group
 from .kinds import UnknownKey, WrongPath, WrongType
 from .modules import Modules
 from .paths import Segment, format_path, join, parse_path
@@ -45,7 +41,7 @@ class HalData(LiveDict):
 
     def apply_defaults(self) -> None:
         """Set red alliance, station 1, and the event name 'sim-event', unless they were set before."""
-        if sim.DriverStationSim.getAllianceStationId() == hal.AllianceStationID.kUnknown:
+        if self["alliance_station"] == 0:  # unknown
             self["alliance_station"] = "red1"
         if not self["event"]["name"]:
             self["event"]["name"] = "sim-event"
@@ -53,8 +49,7 @@ class HalData(LiveDict):
     @staticmethod
     def _values() -> dict[str, Slot]:
         return {
-            "alliance_station": driver_station.ALLIANCE_STATION.slot(sim.DriverStationSim),
-            "fpga_button": devices.FPGA_BUTTON.slot(sim.RoboRioSim),
+            **device_table.values(),
             "user_program_state": Slot(station.program_state, None),
             "error_data": stored(),
             "pwm_loop_timing": stored(40),
@@ -64,20 +59,16 @@ class HalData(LiveDict):
     def _branch_builders(self) -> dict[str, Callable[[], Any]]:
         modules = self.modules
         return {
-            "control": lambda: group("control", sim.DriverStationSim, driver_station.CONTROL),
-            "time": lambda: group("time", sim.DriverStationSim, driver_station.TIME),
+            **device_table.groups(),
             "event": driver_station.EventData,
             "joysticks": driver_station.joysticks,
             "robot": lambda: RobotDict(self["CAN"]),
-            "accelerometer": lambda: group("accelerometer", sim.BuiltInAccelerometerSim(), devices.ACCELEROMETER),
-            **{kind.name: kind.devices for kind in devices.KINDS},
+            **{kind.name: kind.devices for kind in device_table.KINDS},
             "pcm": lambda: modules.pcm,
             "ph": lambda: modules.ph,
             "pcm_compressor": lambda: modules.pcm_compressor,
             "ph_compressor": lambda: modules.ph_compressor,
             "pdp": lambda: modules.pdp,
-            "power": lambda: group("power", sim.RoboRioSim, devices.POWER),
-            "roborio": lambda: group("roborio", sim.RoboRioSim, devices.ROBORIO),
             "CAN": SimDevices,
         }
 

@@ -1,8 +1,8 @@
 """Convert rows of the device tables to live values.
 
-A field with a WPILib name `Speed` is read by ``getSpeed``, written by ``setSpeed`` and watched by
-``registerSpeedCallback`` of its `*Sim` object. A field without a WPILib name does not exist in the current HAL: it is
-stored as written, so that older tests still work.
+A field with a WPILib name such as `Speed` is read, written and watched by the functions of its `*Sim` object whose
+names follow from it (`accessors`). A field without a WPILib name does not exist in the current HAL: it is stored as
+written, so that older tests still work.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from . import accessors
 from .containers import LiveDict, LiveList, Slot, stored
 from .kinds import ANY, BOOL, ValueKind
 from .paths import join
@@ -46,12 +47,12 @@ class DeviceField:
         """Return the access to this field of `device`; None stands for a channel that the HAL does not have."""
         if device is None or (self.hal is None and self.get is None):
             return stored(self.kind.default if self.default is None else self.default)
-        raw = get = partial(self.get, device) if self.get else getattr(device, f"get{self.hal}")
+        raw = get = partial(self.get, device) if self.get else accessors.getter(device, self.hal)
         if self.kind.load is not None:
             get = _converted(raw, self.kind.load)
         read_plain = None if self.kind.plain is None else _converted(raw, self.kind.plain)
-        put = partial(self.put, device) if self.put else getattr(device, f"set{self.hal}", None)
-        register = getattr(device, f"register{self.hal}Callback", None)
+        put = partial(self.put, device) if self.put else accessors.setter(device, self.hal)
+        register = accessors.registrar(device, self.hal)
         watch = None if register is None else partial(_watch, register)
         name = self.same_as or self.name
         return Slot(get, put, self.kind, watch, name, self.recorded, unset=self.unset, plain=read_plain)

@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterator
 from functools import lru_cache, partial
 from typing import Any
 
-from wpilib import simulation as sim
-
+from . import pneumatics
 from .containers import LiveDict, LiveList, Slot, ValueList
 from .fields import HAS_SOURCE, INITIALIZED, DeviceField, group
 from .kinds import BOOL, FLOAT, choice
@@ -35,8 +34,8 @@ HUB_COMPRESSOR_FIELDS = (
         BOOL,
         same_as="config_type",
         recorded=False,
-        get=lambda hub: hub.getCompressorConfigType() != 0,
-        put=lambda hub, on: hub.setCompressorConfigType(int(on)),
+        get=pneumatics.is_closed_loop,
+        put=pneumatics.set_closed_loop,
     ),
 )
 DISTRIBUTION = (
@@ -53,9 +52,9 @@ def solenoid(module: Any, path: str, channel: int) -> LiveDict:
 
     def build() -> dict[str, Slot]:
         def watch(fire: Callable[[], None]) -> object:
-            return module.registerSolenoidOutputCallback(channel, lambda *_: fire(), False)
+            return pneumatics.watch_solenoid(module, channel, fire)
 
-        get, put = partial(module.getSolenoidOutput, channel), partial(module.setSolenoidOutput, channel)
+        get, put = pneumatics.solenoid(module, channel)
         return {
             "initialized": INITIALIZED.slot(module),
             "value": Slot(get, put, BOOL, watch, unset=False),
@@ -64,12 +63,12 @@ def solenoid(module: Any, path: str, channel: int) -> LiveDict:
     return LiveDict(path, build)
 
 
-def distribution(path: str, module: sim.PowerDistributionSim) -> LiveDict:
+def distribution(path: str, module: pneumatics.PowerDistribution) -> LiveDict:
     """Return a power distribution module. Both kinds show the HAL's 24 channels."""
 
     def build() -> dict[str, Slot]:
         slots = {field.name: field.slot(module) for field in DISTRIBUTION}
-        currents = ValueList(join(path, "current"), FLOAT, lambda: CHANNELS, module.getCurrent, module.setCurrent)
+        currents = ValueList(join(path, "current"), FLOAT, lambda: CHANNELS, *pneumatics.currents(module))
         slots["current"] = Slot(lambda: currents, None, watch=watch, plain=partial(list, currents))
         # Computed like the HAL's value for the robot.
         slots["total_current"] = Slot(
@@ -83,7 +82,7 @@ def distribution(path: str, module: sim.PowerDistributionSim) -> LiveDict:
         return slots
 
     def watch(fire: Callable[[], None]) -> object:
-        return [module.registerCurrentCallback(i, lambda *_: fire(), False) for i in range(CHANNELS)]
+        return [pneumatics.watch_current(module, i, fire) for i in range(CHANNELS)]
 
     return LiveDict(path, build)
 
@@ -122,9 +121,9 @@ class Modules:
     """All CAN modules. Each dict is created once, and is the same object everywhere in the tree."""
 
     def __init__(self) -> None:
-        self._pcm_sim = lru_cache(None)(sim.CTREPCMSim)
-        self._hub_sim = lru_cache(None)(sim.REVPHSim)
-        self._power_sim = lru_cache(None)(sim.PowerDistributionSim)
+        self._pcm_sim = lru_cache(None)(pneumatics.Pcm)
+        self._hub_sim = lru_cache(None)(pneumatics.Hub)
+        self._power_sim = lru_cache(None)(pneumatics.PowerDistribution)
         self._hub_solenoids = lru_cache(None)(lambda n: self._solenoids(join("ph", n), self._hub_sim(n), 16))
         self._pcm_solenoids = lru_cache(None)(lambda n: self._solenoids(join("pcm", n), self._pcm_sim(n), 8))
         self._hub_compressor = lru_cache(None)(
@@ -138,13 +137,13 @@ class Modules:
         self.pcm = ModuleDict("pcm", lambda n: self._has_pcm(n) or self._has_hub(n), self._either, early=0)
         self.ph_compressor = ModuleDict("ph_compressor", self._has_hub, self._hub_compressor)
         self.pcm_compressor = ModuleDict("pcm_compressor", self._has_pcm, self._pcm_compressor)
-        self.pdp = ModuleDict("pdp", lambda n: self._power_sim(n).getInitialized(), distributions, early=0)
+        self.pdp = ModuleDict("pdp", lambda n: pneumatics.exists(self._power_sim(n)), distributions, early=0)
 
     def _has_pcm(self, module: int) -> bool:
-        return self._pcm_sim(module).getInitialized()
+        return pneumatics.exists(self._pcm_sim(module))
 
     def _has_hub(self, module: int) -> bool:
-        return self._hub_sim(module).getInitialized()
+        return pneumatics.exists(self._hub_sim(module))
 
     def _either(self, module: int) -> LiveList:
         # A PCM and a hub may share a number: the key is the PCM's by history, and also before any is created.

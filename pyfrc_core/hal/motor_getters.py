@@ -10,8 +10,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-import wpilib
-from wpilib.interfaces import MotorController
+from ..wpi import motor_controllers
 
 
 class MotorGetters:
@@ -28,24 +27,13 @@ class MotorGetters:
         """
         if len(sys.modules) != self._modules:  # new modules may have new classes
             self._modules = len(sys.modules)
-            self._classes = _classes()
+            self._classes = motor_controllers.with_own_getter()
+        name = motor_controllers.POWER_GETTER
         for owner in self._classes:
-            original = vars(owner)["get"]
-            owner.get = _zero
-            yield partial(setattr, owner, "get", original)
+            original = vars(owner)[name]
+            setattr(owner, name, _zero)
+            yield partial(setattr, owner, name, original)
 
 
 def _zero(*_: object, **__: object) -> float:
     return 0.0
-
-
-def _classes() -> list[type[Any]]:
-    """Return the classes with their own `get`, if there are any besides WPILib's: those for PWM read the HAL."""
-    found: list[type[Any]] = []
-    derived: list[type[Any]] = MotorController.__subclasses__()
-    while derived:
-        each = derived.pop()
-        if each.__module__.partition(".")[0] != "wpilib" and callable(vars(each).get("get")):
-            found.append(each)
-        derived += each.__subclasses__()
-    return [*dict.fromkeys(found), wpilib.MotorControllerGroup] if found else []

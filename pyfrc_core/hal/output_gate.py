@@ -13,21 +13,14 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
-from wpilib import simulation as sim
-
 from ..wpi import station
+from . import outputs, pneumatics
 from .can_outputs import CanOutputs
 from .created_devices import CreatedDevices
-from .fields import INITIALIZED, DeviceField
-from .kinds import BOOL
+from .fields import INITIALIZED
 from .modules import MODULES
 from .motor_getters import MotorGetters
 
-#: The pulse that stops a PWM motor controller, in microseconds: within the deadband of all of them. Not 0, as on the
-#: robot's wire, since physics that computes with pulses would treat it as full speed backwards.
-_NEUTRAL_US = 1500
-
-_PWMS, _RELAYS = 20, 4
 _PCM_CHANNELS, _HUB_CHANNELS = 8, 16
 
 #: Restores one output.
@@ -68,23 +61,15 @@ class _Channels:
     """The PWM outputs, relays and solenoids that the robot has created."""
 
     def __init__(self) -> None:
-        self._pwms = [sim.PWMSim(channel) for channel in range(_PWMS)]
-        self._relays = [sim.RelaySim(channel) for channel in range(_RELAYS)]
+        self._outputs = outputs.Channels()
         self._pneumatics: list[tuple[Any, int]] = [
-            *((sim.CTREPCMSim(number), _PCM_CHANNELS) for number in range(MODULES)),
-            *((sim.REVPHSim(number), _HUB_CHANNELS) for number in range(MODULES)),
+            *((pneumatics.Pcm(number), _PCM_CHANNELS) for number in range(MODULES)),
+            *((pneumatics.Hub(number), _HUB_CHANNELS) for number in range(MODULES)),
         ]
-        forward = DeviceField("initialized", "InitializedForward", BOOL)
-        reverse = DeviceField("initialized", "InitializedReverse", BOOL)
         self._devices = CreatedDevices(
-            [
-                *(INITIALIZED.slot(pwm) for pwm in self._pwms),
-                *(field.slot(relay) for field in (forward, reverse) for relay in self._relays),
-                *(INITIALIZED.slot(module) for module, _ in self._pneumatics),
-            ]
+            [*self._outputs.initialized, *(INITIALIZED.slot(module) for module, _ in self._pneumatics)]
         )
         self._created: list[bool] | None = None
-        self._motors: list[Any] = []
         self._switches: list[tuple[Callable[[], bool], Callable[[bool], None]]] = []
 
     def turn_off(self) -> Iterator[Restore]:
@@ -93,36 +78,15 @@ class _Channels:
         if created is not self._created:
             self._created = created
             self._find(created)
-        for motor in self._motors:
-            speed = motor.getSpeed()
-            if speed and not _drives_servo(motor):
-                pulse = motor.getPulseMicrosecond()
-                motor.setSpeed(0.0)
-                motor.setPulseMicrosecond(_NEUTRAL_US)
-                yield partial(_restore, motor.getSpeed, motor.setSpeed, 0.0, speed)
-                yield partial(_restore, motor.getPulseMicrosecond, motor.setPulseMicrosecond, _NEUTRAL_US, pulse)
+        yield from self._outputs.turn_off()
         for get, put in self._switches:
             if get():
                 put(False)
-                yield partial(_restore, get, put, False, True)
+                yield partial(outputs.restore, get, put, False, True)
 
     def _find(self, created: list[bool]) -> None:
         is_created = iter(created)
-        self._motors = [pwm for pwm in self._pwms if next(is_created)]
-        self._switches = [(relay.getForward, relay.setForward) for relay in self._relays if next(is_created)]
-        self._switches += [(relay.getReverse, relay.setReverse) for relay in self._relays if next(is_created)]
+        self._switches = self._outputs.find(is_created)
         for module, channels in self._pneumatics:
             if next(is_created):
-                for channel in range(channels):
-                    get, put = partial(module.getSolenoidOutput, channel), partial(module.setSolenoidOutput, channel)
-                    self._switches.append((get, put))
-
-
-def _drives_servo(pwm: sim.PWMSim) -> bool:
-    """Return whether the pulses are for a servo: 600 to 2400 microseconds, without a deadband in the middle."""
-    return abs(600 + 1800 * pwm.getPosition() - pwm.getPulseMicrosecond()) <= 1
-
-
-def _restore(get: Callable[[], Any], put: Callable[[Any], None], off: Any, before: Any) -> None:
-    if get() == off:
-        put(before)
+                self._switches += [pneumatics.solenoid(module, channel) for channel in range(channels)]

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from hal.simulation import resetAllSimData
-
-from .counters import forget_written_counts
+from ..wpi import devices
+from . import counters
 from .created_devices import prepare_reset
 
 
 def forget_inputs() -> None:
     """Reset all sensors and outputs to their initial values."""
     prepare_reset()
-    resetAllSimData()
-    forget_written_counts()
+    devices.reset_all()
+    counters.forget_written_counts()

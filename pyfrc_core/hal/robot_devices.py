@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import hal.simulation
-
+from ..wpi import timing
+from . import device_table
 from .containers import LiveDict
 from .created_devices import CreatedDevices
-from .devices import KINDS
 from .modules import Modules
 from .paths import join
 from .sim_devices import SimDevices
@@ -23,13 +22,16 @@ class RobotDevices:
 
     def __init__(self, tree: LiveDict, modules: Modules) -> None:
         self._can: SimDevices = tree["CAN"]
-        channels = [(kind.name, index, slot) for kind in KINDS for index, slot in enumerate(kind.initialized())]
+        channels = [
+            (kind.name, index, slot) for kind in device_table.KINDS for index, slot in enumerate(kind.initialized())
+        ]
         module_slots = list(modules.initialized())
         self._channels = [(kind, index) for kind, index, _ in channels]
         self._names = [join(kind, index) for kind, index in self._channels]
         self._names += ["pneumatics or power distribution"] * len(module_slots)
-        self._names.append("accelerometer")
-        self._slots = [*(slot for _, _, slot in channels), *module_slots, tree["accelerometer"]._slot("active")]
+        self._names += device_table.MAY_EXIST
+        self._slots = [*(slot for _, _, slot in channels), *module_slots]
+        self._slots += [tree[name]._slot(key) for name, key in device_table.MAY_EXIST.items()]
         self._devices = CreatedDevices(self._slots)
 
     def created(self) -> list[bool]:
@@ -43,11 +45,11 @@ class RobotDevices:
     def any_exist(self) -> bool:
         """Return whether any device exists, or any thread of WPILib that waits for an alarm."""
         created = any(slot.get() for slot in self._slots) or bool(self._can.signature())
-        return created or hal.simulation.getNumNotifiers() > 0
+        return created or timing.count_notifiers() > 0
 
     def existing(self) -> list[str]:
         """Return the devices that exist, such as ``pwm[3]``, and finally whether a WPILib thread waits for an alarm."""
         names = [name for name, slot in zip(self._names, self._slots, strict=True) if slot.get()]
         if self._can.signature():
             names += [join("CAN", name) for name in sorted(self._can)]
-        return names + ["a notifier"] * (hal.simulation.getNumNotifiers() > 0)
+        return names + ["a notifier"] * (timing.count_notifiers() > 0)

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from operator import ne
 
-from hal import simulation as hs
-from wpilib.simulation import SimDeviceSim
+from ..wpi import sim_devices
 
 Signature = tuple[tuple[str, int, tuple[str, ...]], ...]
 
@@ -19,7 +18,7 @@ class SimDeviceList:
     def __init__(self) -> None:
         self._names: list[str] = []
         #: WPILib's object for each, which keeps the handle: to find that takes as long as to list the values.
-        self._devices: list[SimDeviceSim] = []
+        self._devices: list[sim_devices.Device] = []
         self._values: list[list[tuple[str, bool]]] = []
         self._signature: Signature = ()
 
@@ -28,16 +27,16 @@ class SimDeviceList:
 
         A device that is freed and created again at once has the same signature if it has the same handle and values.
         """
-        names = SimDeviceSim.enumerateDevices("")
+        names = sim_devices.names()
         # A handle that is no longer in use has no values, so devices of the same names with other handles are noticed.
         # One device after the other: what is listed for one is freed before the next.
-        if names == self._names and not any(map(ne, map(SimDeviceSim.enumerateValues, self._devices), self._values)):
+        if names == self._names and not any(map(ne, map(sim_devices.values_of, self._devices), self._values)):
             return self._signature
-        self._names, self._devices = names, [SimDeviceSim(name) for name in names]
-        self._values = [device.enumerateValues() for device in self._devices]
+        self._names, self._devices = names, [sim_devices.open_device(name) for name in names]
+        self._values = [sim_devices.values_of(device) for device in self._devices]
         self._signature = tuple(
             [
-                (name, hs.getSimDeviceHandle(name), tuple([value for value, _readonly in values]))
+                (name, sim_devices.handle_of(name), tuple([value for value, _readonly in values]))
                 for name, values in zip(names, self._values, strict=True)
             ]
         )

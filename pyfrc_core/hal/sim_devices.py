@@ -9,13 +9,10 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
-import hal
-from hal import simulation as hs
-from wpilib.simulation import SimDeviceSim
-
 from ..compat.unrepeatable import unrepeatable_devices
+from ..wpi import sim_devices
 from .containers import LiveDict, Slot
-from .kinds import ANY, BOOL, FLOAT, INT32, INT64, UnknownKey, choice
+from .kinds import BOOL, FLOAT, INT32, INT64, UnknownKey, choice
 from .paths import join
 from .sim_device_list import Signature, sim_device_list
 
@@ -30,12 +27,12 @@ class SimDevice(LiveDict):
 
     def refresh(self) -> None:
         """Read the list of the device's values again."""
-        self._handle = hs.getSimDeviceHandle(self._name)
+        self._handle = sim_devices.handle_of(self._name)
         self._getters.clear()
         found: dict[str, Slot] = {}
         if self._handle:
-            device = SimDeviceSim(self._name)
-            for value, _readonly in device.enumerateValues():
+            device = sim_devices.open_device(self._name)
+            for value, _readonly in sim_devices.values_of(device):
                 found[value] = _slot(device, value)
         self._built = found
         for watch_name, watch in self._watches.items():
@@ -43,7 +40,7 @@ class SimDevice(LiveDict):
                 watch.store = connect(watch.fire)
 
     def _current(self) -> bool:
-        return self._handle == hs.getSimDeviceHandle(self._name) != 0
+        return self._handle == sim_devices.handle_of(self._name) != 0
 
     def _slot(self, key: object) -> Slot:
         if not self._current() or key not in self._slots:
@@ -61,31 +58,24 @@ class SimDevice(LiveDict):
         return key in self._slots
 
     def __iter__(self) -> Iterator[str]:
-        if not hs.getSimDeviceHandle(self._name):
+        if not sim_devices.handle_of(self._name):
             return iter(())
-        return iter([name for name, _ in SimDeviceSim(self._name).enumerateValues()])
+        return iter([name for name, _ in sim_devices.values_of(sim_devices.open_device(self._name))])
 
 
-def _slot(device: SimDeviceSim, name: str) -> Slot:
-    raw = device.getValue(name)
-    make, kind = {
-        hal.Type.BOOLEAN: (device.getBoolean, BOOL),
-        hal.Type.DOUBLE: (device.getDouble, FLOAT),
-        hal.Type.INT: (device.getInt, INT32),
-        hal.Type.LONG: (device.getLong, INT64),
-        hal.Type.ENUM: (device.getEnum, ANY),
-    }[raw.type]
-    value: Any = make(name)
+_KINDS = {"boolean": BOOL, "number": FLOAT, "whole": INT32, "long": INT64}
 
-    def watch(fire: Callable[[], None]) -> object:
-        return hs.registerSimValueChangedCallback(raw, lambda *_: fire(), False)
 
-    get = value.get
-    if raw.type == hal.Type.ENUM:
-        kind = choice({option: i for i, option in enumerate(SimDeviceSim.getEnumOptions(value))})
+def _slot(device: sim_devices.Device, name: str) -> Slot:
+    value = sim_devices.access(device, name)
+    get = plain = value.get
+    if value.kind == "option":
+        kind = choice({option: i for i, option in enumerate(value.options)})
         load = kind.load or int
-        get = lambda: load(value.get())  # noqa: E731
-    return Slot(get, value.set, kind, watch, plain=value.get)
+        get = lambda: load(plain())  # noqa: E731
+    else:
+        kind = _KINDS[value.kind]
+    return Slot(get, value.set, kind, lambda fire: sim_devices.watch(value, fire), plain=plain)
 
 
 class SimDevices(LiveDict):
@@ -112,10 +102,10 @@ class SimDevices(LiveDict):
         self[key].assign(value)
 
     def __contains__(self, key: object) -> bool:
-        return isinstance(key, str) and hs.getSimDeviceHandle(key) != 0
+        return isinstance(key, str) and sim_devices.handle_of(key) != 0
 
     def __iter__(self) -> Iterator[str]:
-        return iter(SimDeviceSim.enumerateDevices(""))
+        return iter(sim_devices.names())
 
     def unrepeatable_devices(self) -> tuple[str, ...]:
         """Return the devices whose values do not repeat, as `compat.unrepeatable` names them."""

@@ -6,15 +6,18 @@ A trace reads them at each packet, so which function reads which value is looked
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from . import device_table
 from .containers import LiveDict, plain
-from .driver_station import EventData, JoystickData
 from .modules import Modules
 from .paths import join
 from .robot_devices import RobotDevices
 from .sim_device_list import Signature
 from .sim_devices import RobotDict, SimDevices
+
+if TYPE_CHECKING:
+    from . import driver_station
 
 #: The path of a value, and the function that reads it as recordings have it.
 _Leaf = tuple[str, Callable[[], Any]]
@@ -32,8 +35,8 @@ class TreeReader:
         self._tree, self._modules, self._devices = tree, modules, devices
         self._can: SimDevices = tree["CAN"]
         self._robot: RobotDict = tree["robot"]
-        self._event: EventData = tree["event"]
-        self._sticks: list[JoystickData] = list(tree["joysticks"])
+        self._event: driver_station.EventData = tree["event"]
+        self._sticks: list[driver_station.JoystickData] = list(tree["joysticks"])
         self._fixed = list(self._always())
         self._signature: Signature | None = None
         self._created: list[bool] = []
@@ -73,7 +76,7 @@ class TreeReader:
         self._read_paths = [path for path, _ in leaves]
         self._read = [read for _, read in leaves]
 
-    def _later_paths(self, plugged: list[tuple[JoystickData, tuple[int, int, int]]]) -> Iterator[str]:
+    def _later_paths(self, plugged: list[tuple[driver_station.JoystickData, tuple[int, int, int]]]) -> Iterator[str]:
         """Return the paths of the values after those of `_find`."""
         yield from (join("event", key) for key in self._event.recorded)
         for stick, counts in plugged:
@@ -81,23 +84,22 @@ class TreeReader:
             kinds = zip(("axes", "buttons", "povs"), counts, strict=True)
             yield from (join(stick._path, kind) for kind, count in kinds if count)
         for stick, _ in plugged:
-            yield from (join(stick._path, key) for key in ("outputs", "left_rumble", "right_rumble"))
+            yield from (join(stick._path, key) for key in stick.sent_keys)
         yield from (join("robot", key) for key in self._robot.free())
         yield from (join("custom", key) for key in self._tree["custom"])
 
     def _always(self) -> Iterator[_Leaf]:
         tree = self._tree
         yield from _of(tree["control"])
-        # Physics and robots change the supply and the LED; the rest of power and roborio is constant.
-        yield from _of(tree["power"], "vin_voltage", "vin_current", "brownout_voltage")
-        yield from _of(tree["roborio"], "radio_led_state")
-        yield from _of(tree["time"], "remaining")
-        yield from _of(tree, "alliance_station", "fpga_button", "user_program_state")
+        for name, keys in device_table.RECORDED.items():
+            yield from _of(tree[name], *keys)
+        yield from _of(tree, *device_table.RECORDED_VALUES)
 
     def _present(self) -> Iterator[_Leaf]:
         tree = self._tree
-        if tree["accelerometer"]["active"]:
-            yield from _of(tree["accelerometer"])
+        for name, exists in device_table.MAY_EXIST.items():
+            if tree[name][exists]:
+                yield from _of(tree[name])
         for kind, index in self._devices.channels():
             yield from _of(tree[kind][index])
         modules = self._modules

@@ -14,7 +14,7 @@ from typing import Any
 
 from ..project.robot_files import RobotFiles
 from ..runtime.patch_table import PatchTable
-from ..runtime.patches.notifier import Notifier
+from ..runtime.patches.notifier import PeriodicThread
 from ..runtime.threads.robot_threads import RobotThreads
 from ..runtime.time.timed_loop import Periodic, TimedLoop
 from ..wpi import callbacks, names, robots
@@ -35,8 +35,8 @@ class UserFunctions:
         for base in callbacks.BASES:
             table.patch(base, "__init_subclass__", classmethod(self._when_derived_from(base)))
         table.patch(TimedLoop, "schedule", self._scheduling(TimedLoop.schedule))
-        for name in ("__init__", "setCallback"):
-            self._time_arguments(table, Notifier, name)
+        for name in ("__init__", "use_handler"):
+            self._time_arguments(table, PeriodicThread, name)
         self.time_callbacks(table)
         for name in ("sleep_until", "wait"):
             table.patch(RobotThreads, name, self._stopwatch.waiting(getattr(RobotThreads, name)))

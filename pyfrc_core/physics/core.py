@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
 from ..config.document import document_of
 from ..config.resolve import resolve_document
 from ..config.sim import SimConfig
 from ..errors import RobotCodeError
-from ..hal import HalData
+from ..hal import HalData, device_table
 from ..wpi import dashboards, geometry
 from .drivetrains import DriveVector
 from .parameters import ParameterError
@@ -275,15 +275,20 @@ class PhysicsInterface:
     def _turn_analog_gyros(self, turn: float) -> None:
         if turn and self._hal_data is not None:
             self._analog_rate.turned += math.degrees(turn)
-            for gyro in self._hal_data["analog_gyro"]:
+            for gyro in self._analog_gyros():
                 gyro["angle"] += math.degrees(turn)
+
+    def _analog_gyros(self) -> Iterator[Any]:
+        if self._hal_data is not None:
+            for kind in device_table.GYROS:
+                yield from self._hal_data[kind]
 
     def update_rates(self, tm_diff: float) -> None:
         """Set the gyros' rates after `update_sim`, in degrees/s, from the angles that it has turned them by."""
         if self._hal_data is None:
             return
         if self._analog_rate.update(tm_diff):
-            for gyro in self._hal_data["analog_gyro"]:
+            for gyro in self._analog_gyros():
                 gyro["rate"] = self._analog_rate.value
         if self._device_rate.update(tm_diff):
             values = self._hal_data["robot"]

@@ -20,11 +20,11 @@ from ..wpi import network, robots, station, timing, watchdogs
 from .clock import OBSERVE, PACKET_US, Clock
 from .connection import DriverStationConnection
 from .exceptions import TestEnded, TestFroze, WrongThread
+from .patches import hal_notifiers
 from .patches.active_run import ExternalWrites, active_run
 from .patches.construction import missing_super_init, without_first_alarm
 from .patches.data_logs import DataLogs, LogPlace
 from .patches.loop_watchdog import LoopOverruns
-from .patches.notifier import Alarms
 from .patches.object_hashes import restart_numbers
 from .threads import cooperative
 from .threads.robot_threads import RobotThread, RobotThreads
@@ -60,7 +60,7 @@ class RobotRun:
         self.connection = DriverStationConnection()
         self.clock.deliver_packet = self.connection.packet
         self.threads = RobotThreads(self.clock)
-        self.alarms = Alarms(self.threads)
+        self.alarms = hal_notifiers.Alarms(self.threads)
         self.overruns = LoopOverruns(self.clock)
         self.timed_loop = TimedLoop(self.clock, self.clock.now_us, self._on_initialized, self.overruns.count)
         #: When the turn of the loop began that the robot is in, in microseconds; None between two turns.

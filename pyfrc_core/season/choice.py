@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import importlib.metadata
+import os
 
 from ..errors import ProjectError
 from .record import Season
 from .season_2026 import SEASON_2026
+from .season_2027 import SEASON_2027
+
+#: Seasons that are being written. pyfrc refuses their WPILib, except in an environment with this variable: pyfrc's own
+#: tests of them have it.
+UNFINISHED, _TRY_UNFINISHED = (SEASON_2027,), "PYFRC_TRY_UNFINISHED_SEASONS"
 
 #: The seasons that pyfrc knows entirely, by year.
-SEASONS = {season.year: season for season in (SEASON_2026,)}
+SEASONS: dict[int, Season] = {
+    season.year: season for season in (SEASON_2026, *(UNFINISHED if os.environ.get(_TRY_UNFINISHED) else ()))
+}
 
 
 def installed_wpilib() -> str | None:

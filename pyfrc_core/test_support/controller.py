@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeVar, cast, overload
 
 from ..config.settings import MatchSettings
+from ..errors import UsageError
 from ..invariants.watch import watch_invariants
 from ..runtime.clock import to_us
 from ..runtime.exceptions import TestEnded
@@ -95,6 +96,22 @@ class TestController:
     def set_test_mode(self, enabled: bool = True) -> None:
         """Put the robot in test mode (the robot mode, not related to unit testing), with the next packet."""
         station.set_mode(test=True, enabled=enabled)
+
+    def set_opmode(self, name: str, mode: str = "") -> None:
+        """Select an opmode of an `OpModeRobot`, and the robot's mode that it is for, with the next packet.
+
+        The robot is enabled, or disabled, as before. WPILib has opmodes from 2027 on.
+
+        :param mode: 'autonomous', 'teleop' or 'test', if opmodes of several modes have this name
+        :raises UsageError: when the robot has not published such an opmode, or several
+        """
+        published = station.published_opmodes()
+        found = [each for each in published if each.name == name and mode in ("", each.mode)]
+        if len(found) != 1:
+            there = ", ".join(f"{each.name!r} ({each.mode})" for each in published) or "none"
+            problem = f"there are opmodes {name!r} in several modes" if found else f"there is no opmode {name!r}"
+            raise UsageError(f"{problem}: the robot has published {there}", remedy="" if not found else "give the mode")
+        station.select_opmode(found[0])
 
     def set_practice_match(self) -> None:
         """Run a practice match. Call it before `run_test`.
@@ -229,12 +246,21 @@ class TestController:
         finally:
             self._run.end()
 
-    def step_timing(self, *, seconds: float, autonomous: bool, enabled: bool, assert_alive: bool = True) -> float:
-        """Run the robot for some time in a mode, with driver-station packets.
+    def step_timing(
+        self,
+        *,
+        seconds: float,
+        enabled: bool,
+        autonomous: bool | None = None,
+        opmode: str | None = None,
+        assert_alive: bool = True,
+    ) -> float:
+        """Run the robot for some time in a mode, with driver-station packets. Give either `autonomous` or `opmode`.
 
         :param seconds: how long, in robot time
-        :param autonomous: whether the mode is autonomous; else it is teleoperated
         :param enabled: whether the robot is enabled
+        :param autonomous: whether the mode is autonomous; else it is teleoperated
+        :param opmode: the opmode to select, as with `set_opmode`
         :param assert_alive: fail when the robot program is not running, before or afterwards
         :returns: the seconds by which robot time has advanced
         :raises ValueError: when `seconds` is negative
@@ -244,7 +270,12 @@ class TestController:
             assert self.robot_is_alive, "the robot program is not running: step inside `with control.run_robot():`"
         if seconds < 0:
             raise ValueError(f"time cannot go back: step_timing(seconds={seconds!r})")
-        if autonomous:
+        if (autonomous is None) == (opmode is None):
+            raise TypeError("step_timing() takes either autonomous= or opmode=")
+        if opmode is not None:
+            self.set_opmode(opmode)
+            station.set_enabled(enabled)
+        elif autonomous:
             self.set_autonomous(enabled)
         else:
             self.set_operator_control(enabled)

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from .season_2026 import network_reads as network_reads
     from .season_2026 import reports as reports
     from .season_2026 import robots as robots
+    from .season_2026 import sim_devices as sim_devices
     from .season_2026 import source as source
     from .season_2026 import station as station
     from .season_2026 import timing as timing

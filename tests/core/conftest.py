@@ -7,7 +7,7 @@ from collections.abc import Generator
 import hal
 import pytest
 
-from pyfrc_core.runtime.patches.notifier import Notifier
+from pyfrc_core.runtime.patches.notifier import PeriodicThread
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.threads import cooperative
 from pyfrc_core.wpi import station, timing
@@ -25,14 +25,14 @@ def _unreported_start(monkeypatch: pytest.MonkeyPatch) -> None:
 def timeline(_unreported_start: None) -> Generator[Timeline]:
     """A clock at 0, and its threads; this thread drives it."""
     timeline = Timeline()
-    cooperative.scope.threads = Notifier.threads = timeline.threads
+    cooperative.scope.threads = PeriodicThread.threads = timeline.threads
     try:
         yield timeline
     finally:
         try:
             timeline.threads.end()
         finally:
-            cooperative.scope.threads = Notifier.threads = None
+            cooperative.scope.threads = PeriodicThread.threads = None
             timeline.clock.forget()
             timing.run_freely()
 

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
+import wpilib
 from wpiutil.log import DataLogReader, StringLogEntry
 
 from pyfrc_core.runtime.clock import KICKOFF
@@ -64,7 +65,7 @@ def test_a_log_is_on_the_disk_while_the_run_goes_on(tmp_path: Path, timeline: Ti
 
 
 def test_names_and_directories(tmp_path: Path, timeline: Timeline, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(data_logs.wpilib, "getOperatingDirectory", lambda: str(tmp_path))
+    monkeypatch.setattr(wpilib, "getOperatingDirectory", lambda: str(tmp_path))
     logs = DataLogs(timeline.clock, place(tmp_path))
     own = tmp_path / ".pyfrc/logs"
     opened = [

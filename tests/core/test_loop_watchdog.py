@@ -9,7 +9,7 @@ import pytest
 import wpilib
 
 from pyfrc_core.runtime.clock import PACKET, ROBOT_LOOP
-from pyfrc_core.runtime.patches.loop_watchdog import Watchdog
+from pyfrc_core.runtime.patches.season_2026.watchdog import Watchdog
 
 from .timeline import Timeline
 

@@ -6,7 +6,7 @@ import gc
 
 import pytest
 
-from pyfrc_core.runtime.patches.notifier import Alarms, Notifier
+from pyfrc_core.runtime.patches.season_2026.hal_notifiers import Alarms, Notifier
 
 from .timeline import Timeline
 

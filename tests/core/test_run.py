@@ -12,7 +12,7 @@ from hal import simulation as hs
 
 from pyfrc_core.runtime.clock import PACKET_US, PHYSICS
 from pyfrc_core.runtime.connection import DriverStationConnection
-from pyfrc_core.runtime.patches import driver_station
+from pyfrc_core.runtime.patches.season_2026 import driver_station
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.wpi import station
 

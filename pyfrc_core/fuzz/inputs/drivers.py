@@ -10,6 +10,7 @@ import math
 import random
 from dataclasses import dataclass
 
+from ...wpi import station
 from .values import Value
 
 
@@ -93,7 +94,7 @@ class JoystickModel:
             f"{stick}.button_count": self.buttons,
             f"{stick}.pov_count": self.povs,
             f"{stick}.name": self.name,
-            f"{stick}.is_xbox": self.is_xbox,
+            f"{stick}.{station.GAMEPAD_FLAG}": self.is_xbox,
         }
 
 

@@ -10,9 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
 
-from ...hal import HalData, format_path
-from ...hal.counters import counted_channels
-from ...hal.devices import KINDS
+from ...hal import HalData, counters, device_table, format_path
 from ...hal.modules import Modules
 from ...hal.sim_device_list import Signature
 from ...wpi import devices, joysticks, names, station
@@ -32,7 +30,10 @@ def _controls(number: int, axes: int, buttons: int, povs: int, triggers: tuple[i
     name = f"joysticks[{number}]"
     return (
         *(Input(f"{name}.axes[{axis}]", "trigger" if axis in triggers else "axis", name) for axis in range(axes)),
-        *(Input(f"{name}.buttons[{button}]", "button", name) for button in range(1, buttons + 1)),
+        *(
+            Input(f"{name}.buttons[{button}]", "button", name)
+            for button in range(station.FIRST_BUTTON, station.FIRST_BUTTON + buttons)
+        ),
         *(Input(f"{name}.povs[{pov}]", "pov", name) for pov in range(povs)),
     )
 
@@ -46,6 +47,10 @@ _DEVICES: dict[str, tuple[tuple[str, InputKind], ...]] = {
     "encoder": (("count", "count"), ("rate", "rate")),
     "analog_gyro": (("angle", "angle"), ("rate", "turning")),
     "duty_cycle": (("output", "turns"), ("frequency", "hertz")),
+}
+#: Those of devices of which there is only one.
+_GROUPS: dict[str, tuple[tuple[str, InputKind], ...]] = {
+    "accelerometer": (("x", "acceleration"), ("y", "acceleration"), ("z", "acceleration")),
 }
 #: What a digital input measures that a `Counter` counts.
 _COUNTED: tuple[tuple[str, InputKind], ...] = (("value", "pulses"),)
@@ -114,19 +119,20 @@ class SensorFinder:
         if self._searches < _FIRST_SEARCHES or self._searches % _SEARCHES_FOR_MODULES == 0:
             self._there = tuple([exists() for exists in _modules()])
         self._searches += 1
-        accelerometer, sim_devices = hal_data["accelerometer"]["active"], hal_data["CAN"].signature()
-        return _Devices(_used(), self._there, accelerometer, sim_devices, counted_channels())
+        groups, sim_devices = tuple(_groups(hal_data)), hal_data["CAN"].signature()
+        return _Devices(_used(), self._there, groups, sim_devices, counters.counted_channels())
 
 
 class _Devices(NamedTuple):
     """The devices that exist: those of the roboRIO that have a sensor, and all others.
 
+    :param groups: devices of which there is only one
     :param counted: the digital inputs that counters count
     """
 
     channels: tuple[tuple[str, int], ...]
     modules: tuple[bool, ...]
-    accelerometer: bool
+    groups: tuple[str, ...]
     sim_devices: Signature
     counted: frozenset[int]
 
@@ -136,7 +142,7 @@ def _channels() -> list[tuple[tuple[str, int], Callable[[], bool]]]:
     """Return the roboRIO's channels for sensors, each with a function that returns whether the robot uses it."""
     return [
         ((kind.name, number), slot.get)
-        for kind in KINDS
+        for kind in device_table.KINDS
         if kind.name in _DEVICES
         for number, slot in enumerate(kind.initialized())
     ]
@@ -157,6 +163,11 @@ def prepare_search() -> None:
             _controls(number, station.AXES, station.BUTTONS, station.POVS, triggers)
 
 
+def _groups(hal_data: HalData) -> list[str]:
+    """Return which of the devices of which there is only one exist."""
+    return [group for group, exists in device_table.MAY_EXIST.items() if hal_data[group][exists]]
+
+
 def _used() -> tuple[tuple[str, int], ...]:
     """Return the roboRIO's channels for sensors that the robot uses."""
     return tuple([channel for channel, exists in _channels() if exists()])
@@ -173,11 +184,12 @@ def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN, has_mod
             yield Input(target, kind, target)
     channels = _used()
     yield Input("power.vin_voltage", "battery", "power")
-    yield Input("fpga_button", "switch", "fpga_button")
-    if hal_data["accelerometer"]["active"]:
-        for axis in "xyz":
-            yield Input(f"accelerometer.{axis}", "acceleration", "accelerometer")
-    wired, counted = _wired(hal_data, channels), counted_channels()
+    for key in device_table.BUTTONS:
+        yield Input(key, "switch", key)
+    for group in _groups(hal_data):
+        for value, kind in _GROUPS[group]:
+            yield Input(f"{group}.{value}", kind, group)
+    wired, counted = _wired(hal_data, channels), counters.counted_channels()
     for key, number in channels:
         if hal_data[key][number].get("is_input", True) and (key, number) not in wired:
             for value, kind in _DEVICES[key] if key != "dio" or number not in counted else _COUNTED:

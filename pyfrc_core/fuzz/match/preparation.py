@@ -9,7 +9,7 @@ import gc
 from contextlib import suppress
 
 from ...errors import PyfrcError
-from ...hal import HalData
+from ...hal import HalData, device_table
 from ...project import Project
 from ...runtime.module_files import resolve_module_files
 from ...runtime.patch_table import PatchTable
@@ -47,7 +47,7 @@ class Preparation:
 
 def _build(tree: HalData) -> None:
     """Build the parts of the tree that every match uses: they are built when they are first used."""
-    for branch in ("control", "event", "time", "power", "accelerometer", "CAN"):
+    for branch in ("control", "event", "time", "power", *device_table.MAY_EXIST, "CAN"):
         dict(tree[branch])
     for stick in tree["joysticks"]:
         dict(stick)

@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
-from ...hal.devices import encoder_channels
+from ...hal import device_table
 from ...project.robot_files import RobotFiles
 from ...wpi import devices, geometry
 
@@ -233,7 +233,7 @@ def _places(thing: object) -> Iterator[tuple[Place, str]]:
     elif kind == "encoder":
         (index,) = devices.channels_of(thing, kind)
         yield ("encoder", index), ""
-        wires = encoder_channels(index)
+        wires = device_table.encoder_channels(index)
         for letter in "AB":
             channel = wires[f"{letter}Source_Channel"]
             if channel is not None:

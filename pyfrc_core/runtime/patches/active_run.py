@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from ...hal import HalData
 from ..clock import Clock
@@ -14,7 +14,10 @@ from ..threads.robot_threads import RobotThread, RobotThreads
 from ..time.timed_loop import TimedLoop
 from .data_logs import DataLogs
 from .loop_watchdog import LoopOverruns
-from .notifier import Alarms, Notifier
+from .notifier import PeriodicThread
+
+if TYPE_CHECKING:
+    from . import hal_notifiers
 
 
 class ExternalWrites(Protocol):
@@ -36,7 +39,7 @@ class Run(Protocol):
     clock: Clock
     connection: DriverStationConnection
     threads: RobotThreads
-    alarms: Alarms
+    alarms: hal_notifiers.Alarms
     overruns: LoopOverruns
     timed_loop: TimedLoop
     data_logs: DataLogs
@@ -75,7 +78,7 @@ class ActiveRun:
         if self.run is not None:
             raise RuntimeError("a robot runs already in this process")
         self.run = run
-        cooperative.scope.threads = Notifier.threads = run.threads
+        cooperative.scope.threads = PeriodicThread.threads = run.threads
         try:
             yield
         finally:
@@ -84,7 +87,7 @@ class ActiveRun:
     def forget(self) -> None:
         """Return the process to real time."""
         self.run = None
-        cooperative.scope.threads = Notifier.threads = None
+        cooperative.scope.threads = PeriodicThread.threads = None
 
 
 #: The run of this process.

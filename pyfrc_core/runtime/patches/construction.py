@@ -8,8 +8,6 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
-import wpilib
-
 from ...compat.cpython_private import get_frame
 from ...errors import RobotCodeError
 from ...project.robot_files import RobotFiles
@@ -19,19 +17,23 @@ from ..patch_table import Patch, patched
 
 @contextmanager
 def without_first_alarm() -> Iterator[None]:
-    """Cancel the alarm that `wpilib.TimedRobot`'s constructor sets, as soon as it has set it.
+    """Cancel the alarm that `TimedRobot`'s constructor sets, as soon as it has set it.
 
     The HAL lets no time pass before a thread waits for that alarm, and none does: a robot whose own constructor
     waits after ``super().__init__()`` would hang.
     """
-    original = wpilib.TimedRobot.__init__
 
-    def __init__(self: wpilib.TimedRobot, *args: Any, **kwargs: Any) -> None:
-        __tracebackhide__ = True
-        original(self, *args, **kwargs)
-        robots.cancel_first_alarm(self)
+    def cancelling(robot_class: type[Any]) -> Patch:
+        original = robot_class.__init__
 
-    with patched([Patch(wpilib.TimedRobot, "__init__", __init__)]):
+        def __init__(self: Any, *args: Any, **kwargs: Any) -> None:
+            __tracebackhide__ = True
+            original(self, *args, **kwargs)
+            robots.cancel_first_alarm(self)
+
+        return Patch(robot_class, "__init__", __init__)
+
+    with patched([cancelling(base) for base in robots.TIMED]):
         yield
 
 
@@ -70,8 +72,8 @@ def refused(files: RobotFiles) -> Iterator[None]:
             remedy="Remove this line: pyfrc and WPILib find the robot class and run it.",
         )
 
-    bases = [wpilib.RobotBase, wpilib.IterativeRobotBase, wpilib.TimedRobot, wpilib.TimesliceRobot]
-    with patched([*(refusing(base) for base in bases), Patch(wpilib, "run", run)]):
+    runs = [Patch(owner, name, run) for owner, name in robots.RUN_THE_PROGRAM]
+    with patched([*(refusing(base) for base in robots.BASES), *runs]):
         yield
 
 

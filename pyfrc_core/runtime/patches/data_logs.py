@@ -1,7 +1,7 @@
 """Data logs that robot code starts: `wpilib.DataLogManager`, and log writers of its own.
 
 WPILib writes them on a C++ thread, a quarter of a second of wall time later. At our speed that is minutes of robot
-time, and the processes that robots run in often end before. Here, each log is a `wpiutil.DataLogWriter`, which is
+time, and the processes that robots run in often end before. Here, each log is a `DataLogWriter`, which is
 flushed on the robot's own thread, in robot time, and completed when the run ends. A flush leaves up to 4 KB in C++: a
 process that a signal ends loses those.
 """
@@ -18,18 +18,13 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-import ntcore
-import wpilib
-import wpiutil
-from wpiutil.log import DataLog, IntegerLogEntry, StringLogEntry
-
 from ...disk_space import check_disk_space
 from ...processes.exit import before_sudden_exit
 from ...processes.lent_streams import print_error
 from ...text_files import keep_out_of_version_control
 from ...wording import from_here
+from ...wpi import logs, robots
 from ..clock import KICKOFF, OBSERVE, PACKET_US, Clock, to_us
-from ..patch_table import Patch
 
 #: Where logs are kept, in the robot project; those of tests are in its subdirectory.
 LOGS = Path(".pyfrc", "logs")
@@ -42,13 +37,11 @@ _KEPT, _KEPT_OF_TESTS = 10, 200
 _SYSTEM_TIME = ("systemTime", '{"source":"DataLogManager","format":"time_t_us"}')
 _SYSTEM_TIME_US = 5_000_000
 
-_RealWriter, _RealBackgroundWriter = wpiutil.DataLogWriter, wpiutil.DataLogBackgroundWriter
-
 #: WPILib's driver station and NetworkTables hold on to logs in C++ for as long as the process lives.
-_EVERY_LOG: list[DataLog] = []
+_EVERY_LOG: list[logs.DataLog] = []
 
 #: What robots' modules have given to `DataLogManager.start` while they were imported: before there is a run to log.
-_started_at_import: list[tuple[tuple[Any, ...], dict[str, Any]]] = []
+started_at_import: list[tuple[tuple[Any, ...], dict[str, Any]]] = []
 
 
 @dataclass(frozen=True)
@@ -98,7 +91,7 @@ class LogPlace:
 class _Log:
     """:param renamed: the name that robot code has given it meanwhile"""
 
-    writer: wpiutil.DataLogWriter
+    writer: logs.RealWriter
     file: Path
     renamed: str = ""
 
@@ -114,16 +107,16 @@ class DataLogs:
         self._place = place
         self._logs: list[_Log] = []
         self._directory = ""
-        self._manager: DataLog | None = None
-        self._network: tuple[int, int] | None = None
+        self._manager: logs.DataLog | None = None
+        self._network: Callable[[], None] | None = None
         self._next_system_time_us = 0
 
     def start_as_at_import(self) -> None:
         """Start the manager's log where a robot's module has done that while it was imported."""
-        for args, kwargs in _started_at_import[:1]:
+        for args, kwargs in started_at_import[:1]:
             self.start(*args, **kwargs)
 
-    # -- what robot code calls, under WPILib's names ----------------------------------------------------------------
+    # -- what robot code calls, by WPILib's `DataLogManager` ---------------------------------------------------------
 
     def start(self, dir: str = "", filename: str = "", period: float = 0.25) -> None:
         """Start the manager's log, if it has not been started."""
@@ -131,15 +124,15 @@ class DataLogs:
             return
         self._manager = self.open(dir, filename, period)
         self._directory = str(self._logs[-1].file.parent) if self._logs else dir
-        self.logNetworkTables(True)
+        self.log_network_tables(True)
 
-    def getLog(self) -> DataLog:
+    def get_log(self) -> logs.DataLog:
         """Return the manager's log."""
         self.start()
         assert self._manager is not None
         return self._manager
 
-    def getLogDir(self) -> str:
+    def get_log_dir(self) -> str:
         """Return the directory of the manager's log."""
         self.start()
         return self._directory
@@ -150,19 +143,15 @@ class DataLogs:
         self._messages.append(message)
         print(message)
 
-    def logNetworkTables(self, enabled: bool) -> None:
+    def log_network_tables(self, enabled: bool) -> None:
         """Log all changes of NetworkTables, or no more."""
-        log = self.getLog()
-        network = ntcore.NetworkTableInstance.getDefault()
+        log = self.get_log()
         if enabled and self._network is None:
-            self._network = (
-                network.startEntryDataLog(log, "", "NT:"),
-                network.startConnectionDataLog(log, "NTConnection"),
-            )
+            self._network = logs.log_network(log)
         elif not enabled and self._network is not None:
             self._stop_network()
 
-    def logConsoleOutput(self, enabled: bool) -> None:
+    def log_console_output(self, enabled: bool) -> None:
         """Do nothing: WPILib reads the console of a roboRIO only."""
 
     def stop(self) -> None:
@@ -173,7 +162,7 @@ class DataLogs:
 
     # -- log writers ------------------------------------------------------------------------------------------------
 
-    def open(self, directory: str, filename: str, period: float = 0.25, header: str = "") -> wpiutil.DataLogWriter:
+    def open(self, directory: str, filename: str, period: float = 0.25, header: str = "") -> logs.RealWriter:
         """Open a log that is flushed every `period` seconds of robot time.
 
         :param directory: "": where the run keeps its logs
@@ -182,15 +171,15 @@ class DataLogs:
         file = self._file(directory, filename)
         return self._keep(self._writer(file, header), file, period)
 
-    def open_file(self, filename: str, header: str = "") -> wpiutil.DataLogWriter:
+    def open_file(self, filename: str, header: str = "") -> logs.RealWriter:
         """Open a log in this file.
 
         :raises RuntimeError: when it cannot be written
         """
         file = Path(os.devnull) if self._place is None else Path(filename)
-        return self._keep(_RealWriter(str(file), header), file, 0.25)
+        return self._keep(logs.RealWriter(str(file), header), file, 0.25)
 
-    def _keep(self, writer: wpiutil.DataLogWriter, file: Path, period: float) -> wpiutil.DataLogWriter:
+    def _keep(self, writer: logs.RealWriter, file: Path, period: float) -> logs.RealWriter:
         _EVERY_LOG.append(writer)
         log = _Log(writer, file)
         self._logs.append(log)
@@ -207,7 +196,7 @@ class DataLogs:
         self._clock.every(period_us, OBSERVE, flush)
         return writer
 
-    def rename(self, writer: DataLog, name: str) -> None:
+    def rename(self, writer: logs.DataLog, name: str) -> None:
         """Have a log be in a file of this name, in its directory, when it is complete."""
         for log in self._logs:
             if log.writer is writer:
@@ -236,18 +225,15 @@ class DataLogs:
 
     def _stop_network(self) -> None:
         assert self._network is not None
-        entries, connections = self._network
-        network = ntcore.NetworkTableInstance.getDefault()
-        network.stopEntryDataLog(entries)
-        network.stopConnectionDataLog(connections)
+        self._network()
         self._network = None
 
-    def _writer(self, file: Path, header: str) -> wpiutil.DataLogWriter:
+    def _writer(self, file: Path, header: str) -> logs.RealWriter:
         try:
-            writer = _RealWriter(str(file), header)
+            writer = logs.RealWriter(str(file), header)
         except RuntimeError as error:
             print_error(f"data log: {from_here(file)} cannot be written: {error}. It is not kept.")
-            writer = _RealWriter(os.devnull, header)
+            writer = logs.RealWriter(os.devnull, header)
         else:
             if file != Path(os.devnull):
                 print_error(f"data log: {from_here(file)}")
@@ -258,7 +244,7 @@ class DataLogs:
         if place is None:
             return Path(os.devnull)
         if directory:
-            chosen = Path(wpilib.getOperatingDirectory(), directory)
+            chosen = Path(robots.operating_directory(), directory)
             with suppress(OSError):
                 chosen.mkdir(parents=True, exist_ok=True)
         else:
@@ -289,75 +275,18 @@ class DataLogs:
         raise AssertionError
 
     @cached_property
-    def _messages(self) -> StringLogEntry:
-        return StringLogEntry(self.getLog(), "messages")
+    def _messages(self) -> logs.StringLogEntry:
+        return logs.StringLogEntry(self.get_log(), "messages")
 
     @cached_property
-    def _system_time(self) -> IntegerLogEntry:
-        return IntegerLogEntry(self.getLog(), *_SYSTEM_TIME)
+    def _system_time(self) -> logs.IntegerLogEntry:
+        return logs.IntegerLogEntry(self.get_log(), *_SYSTEM_TIME)
 
 
-# -- in place of WPILib's names --------------------------------------------------------------------------------------
-
-
-def patches(current: Callable[[], DataLogs | None]) -> list[Patch]:
-    """Return the names of WPILib's to replace.
-
-    :param current: returns the logs of the run that goes on, if one does
-    """
-
-    def manager_call(name: str) -> Patch:
-        real = getattr(wpilib.DataLogManager, name)
-
-        def call(*args: object, **kwargs: object) -> Any:
-            logs = current()
-            if logs is None and name == "start":
-                _started_at_import.append((args, kwargs))
-                return None
-            return (real if logs is None else getattr(logs, name))(*args, **kwargs)
-
-        return Patch(wpilib.DataLogManager, name, staticmethod(call))
-
-    def writer(filename: str, extraHeader: str = "") -> DataLog:
-        logs = current()
-        return _RealWriter(filename, extraHeader) if logs is None else logs.open_file(filename, extraHeader)
-
-    def background_writer(*args: Any, **kwargs: Any) -> DataLog:
-        logs = current()
-        if logs is None or "write" in kwargs or (args and callable(args[0])):
-            return _RealBackgroundWriter(*args, **kwargs)
-        return _open_like_background_writer(logs, *args, **kwargs)
-
-    def set_filename(writer: DataLog, filename: str) -> None:
-        logs = current()
-        if logs is not None:
-            logs.rename(writer, filename)
-
-    return [
-        *(
-            manager_call(name)
-            for name in ("start", "stop", "log", "getLog", "getLogDir", "logNetworkTables", "logConsoleOutput")
-        ),
-        Patch(wpiutil, "DataLogWriter", _StandsFor("DataLogWriter", (_RealWriter,), writer)),
-        Patch(
-            wpiutil,
-            "DataLogBackgroundWriter",
-            _StandsFor("DataLogBackgroundWriter", (_RealBackgroundWriter, _RealWriter), background_writer),
-        ),
-        Patch(_RealWriter, "setFilename", set_filename),
-    ]
-
-
-def _open_like_background_writer(
-    logs: DataLogs, dir: str = "", filename: str = "", period: float = 0.25, extraHeader: str = ""
-) -> DataLog:
-    return logs.open(dir, filename, period, extraHeader)
-
-
-class _StandsFor(type):
+class StandsFor(type):
     """A class whose instances are made otherwise. WPILib's own cannot be subclassed."""
 
-    def __new__(cls, name: str, real: tuple[type, ...], make: Callable[..., object]) -> _StandsFor:
+    def __new__(cls, name: str, real: tuple[type, ...], make: Callable[..., object]) -> StandsFor:
         return super().__new__(cls, name, (), {"__doc__": real[0].__doc__, "__module__": real[0].__module__})
 
     def __init__(cls, name: str, real: tuple[type, ...], make: Callable[..., object]) -> None:

@@ -1,108 +1,14 @@
-"""WPILib's watchdogs in robot time: the one that watches the robot's loop, and those that code makes for itself.
-
-WPILib has one C++ thread for all of them, which follows the wall clock: what it has to say comes whenever the machine
-lets it. So it is ended, and what it did is done here.
-"""
+"""What watches the robot's loop, in robot time: turns that take longer than its period are counted and reported."""
 
 from __future__ import annotations
 
-import weakref
-from collections.abc import Callable
+from typing import Any
 
-import hal
-import wpilib
-
-from ...wpi import watchdogs
-from ..clock import WAKE_UP, Clock, to_us
-from ..threads import cooperative
+from ...wpi import reports, robots
+from ..clock import PACKET_US, Clock, to_us
 
 #: Microseconds of robot time between two reports of a loop that is late again and again, as in WPILib.
-_BETWEEN_REPORTS_US = 1_000_000
-
-_ERROR_CODE = 1
-_WPILibs = wpilib.Watchdog
-
-
-class Watchdog(_WPILibs):
-    """Calls a function when it has not been fed in time: `wpilib.Watchdog`, expiring in robot time.
-
-    :param timeout: seconds within which it has to be fed
-    :param callback: called when it was not, from wherever the time passes just then
-    """
-
-    def __init__(self, timeout: float, callback: Callable[[], None]) -> None:
-        watchdogs.end_watchdog_thread()
-        super().__init__(timeout, callback)
-        self._callback = callback
-        self._silent = self._expired = False
-        self._told_us = -_BETWEEN_REPORTS_US
-        self._due_us: int | None = None
-        self._alarm_us: int | None = None  # the clock's, which may be earlier: feeding does not move it
-
-    def reset(self) -> None:
-        """Feed the watchdog: restart its time, and enable it."""
-        super().reset()
-        self._begin()
-
-    def enable(self) -> None:
-        """Start its time."""
-        super().enable()
-        self._begin()
-
-    def disable(self) -> None:
-        """Stop its time: it no longer expires."""
-        super().disable()
-        self._due_us = None
-
-    def setTimeout(self, timeout: float) -> None:
-        """Set another time-out, in seconds, and restart its time."""
-        super().setTimeout(timeout)
-        self._begin()
-
-    def isExpired(self) -> bool:
-        """Whether it was not fed in time, since it was last enabled or fed."""
-        return self._expired
-
-    def suppressTimeoutMessage(self, suppress: bool) -> None:
-        """Whether to print nothing when it expires: the callback may have more to say."""
-        super().suppressTimeoutMessage(suppress)
-        self._silent = suppress
-
-    def _begin(self) -> None:
-        threads = cooperative.scope.threads
-        self._expired = False
-        if threads is not None:
-            self._due_us = threads.clock.now_us + to_us(self.getTimeout())
-            self._set_alarm(threads.clock, self._due_us)
-
-    def _set_alarm(self, clock: Clock, due_us: int) -> None:
-        if self._alarm_us is not None and clock.now_us <= self._alarm_us <= due_us:
-            return
-        self._alarm_us = due_us
-        this = weakref.ref(self)  # as in WPILib, one that was dropped is silent
-
-        def alarm() -> None:
-            __tracebackhide__ = True
-            watchdog = this()
-            if watchdog is not None and watchdog._alarm_us == due_us:
-                watchdog._on_alarm(clock)
-
-        clock.at(due_us, WAKE_UP, alarm)
-
-    def _on_alarm(self, clock: Clock) -> None:
-        __tracebackhide__ = True
-        self._alarm_us = None
-        if self._due_us is None:
-            return
-        if clock.now_us < self._due_us:
-            self._set_alarm(clock, self._due_us)
-            return
-        self._due_us, self._expired = None, True
-        if not self._silent and clock.now_us - self._told_us >= _BETWEEN_REPORTS_US:
-            self._told_us = clock.now_us
-            message = f"Watchdog not fed within {self.getTimeout():.6f}s, at {clock.now:.3f} s"
-            hal.sendError(False, _ERROR_CODE, False, message, "Watchdog", "", True)
-        self._callback()
+BETWEEN_REPORTS_US = 1_000_000
 
 
 class LoopOverruns:
@@ -112,25 +18,26 @@ class LoopOverruns:
         self._clock = clock
         #: How many there were, and the longest, in microseconds; one that still goes on is not among them.
         self.number = self.longest_us = 0
-        self._told_us = -_BETWEEN_REPORTS_US
+        self._told_us = -BETWEEN_REPORTS_US
 
     def count(self, took_us: int) -> None:
         """Count a turn that took this long, which is longer than its period."""
         self.number += 1
         self.longest_us = max(self.longest_us, took_us)
 
-    def look(self, robot: wpilib.IterativeRobotBase, began_us: int) -> None:
+    def look(self, robot: Any, began_us: int) -> None:
         """Called when time has passed in a turn of the loop: say so if it was time that the robot did not have."""
         took_us = self._clock.now_us - began_us
-        if took_us > to_us(robot.getPeriod()) and not isinstance(robot, wpilib.TimedRobot):
+        period = robots.period(robot, PACKET_US / 1_000_000)
+        if took_us > to_us(period) and not robots.is_timed(robot):
             self.count(took_us)  # of a `TimedRobot`, its loop counts them
-        if took_us < to_us(robot.getPeriod()) or began_us - self._told_us < _BETWEEN_REPORTS_US:
+        if took_us < to_us(period) or began_us - self._told_us < BETWEEN_REPORTS_US:
             return
         self._told_us = began_us
         # The HAL drops a message with the same text as the one before, so this one contains the time.
         message = (
-            f"Loop time of {robot.getPeriod():.6f}s overrun: "
+            f"Loop time of {period:.6f}s overrun: "
             f"the turn that began at {began_us / 1e6:.3f} s took {took_us / 1e6:.3f} s"
         )
-        hal.sendError(True, _ERROR_CODE, False, message, type(robot).__name__, "", True)
-        robot.printWatchdogEpochs()
+        reports.report_error(message, type(robot).__name__)
+        robots.print_epochs(robot)

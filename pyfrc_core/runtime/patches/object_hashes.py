@@ -15,8 +15,7 @@ import itertools
 import weakref
 from typing import Any
 
-import wpiutil
-
+from ...wpi import robots
 from ..patch_table import Patch
 
 
@@ -35,7 +34,7 @@ _counter = itertools.count()
 
 def patches() -> list[Patch]:
     """Return the patch of the class that all classes of WPILib's bindings derive from."""
-    return [Patch(wpiutil.Sendable.__mro__[-2], "__hash__", hash_by_number)]  # the last one is `object`
+    return [Patch(robots.OF_ALL_BINDINGS, "__hash__", hash_by_number)]
 
 
 def hash_by_number(self: Any) -> int:

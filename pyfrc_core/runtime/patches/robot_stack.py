@@ -8,9 +8,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from types import FrameType
-from typing import TYPE_CHECKING
-
-import wpilib
+from typing import TYPE_CHECKING, Any
 
 from ...compat.cpython_private import get_frame
 from ...wpi import reports
@@ -31,22 +29,23 @@ def show_all_lines() -> None:
 
 
 def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
-    """Return the replacements of `wpilib.reportError` and `reportWarning`, which print a stack of their own."""
+    """Return the replacements of WPILib's functions that report with a stack of their own."""
 
-    def reporting(name: str) -> Patch:
-        real = getattr(wpilib, name)
+    def reporting(owner: Any, name: str) -> Patch:
+        real = getattr(owner, name)
 
-        def report(error: str, printTrace: bool = False) -> None:
+        def report(error: str, print_trace: bool = False, **named: bool) -> None:
+            (print_trace,) = named.values() or (print_trace,)  # each season has its own name for it
             # Of an exception that is being handled they print the traceback, which has nothing of ours.
-            if printTrace and sys.exc_info()[1] is None:
+            if print_trace and sys.exc_info()[1] is None:
                 error = f"{error}\n{_lines(files(), get_frame(1))}"
-                printTrace = False
-            real(error, printTrace)
+                print_trace = False
+            real(error, print_trace)
 
         report.__name__ = name
-        return Patch(wpilib, name, report)
+        return Patch(owner, name, report)
 
-    return [reporting("reportError"), reporting("reportWarning")]
+    return [reporting(owner, name) for owner, name in reports.WITH_STACK]
 
 
 def _lines(files: RobotFiles, frame: FrameType | None) -> str:

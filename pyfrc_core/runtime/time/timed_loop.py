@@ -8,7 +8,7 @@ threads for each loop. Here the clock calls the body on whichever thread moves t
 from __future__ import annotations
 
 from collections.abc import Callable
-from heapq import heappop, heappush
+from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 from ...wpi import robots
@@ -103,6 +103,11 @@ class TimedLoop:
         callback = Periodic(call, first_due_us, period_us)
         heappush(self._callbacks, callback)
         return callback
+
+    def remove(self, callback: Periodic) -> None:
+        """Take a callback out of the schedule. It must not be the one that is being called."""
+        self._callbacks.remove(callback)
+        heapify(self._callbacks)
 
     def begin(self, robot: robots.Timed) -> None:
         """What WPILib does before its first loop: the robot's own initialisation, then the loop's schedule."""

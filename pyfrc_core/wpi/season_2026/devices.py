@@ -7,8 +7,12 @@ from contextlib import suppress
 from typing import Any, Literal, NamedTuple
 
 import hal
+import hal.simulation
 import wpilib
 from wpilib.simulation import RoboRioSim, SimDeviceSim
+
+#: Reset all devices of the simulated HAL to their initial values.
+reset_all = hal.simulation.resetAllSimData
 
 #: Return the battery's voltage.
 battery_voltage = RoboRioSim.getVInVoltage

@@ -6,18 +6,37 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
+import ntcore
 from wpimath.geometry import Pose2d
 from wpiutil import DataLogWriter, wpistruct
 from wpiutil.log import (
     BooleanArrayLogEntry,
     BooleanLogEntry,
+    DataLog,
     DataLogReader,
     DataLogRecord,
     DoubleArrayLogEntry,
     DoubleLogEntry,
     IntegerArrayLogEntry,
+    IntegerLogEntry,
     StringLogEntry,
 )
+
+__all__ = [
+    "MALFORMED",
+    "DataLog",
+    "IntegerLogEntry",
+    "Kind",
+    "LogWriter",
+    "RealWriter",
+    "Record",
+    "StringLogEntry",
+    "log_network",
+    "records",
+]
+
+#: WPILib's own writer, whose name is replaced for robot code.
+RealWriter = DataLogWriter
 
 _READ: dict[str, Callable[[DataLogRecord], Any]] = {
     "boolean": DataLogRecord.getBoolean,
@@ -125,3 +144,16 @@ class LogWriter:
     def abandon(self) -> None:
         """Leave a file as it is that could not be written."""
         _UNFINISHED.append(self._log)
+
+
+def log_network(log: DataLog) -> Callable[[], None]:
+    """Log all changes of NetworkTables, from now on until the function that is returned is called."""
+    tables = ntcore.NetworkTableInstance.getDefault()
+    entries = tables.startEntryDataLog(log, "", "NT:")
+    connections = tables.startConnectionDataLog(log, "NTConnection")
+
+    def stop() -> None:
+        tables.stopEntryDataLog(entries)
+        tables.stopConnectionDataLog(connections)
+
+    return stop

@@ -9,7 +9,20 @@ from typing import Any
 import wpilib
 from wpilib.interfaces import MotorController
 
-__all__ = ["MotorCalls", "OnMotorCall", "is_group", "is_inverted", "is_pwm", "power_of", "replacements"]
+#: The packages of WPILib's own motor controllers.
+_WPILIBS = ("wpilib",)
+
+__all__ = [
+    "POWER_GETTER",
+    "MotorCalls",
+    "OnMotorCall",
+    "is_group",
+    "is_inverted",
+    "is_pwm",
+    "power_of",
+    "replacements",
+    "with_own_getter",
+]
 
 
 def is_inverted(thing: object) -> bool:
@@ -25,6 +38,23 @@ def is_pwm(thing: object) -> bool:
 def power_of(motor: MotorController) -> float:
     """Return the power that is set, from -1 to 1."""
     return motor.get()
+
+
+#: The name of the function that returns the power of a motor controller.
+POWER_GETTER = "get"
+
+
+def with_own_getter() -> list[type[Any]]:
+    """Return the classes with their own `POWER_GETTER`, if there are any besides WPILib's: those for PWM read the HAL.
+
+    REV's ``SparkMax`` is an example; a team's own motor controller class may be another.
+    """
+    own = [
+        each
+        for each in _with_derived(MotorController)
+        if each.__module__.partition(".")[0] not in _WPILIBS and callable(vars(each).get(POWER_GETTER))
+    ]
+    return [*dict.fromkeys(own), wpilib.MotorControllerGroup] if own else []
 
 
 def is_group(thing: object) -> bool:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from typing import Any
 
+import hal
+import wpilib
 import wpiutil._wpiutil
 
 from ...compat.private_name import PrivateName
@@ -23,6 +26,17 @@ ERROR = re.compile(rb"^Error at ([^\n]*)\n", re.MULTILINE)
 #: Errors that are no fault of the robot's code: joysticks that are not plugged in; slow loops, which pyfrc detects in a
 #: better way; drives without a command for a tenth of a second, which every robot has while it stands still.
 NO_FAULT = re.compile(rb"Joystick .*not (?:available|attached|plugged)|Loop time of|Output not updated", re.IGNORECASE)
+
+
+_ERROR_CODE = 1
+
+#: WPILib's functions that report with a stack of their own, if asked to.
+WITH_STACK: tuple[tuple[Any, str], ...] = ((wpilib, "reportError"), (wpilib, "reportWarning"))
+
+
+def report_error(message: str, where: str) -> None:
+    """Report an error to the driver station, and print it. The HAL drops a message with the same text as the last."""
+    hal.sendError(True, _ERROR_CODE, False, message, where, "", True)
 
 
 def show_stack(lines: Callable[[], str]) -> None:

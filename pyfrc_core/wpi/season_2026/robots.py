@@ -17,6 +17,8 @@ from . import names
 
 #: A robot whose loop can run in place, a turn at a time.
 Timed = wpilib.TimedRobot
+#: All classes of such robots.
+TIMED: tuple[type[Any], ...] = (wpilib.TimedRobot,)
 
 LOOP_FUNCTION = PrivateName(
     "wpilib:IterativeRobotBase._loopFunc", "runtime.time.timed_loop runs one turn of the robot's loop by it"
@@ -35,6 +37,14 @@ MAGIC_SIMULATION_PERIODIC = PrivateName(
     "magicbot:MagicRobot._simulationPeriodic",
     "runtime.time.simulation_periodic switches outputs off while it looks at a disabled robot",
 )
+
+#: WPILib's classes of robots, whose constructors make a robot.
+BASES: tuple[type[Any], ...] = (wpilib.RobotBase, wpilib.IterativeRobotBase, wpilib.TimedRobot, wpilib.TimesliceRobot)
+#: The functions that make a robot and run it, which robot code of earlier years calls.
+RUN_THE_PROGRAM: tuple[tuple[Any, str], ...] = ((wpilib, "run"),)
+
+#: The class that all classes of WPILib's bindings derive from.
+OF_ALL_BINDINGS: type[Any] = wpilib.RobotBase.__mro__[-2]  # the last one is `object`
 
 # -- kinds of robots ---------------------------------------------------------------------------------------------------
 
@@ -149,6 +159,11 @@ def own_simulation(robot: object) -> str | None:
     return None if own in (None, SIMULATION_PERIODIC.of(wpilib.IterativeRobotBase)) else name
 
 
+def print_epochs(robot: wpilib.IterativeRobotBase) -> None:
+    """Print how long each part of the last turn took."""
+    robot.printWatchdogEpochs()
+
+
 # -- programs that run without a clock of ours -------------------------------------------------------------------------
 
 
@@ -160,6 +175,11 @@ def library() -> ModuleType:
 def run_program(robot_class: type[Any]) -> bool:
     """Run a robot program in real time, until it ends; return whether it ended well."""
     return bool(wpilib.RobotBase.main(robot_class))
+
+
+def operating_directory() -> str:
+    """Return the directory that robot code finds as the program's."""
+    return wpilib.getOperatingDirectory()
 
 
 def set_deploy_directory(directory: Path) -> None:

@@ -39,6 +39,7 @@ from wpilib import DriverStation, MotorSafety
 from wpilib.simulation import DriverStationSim
 
 from ...errors import UsageError
+from ..opmodes import Opmode
 
 #: The four modes that `TestController.get_mode` returns.
 Mode: TypeAlias = Literal["disabled", "autonomous", "teleop", "test"]
@@ -48,6 +49,10 @@ JOYSTICKS = 6
 EVENT_NAME = "sim-event"
 #: The default controls of each joystick: as many as a robot may read.
 AXES, BUTTONS, POVS = 12, 12, 1
+#: The key in `hal_data` of what the driver station says of a gamepad.
+GAMEPAD_FLAG = "is_xbox"
+#: The number that robot code gives the first button of a joystick.
+FIRST_BUTTON = 1
 #: The value of a POV that is not pressed; when pressed, it is an angle in degrees clockwise from up.
 NOT_PRESSED = -1
 #: The most buttons that a joystick can have.
@@ -162,6 +167,11 @@ def sends_enabled() -> bool:
     return bool(getDriverStationEnabled())
 
 
+def set_enabled(enabled: bool) -> None:
+    """Enable or disable the robot with the next packet; its mode stays."""
+    setDriverStationEnabled(enabled)
+
+
 def disable() -> None:
     """Disable the robot with the next packet; its mode stays."""
     setDriverStationEnabled(False)
@@ -195,6 +205,18 @@ def match_time() -> float:
 def set_game_message(message: str) -> None:
     """Set the message that the field sends to all robots: `DriverStation.getGameSpecificMessage`."""
     setGameSpecificMessage(message)
+
+
+# -- opmodes -----------------------------------------------------------------------------------------------------------
+
+
+def published_opmodes() -> list[Opmode]:
+    """Return the opmodes that the robot has published: there are none before 2027."""
+    return []
+
+
+def select_opmode(opmode: Opmode | None) -> None:
+    """Select an opmode with the next packet, and its mode; None selects none."""
 
 
 # -- the robot's side --------------------------------------------------------------------------------------------------

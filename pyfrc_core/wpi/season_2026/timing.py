@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from hal.simulation import (
+    getNumNotifiers,
     isTimingPaused,
     pauseTiming,
     restartTiming,
@@ -20,6 +21,9 @@ from wpilib import Timer
 
 #: Advance HAL time by this many microseconds; wake the notifiers of C++ code that become due.
 step_us = stepTiming
+
+#: How many notifiers of C++ code there are.
+count_notifiers = getNumNotifiers
 
 #: Return HAL time, in seconds.
 seconds = Timer.getFPGATimestamp

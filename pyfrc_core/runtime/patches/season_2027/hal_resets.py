@@ -9,9 +9,9 @@ from __future__ import annotations
 import hal.simulation
 import wpilib.simulation
 
-from ...hal.created_devices import prepare_reset
-from ..patch_table import Patch
-from .active_run import active_run
+from ....hal.created_devices import prepare_reset
+from ...patch_table import Patch
+from ..active_run import active_run
 
 #: The driver station is below; SimDevices have no callbacks.
 _NOT_HERE = (wpilib.simulation.DriverStationSim, wpilib.simulation.SimDeviceSim)
@@ -21,16 +21,16 @@ def patches() -> list[Patch]:
     """Return the names of WPILib's to replace."""
     return [
         *(
-            _prepared(owner, "resetData")
+            _prepared(owner, "reset_data")
             for owner in vars(wpilib.simulation).values()
-            if isinstance(owner, type) and "resetData" in vars(owner) and owner not in _NOT_HERE
+            if isinstance(owner, type) and "reset_data" in vars(owner) and owner not in _NOT_HERE
         ),
         *(
             _keeping_connection(owner, name)
             for owner, name in (
-                (wpilib.simulation.DriverStationSim, "resetData"),
-                (hal.simulation, "resetDriverStationData"),
-                (hal.simulation, "resetAllSimData"),
+                (wpilib.simulation.DriverStationSim, "reset_data"),
+                (hal.simulation, "reset_driver_station_data"),
+                (hal.simulation, "reset_all_sim_data"),
             )
         ),
     ]
@@ -53,6 +53,6 @@ def _keeping_connection(owner: object, name: str) -> Patch:
         prepare_reset()
         real()
         if active_run.run is not None:
-            hal.simulation.setDriverStationDsAttached(True)
+            hal.simulation.set_driver_station_ds_attached(True)
 
     return Patch(owner, name, reset)

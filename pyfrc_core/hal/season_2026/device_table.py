@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from operator import attrgetter
 from typing import Any
 
@@ -9,12 +10,13 @@ import hal
 import wpilib
 from wpilib import simulation as sim
 
-from ..wpi import encoders
-from .containers import NOT_SET
+from ...wpi import encoders
+from ..containers import NOT_SET, LiveDict, Slot
+from ..fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind, group
+from ..kinds import BOOL, FLOAT, INT32, INT64, ValueKind, choice, number, text, whole
+from . import driver_station
 from .counters import COUNTERS, CounterSim
 from .digital import DigitalSim
-from .fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind
-from .kinds import BOOL, FLOAT, INT32, INT64, ValueKind, choice, number, text, whole
 
 RANGE = choice({"2G": 0, "4G": 1, "8G": 2}, hal.AccelerometerRange)
 LED_STATE = choice({"off": 0, "green": 1, "red": 2, "orange": 3}, wpilib.RadioLEDState)
@@ -277,3 +279,40 @@ ROBORIO = (
     F("cpu_temp", "CPUTemp", FLOAT),
     F("radio_led_state", "RadioLEDState", LED_STATE),
 )
+
+
+def groups() -> dict[str, Callable[[], LiveDict]]:
+    """Return what there is only one of, by its key, each with the function that makes it."""
+    return {
+        "control": lambda: group("control", sim.DriverStationSim, driver_station.CONTROL),
+        "time": lambda: group("time", sim.DriverStationSim, driver_station.TIME),
+        "accelerometer": lambda: group("accelerometer", sim.BuiltInAccelerometerSim(), ACCELEROMETER),
+        "power": lambda: group("power", sim.RoboRioSim, POWER),
+        "roborio": lambda: group("roborio", sim.RoboRioSim, ROBORIO),
+    }
+
+
+def values() -> dict[str, Slot]:
+    """Return the values that have a key of their own."""
+    return {
+        "alliance_station": driver_station.ALLIANCE_STATION.slot(sim.DriverStationSim),
+        "fpga_button": FPGA_BUTTON.slot(sim.RoboRioSim),
+    }
+
+
+#: The buttons of the controller itself, by their keys.
+BUTTONS: tuple[str, ...] = ("fpga_button",)
+
+#: The kinds of `KINDS` that are gyros, with `angle` and `rate`.
+GYROS: tuple[str, ...] = ("analog_gyro",)
+
+#: The groups that exist when one of their values says so, with its key.
+MAY_EXIST: Mapping[str, str] = {"accelerometer": "active"}
+#: Which values of groups that always exist are recorded: the rest is constant, or derived. Physics and robots change
+#: the supply and the LED.
+RECORDED: Mapping[str, tuple[str, ...]] = {
+    "power": ("vin_voltage", "vin_current", "brownout_voltage"),
+    "roborio": ("radio_led_state",),
+    "time": ("remaining",),
+}
+RECORDED_VALUES = ("alliance_station", "fpga_button", "user_program_state")

@@ -14,11 +14,11 @@ from hal import simulation as hs
 from wpilib import DriverStation
 from wpilib.simulation import DriverStationSim
 
-from ..wpi import station
-from .containers import LiveDict, LiveList, Slot, ValueList, stored
-from .fields import HAS_SOURCE, DeviceField
-from .kinds import BOOL, FLOAT, INT32, ValueKind, choice, number, text, whole
-from .paths import join
+from ...wpi import station
+from ..containers import LiveDict, LiveList, Slot, ValueList, stored
+from ..fields import HAS_SOURCE, DeviceField
+from ..kinds import BOOL, FLOAT, INT32, ValueKind, choice, number, text, whole
+from ..paths import join
 
 AXES = POVS = 12  # the maximum of the HAL
 BUTTONS = 12  # the shortest list; a joystick with more buttons shows all
@@ -106,6 +106,9 @@ class JoystickData(LiveDict):
     The robot sees `axis_count` axes, `button_count` buttons and `pov_count` POVs; writing a later one raises its count.
     Values are read from WPILib's buffer, so an axis has the precision of a C float.
     """
+
+    #: The keys of `sent_back`.
+    sent_keys = ("outputs", "left_rumble", "right_rumble")
 
     def __init__(self, port: int) -> None:
         super().__init__(join("joysticks", port), self._all)

@@ -1,7 +1,7 @@
 """Notice simulations that draw noise by chance, which nobody can seed: what they simulate does not repeat.
 
 REV's SPARKs draw some whenever physics calls `iterate`; without it they repeat. WPILib's mechanisms draw some if they
-were made with `measurementStdDevs` that are not 0.
+were made with `measurement_std_devs` that are not 0.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from typing import Any
 
 import wpilib.simulation
 
-from ...compat.unrepeatable import report_noise, report_noisy_mechanism
-from ..patch_table import Patch
+from ....compat.unrepeatable import report_noise, report_noisy_mechanism
+from ...patch_table import Patch
 
 _simulation: Any = wpilib.simulation
 _MECHANISMS = (
@@ -30,7 +30,7 @@ def patches() -> Iterator[Patch]:
     for kind in _MECHANISMS:
         yield Patch(kind, "__init__", _making(kind, kind.__init__))
     drivetrain = _simulation.DifferentialDrivetrainSim
-    yield Patch(drivetrain, "createKitbotSim", _making(drivetrain, drivetrain.createKitbotSim))
+    yield Patch(drivetrain, "create_kitbot_sim", _making(drivetrain, drivetrain.create_kitbot_sim))
 
 
 def spark_patch(rev: Any) -> Patch:

@@ -14,13 +14,13 @@ import hal.simulation
 import wpilib
 import wpilib.simulation
 
-from ..clock import to_us
-from ..patch_table import Patch
-from ..threads import cooperative
-from .active_run import active_run
+from ...clock import to_us
+from ...patch_table import Patch
+from ...threads import cooperative
+from ..active_run import active_run
 
 if TYPE_CHECKING:
-    from ..threads.robot_threads import RobotThread
+    from ...threads.robot_threads import RobotThread
 
 
 def patches() -> list[Patch]:

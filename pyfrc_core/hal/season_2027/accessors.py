@@ -1,0 +1,28 @@
+"""How the functions of WPILib's simulated devices are named, for the rows of the tables: see `fields`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+
+def getter(device: object, value: str | None) -> Callable[[], Any]:
+    """Return the function that reads a value, such as `Speed`."""
+    read: Callable[[], Any] = getattr(device, f"get_{_in_words(value)}")
+    return read
+
+
+def setter(device: object, value: str | None) -> Callable[[Any], object] | None:
+    """Return the function that writes it, if there is one."""
+    return getattr(device, f"set_{_in_words(value)}", None)
+
+
+def registrar(device: object, value: str | None) -> Callable[..., object] | None:
+    """Return the function that registers a listener for it, if there is one."""
+    return getattr(device, f"register_{_in_words(value)}_callback", None)
+
+
+def _in_words(value: str | None) -> str:
+    """Return a name as WPILib 2027 writes it: ``compressor_on`` for `CompressorOn`, which the seasons share."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", value or "").lower()

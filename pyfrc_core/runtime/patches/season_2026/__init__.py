@@ -1,0 +1,1 @@
+"""The replaced names of WPILib 2026. The package of another season has the same modules, with the same functions."""

@@ -1,0 +1,58 @@
+"""Replace the functions by which tests and robot code reset data of the simulated HAL.
+
+A reset of devices removes their callbacks, by which `hal_data` finds new devices: `prepare_reset` comes first. A reset
+of the driver station's data must not end the connection.
+"""
+
+from __future__ import annotations
+
+import hal.simulation
+import wpilib.simulation
+
+from ....hal.created_devices import prepare_reset
+from ...patch_table import Patch
+from ..active_run import active_run
+
+#: The driver station is below; SimDevices have no callbacks.
+_NOT_HERE = (wpilib.simulation.DriverStationSim, wpilib.simulation.SimDeviceSim)
+
+
+def patches() -> list[Patch]:
+    """Return the names of WPILib's to replace."""
+    return [
+        *(
+            _prepared(owner, "resetData")
+            for owner in vars(wpilib.simulation).values()
+            if isinstance(owner, type) and "resetData" in vars(owner) and owner not in _NOT_HERE
+        ),
+        *(
+            _keeping_connection(owner, name)
+            for owner, name in (
+                (wpilib.simulation.DriverStationSim, "resetData"),
+                (hal.simulation, "resetDriverStationData"),
+                (hal.simulation, "resetAllSimData"),
+            )
+        ),
+    ]
+
+
+def _prepared(owner: type, name: str) -> Patch:
+    real = getattr(owner, name)
+
+    def reset(*device: object) -> None:
+        prepare_reset()
+        real(*device)
+
+    return Patch(owner, name, reset)
+
+
+def _keeping_connection(owner: object, name: str) -> Patch:
+    real = getattr(owner, name)
+
+    def reset() -> None:
+        prepare_reset()
+        real()
+        if active_run.run is not None:
+            hal.simulation.setDriverStationDsAttached(True)
+
+    return Patch(owner, name, reset)

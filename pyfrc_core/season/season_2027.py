@@ -1,0 +1,28 @@
+"""The 2027 season: WPILib 2027 on SystemCore."""
+
+from __future__ import annotations
+
+from datetime import datetime, timezone
+
+from .record import ControllerSoftware, MatchLengths, Packages, Season, SeasonField
+from .season_2026 import SEASON_2026
+
+#: WPILib is an alpha; the match and the field are 2026's until the kickoff.
+SEASON_2027 = Season(
+    year=2027,
+    kickoff=datetime(2027, 1, 9, 17, tzinfo=timezone.utc),  # noon, Eastern time, on the second Saturday
+    match=MatchLengths(autonomous=15.0, pause=3.0, teleop=135.0),
+    field=SeasonField(SEASON_2026.field.w, SEASON_2026.field.h),
+    controller=ControllerSoftware(
+        name="SystemCore",
+        images=(),
+        python=(3, 14),
+        home="/home/systemcore",
+    ),
+    packages=Packages(
+        wpilib="2027.0.0a7",
+        commands="robotpy-commands-v2~=2027.0.0a7",
+        utilities="robotpy-wpilib-utilities~=2027.0.0a7",
+    ),
+    cli_plugins="robotpy_cli.2027",
+)

@@ -1,0 +1,161 @@
+"""Motor controllers: of which kind an object is, and the calls with which robot code sets it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import wpilib
+from wpilib import MotorController
+
+#: The packages of WPILib's own motor controllers.
+_WPILIBS = ("wpilib", "wpilib_drivers")
+
+__all__ = [
+    "POWER_GETTER",
+    "MotorCalls",
+    "OnMotorCall",
+    "is_group",
+    "is_inverted",
+    "is_pwm",
+    "power_of",
+    "replacements",
+    "with_own_getter",
+]
+
+
+def is_inverted(thing: object) -> bool:
+    """Return whether the robot has inverted a motor controller; False for other objects."""
+    return isinstance(thing, MotorController) and thing.get_inverted()
+
+
+def is_pwm(thing: object) -> bool:
+    """Return whether this is a motor controller that a PWM output sets, which moves only by what robot code sets."""
+    return isinstance(thing, wpilib.PWMMotorController)
+
+
+def power_of(motor: MotorController) -> float:
+    """Return the power that is set, from -1 to 1."""
+    return motor.get_throttle()
+
+
+#: The name of the function that returns the power of a motor controller.
+POWER_GETTER = "get_throttle"
+
+
+def with_own_getter() -> list[type[Any]]:
+    """Return the classes with their own `POWER_GETTER`, if there are any besides WPILib's: those for PWM read the HAL.
+
+    REV's ``SparkMax`` is an example; a team's own motor controller class may be another.
+    """
+    own = [
+        each
+        for each in _with_derived(MotorController)
+        if each.__module__.partition(".")[0] not in _WPILIBS and callable(vars(each).get(POWER_GETTER))
+    ]
+    return [*dict.fromkeys(own), wpilib.MotorControllerGroup] if own else []
+
+
+def is_group(thing: object) -> bool:
+    """Return whether this is made of other motors, and sets them without a call in Python."""
+    return isinstance(thing, _groups())
+
+
+def _groups() -> tuple[type[Any], ...]:
+    return (wpilib.MotorControllerGroup, *(drive for drive, _ in _drives()))
+
+
+def _drives() -> list[tuple[type[Any], tuple[str, ...]]]:
+    """Return the class of each drive, and its functions that set its motors."""
+    return [
+        (wpilib.DifferentialDrive, ("arcade_drive", "curvature_drive", "tank_drive")),
+        (wpilib.MecanumDrive, ("drive_cartesian", "drive_polar")),
+    ]
+
+
+# -- the calls that set motors -----------------------------------------------------------------------------------------
+
+#: Called with the motor controller or drive, the function's name, its numeric arguments, and whether they are powers
+#: from -1 to 1.
+OnMotorCall = Callable[[Any, str, tuple[float, ...], bool], None]
+
+
+class MotorCalls:
+    """The calls of one run.
+
+    Attributes:
+        listener: called with each call, before it has an effect
+        members: the motors of each group and drive that was created, by its id: objects of WPILib's are not hashable
+            in all versions
+    """
+
+    def __init__(self) -> None:
+        self.listener: OnMotorCall = lambda motor, name, numbers, is_power: None
+        self.members: dict[int, list[Any]] = {}
+
+
+def replacements(calls: MotorCalls) -> Iterator[tuple[Any, str, Any]]:
+    """Return the functions that set motors, with their owner and name: each reports its call.
+
+    They are replaced in Python, since WPILib passes 0 for NaN, and 1 for greater values.
+    """
+    for owner in _with_derived(MotorController):
+        for name, wrap in (("set_throttle", _set), ("set_voltage", _set_voltage)):
+            if name in vars(owner):
+                yield owner, name, wrap(vars(owner)[name], calls)
+    for drive, names in _drives():
+        for name in names:
+            yield drive, name, _drive(vars(drive)[name], name, calls)
+    for group in _groups():
+        yield group, "__init__", _init(group.__init__, calls.members)
+
+
+def _with_derived(base: type[object]) -> Iterator[type[Any]]:
+    yield base
+    subclasses: list[type[Any]] = base.__subclasses__()
+    for derived in subclasses:
+        yield from _with_derived(derived)
+
+
+# Each wrapper must have the name of the function it wraps: WPILib's bindings take a call from a function of the same
+# name for a call of `super()`, as it is where a robot's own class overrides the method.
+
+
+def _set(real: Callable[..., object], calls: MotorCalls) -> Callable[..., Any]:
+    def set_throttle(self: object, *args: object, **kwargs: object) -> Any:
+        calls.listener(self, "set_throttle", _numbers(args, kwargs), True)
+        return real(self, *args, **kwargs)
+
+    return set_throttle
+
+
+def _set_voltage(real: Callable[..., object], calls: MotorCalls) -> Callable[..., Any]:
+    def set_voltage(self: object, *args: object, **kwargs: object) -> Any:
+        calls.listener(self, "set_voltage", _numbers(args, kwargs), False)
+        return real(self, *args, **kwargs)
+
+    return set_voltage
+
+
+def _drive(real: Callable[..., object], name: str, calls: MotorCalls) -> Callable[..., Any]:
+    def drive(self: object, *args: object, **kwargs: object) -> Any:
+        calls.listener(self, name, _numbers(args, kwargs), False)
+        return real(self, *args, **kwargs)
+
+    return drive
+
+
+def _init(real: Callable[..., None], members: dict[int, list[Any]]) -> Callable[..., None]:
+    def __init__(self: object, *args: object, **kwargs: object) -> None:
+        real(self, *args, **kwargs)
+        members[id(self)] = [each for each in (*args, *kwargs.values()) if isinstance(each, MotorController)]
+
+    return __init__
+
+
+def _numbers(args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[float, ...]:
+    if len(args) == 1 and type(args[0]) is float and not kwargs:  # nearly always
+        return args
+    return tuple(
+        each for each in (*args, *kwargs.values()) if isinstance(each, float | int) and not isinstance(each, bool)
+    )

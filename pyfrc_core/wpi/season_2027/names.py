@@ -1,0 +1,77 @@
+"""The names that robot code gives its methods, for what reads robot code. It imports no WPILib."""
+
+from __future__ import annotations
+
+import re
+
+#: The libraries whose classes robot classes derive from.
+LIBRARIES = ("wpilib", "commands2", "magicbot")
+
+#: What runs a robot from its start to its end; robots with a loop of their own override it.
+MAIN = "start_competition"
+#: What a robot does first, once. In 2027, `TimedRobot` has no other method for it.
+INITIALIZATION = "__init__"
+
+_MODES = ("robot", "disabled", "autonomous", "teleop", "utility", "simulation", "none")
+
+#: The methods that WPILib's loop calls, by the mode.
+OF_MODES = frozenset(f"{mode}_{when}" for mode in _MODES for when in ("init", "periodic", "exit"))
+
+#: Of these, the ones that are called in a simulation only.
+OF_SIMULATION = frozenset({"simulation_init", "simulation_periodic"})
+
+#: The methods that a class without the right base class has, if it was meant to be a robot.
+OF_A_ROBOT = frozenset({"teleop_init", "teleop_periodic", "autonomous_init", "autonomous_periodic"})
+
+#: The methods that run a robot's loop, and end it.
+OF_A_LOOP = frozenset({MAIN, "end_competition"})
+#: Other methods of a robot that libraries call.
+_OF_ALL_ROBOTS = frozenset({*OF_A_LOOP, "driver_station_connected", "create_objects", "robot_init", "on_exception"})
+#: The method of a command that says whether it is finished.
+END_CONDITION = "is_finished"
+#: The methods of commands, subsystems and magicbot's components that libraries call.
+OF_A_COMMAND = frozenset({"initialize", "execute", "end", END_CONDITION})
+#: The methods of an opmode.
+OF_AN_OPMODE = frozenset({"disabled_periodic", "start", "periodic", "end"})
+OF_A_SUBSYSTEM = frozenset({"periodic", "simulation_periodic"})
+OF_A_COMPONENT = frozenset({"execute", "on_enable", "on_disable"})
+
+#: The class of subsystems that are registered by their constructor; and what registers others.
+SUBSYSTEM, REGISTERING = "commands2.subsystem.Subsystem", frozenset({"__init__", "register", "register_subsystem"})
+
+#: What the loop of a plain `RobotBase` has to call in each turn, to take in what the driver station sends.
+REFRESH = "wpilib.DriverStationBackend.refresh_data()"
+
+#: All methods that robot code overrides, besides those of the modes.
+OVERRIDDEN = _OF_ALL_ROBOTS | OF_A_COMMAND | {"periodic", "runs_when_disabled", "get_interruption_behavior"}
+
+#: The tables of NetworkTables whose entries are settings, and those that only WPILib itself writes.
+SETTINGS = ("/SmartDashboard/", "/Shuffleboard/", "/Preferences/")
+WRITTEN_BY_WPILIB = ("/FMSInfo/", "/LiveWindow/")
+#: The file of a library that reads entries on behalf of robot code: magicbot's tunables.
+TUNABLES_FILE = "magic_tunable.py"
+
+#: The functions with which robot code asks for what is rarely asked for, by the path in `hal_data` of what they return.
+ASKED_BY = {
+    "roborio.cpu_temp": "get_cpu_temp",
+    "roborio.comments": "get_comments",
+    "roborio.serial_number": "get_serial_number",
+    "pdp.temperature": "get_temperature",
+    **{
+        f"power.user_{value}_3v3": f"{function}_3v3"
+        for function, value in (
+            ("get_voltage", "voltage"),
+            ("get_current", "current"),
+            ("get_enabled", "active"),
+            ("get_fault_count", "faults"),
+        )
+    },
+}
+
+#: Words that are written for a mode's name: those of other seasons, and abbreviations.
+SYNONYMS = (
+    (re.compile("^auto(n|nomus|nomos)?(?=_(init|periodic|exit))"), "autonomous"),
+    (re.compile("^(teleoperated|tele)(?=_(init|periodic|exit))"), "teleop"),
+    (re.compile("^(disable)(?=_(init|periodic|exit))"), "disabled"),
+    (re.compile("^(test)(?=_(init|periodic|exit))"), "utility"),
+)

@@ -1,0 +1,186 @@
+"""Robots: what kind of robot an object is, and each step of its life."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+from typing import Any, TypeGuard
+
+import hal
+import wpilib
+
+from ...compat.private_name import PrivateName
+from . import names
+
+#: A robot whose loop can run in place, a turn at a time.
+Timed = wpilib.TimedRobot
+#: All classes of such robots.
+TIMED: tuple[type[Any], ...] = (wpilib.TimedRobot, wpilib.OpModeRobotBase)
+
+LOOP_FUNCTION = PrivateName(
+    "wpilib:IterativeRobotBase._loop_func", "runtime.time.timed_loop runs one turn of the robot's loop by it"
+)
+OPMODE_LOOP_FUNCTION = PrivateName(
+    "wpilib:OpModeRobotBase._loop_func", "runtime.time.timed_loop runs one turn of an OpModeRobot's loop by it"
+)
+
+#: WPILib's classes of robots, whose constructors make a robot.
+BASES: tuple[type[Any], ...] = (
+    wpilib.RobotBase,
+    wpilib.IterativeRobotBase,
+    wpilib.TimedRobot,
+    wpilib.TimesliceRobot,
+    wpilib.OpModeRobotBase,
+)
+#: The functions that make a robot and run it, which robot code of earlier years calls.
+RUN_THE_PROGRAM: tuple[tuple[Any, str], ...] = ()
+
+#: The class that all classes of WPILib's bindings derive from.
+OF_ALL_BINDINGS: type[Any] = wpilib.RobotBase.__mro__[-2]  # the last one is `object`
+
+# -- kinds of robots ---------------------------------------------------------------------------------------------------
+
+
+def is_robot_class(value: object) -> TypeGuard[type[Any]]:
+    """Return whether this is a class of robots that is not a library's own base class."""
+    if not isinstance(value, type) or not issubclass(value, wpilib.RobotBase):
+        return False
+    return value.__module__.partition(".")[0] not in names.LIBRARIES
+
+
+def is_timed(robot: object) -> TypeGuard[wpilib.TimedRobot]:
+    """Return whether the robot has WPILib's timed loop, whose turns can be run in place."""
+    return isinstance(robot, TIMED)
+
+
+def is_magic(robot: object) -> bool:
+    """Return whether this is a `MagicRobot`, whose own loop calls the robot's functions as WPILib's does."""
+    return any(base.__module__.partition(".")[0] == "magicbot" for base in type(robot).__mro__)
+
+
+def has_loop_of_a_library(robot: object) -> bool:
+    """Return whether a library's loop calls the robot's functions."""
+    return isinstance(robot, (wpilib.IterativeRobotBase, wpilib.OpModeRobotBase)) or is_magic(robot)
+
+
+def has_loop_of_its_own(robot: object) -> bool:
+    """Return whether the robot has to run on a thread: it has no timed loop, or overrides what runs it."""
+    for base in TIMED:
+        if isinstance(robot, base):
+            return type(robot).start_competition is not base.start_competition
+    return True
+
+
+def period(robot: object, default: float) -> float:
+    """Return the seconds between two turns of the robot's loop.
+
+    :param default: for a loop that does not say
+    """
+    if isinstance(robot, wpilib.IterativeRobotBase):
+        return robot.get_period()
+    return float(getattr(robot, "control_loop_wait_time", default))
+
+
+# -- the life of a robot -----------------------------------------------------------------------------------------------
+
+
+def initialize(robot: wpilib.TimedRobot) -> None:
+    """Run the robot's own initialization: what WPILib's loop does before its first turn."""
+    __tracebackhide__ = True
+    robot.simulation_init()
+
+
+def reports_initialization(robot: object) -> bool:
+    """Return whether it is known when the robot's own initialization is over."""
+    return is_timed(robot) or is_magic(robot)
+
+
+def when_initialized(robot: Any, call: Callable[[], object]) -> None:
+    """Call this when the initialization of a robot with a loop of its own is over, if it reports that."""
+    if not is_magic(robot):
+        return
+    this = weakref.ref(robot)  # or the robot would hold on to itself
+
+    def initialized() -> None:
+        __tracebackhide__ = True
+        type(this()).simulation_init(this())
+        call()
+
+    robot.simulation_init = initialized  # a `MagicRobot` calls it then, in simulation
+
+
+def report_start() -> None:
+    """Report that the robot program has started, as WPILib's loop does before its first turn."""
+    hal.observe_user_program_starting()
+
+
+def turn_of(robot: wpilib.TimedRobot) -> Callable[[], None]:
+    """Return what runs one turn of the robot's loop. Its ``__name__`` is that of `LOOP_FUNCTION`."""
+    turn: Callable[[], None] = LOOP_FUNCTION.of(robot)
+    return turn
+
+
+def compete(robot: Any) -> None:
+    """Run a robot that has a loop of its own, until it ends."""
+    __tracebackhide__ = True
+    robot.start_competition()
+
+
+def end(robot: Any) -> None:
+    """Have the robot's loop end."""
+    __tracebackhide__ = True
+    robot.end_competition()
+
+
+def cancel_first_alarm(robot: wpilib.TimedRobot) -> None:
+    """Cancel the alarm that the robot's constructor has set, by WPILib's own function even if it is overridden."""
+
+    # The bindings recognize a call through `super()`, which is not to reach the override, by the name of the calling
+    # function and by its first argument.
+    def end_competition(robot: Any) -> None:
+        next(base for base in TIMED if isinstance(robot, base)).end_competition(robot)
+
+    end_competition(robot)
+
+
+def own_simulation(robot: object) -> str | None:
+    """Return the name of the method with which the robot's class simulates itself; None if it has none of its own."""
+    own = getattr(type(robot), "simulation_periodic", None)
+    bases = (wpilib.IterativeRobotBase.simulation_periodic, wpilib.OpModeRobotBase.simulation_periodic)
+    return None if own in (None, *bases) else "simulation_periodic"
+
+
+def print_epochs(robot: wpilib.IterativeRobotBase) -> None:
+    """Print how long each part of the last turn took, if the robot says so."""
+    if isinstance(robot, wpilib.IterativeRobotBase):
+        robot.print_watchdog_epochs()
+
+
+# -- programs that run without a clock of ours -------------------------------------------------------------------------
+
+
+def library() -> ModuleType:
+    """Return WPILib's main module, as robot code imports it."""
+    return wpilib
+
+
+def run_program(robot_class: type[Any]) -> bool:
+    """Run a robot program in real time, until it ends; return whether it ended well."""
+    return bool(wpilib.RobotBase.main(robot_class))
+
+
+def operating_directory() -> str:
+    """Return the directory that robot code finds as the program's."""
+    return wpilib.get_operating_directory()
+
+
+def set_deploy_directory(directory: Path) -> None:
+    """Set the directory in which robot code finds its files."""
+    wpilib.get_deploy_directory = lambda: str(directory)
+
+
+def show_window() -> None:
+    """Show the window of WPILib's own simulator, which has been loaded, until it is closed."""
+    hal.run_main()

@@ -1,0 +1,95 @@
+"""Python code that pyfrc writes for a robot's ``physics.py``: how the season spells it. It imports no WPILib."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from typing import NamedTuple
+
+#: The class that all robots have.
+ROBOT = "wpilib.RobotBase"
+#: The call with which robot code says what one count of an encoder is.
+SETS_DISTANCE = "set_distance_per_pulse()"
+
+
+class Simulation(NamedTuple):
+    """The simulation of a device.
+
+    :param name: the name to import, see `imports`
+    :param made: the expression that makes it
+    """
+
+    name: str
+    made: str
+
+
+#: The name of an encoder's simulation.
+ENCODER = "EncoderSim"
+
+
+def imports(simulations: Iterable[str], *, motors: bool) -> str:
+    """Return the lines that import WPILib, the simulations of these names, and, if asked for, what `motor` needs."""
+    names = ", ".join(sorted(simulations))
+    lines = ["import wpilib"]
+    lines += [f"from wpilib.simulation import {names}"] if names else []
+    lines += ["from wpimath import DCMotor"] if motors else []
+    return "".join(f"{line}\n" for line in lines)
+
+
+def motor(model: str, count: int | str) -> str:
+    """Return the expression for motors of one model; `motors.usual_motor` has names of models."""
+    return f"DCMotor.{model}({count})"
+
+
+def pwm(channel: int) -> Simulation:
+    """Return the simulation of a PWM output."""
+    return Simulation("PWMMotorControllerSim", f"PWMMotorControllerSim({channel})")
+
+
+def power_of_pwm(expression: str) -> str:
+    """Return the expression for the power that a PWM output has."""
+    return f"{expression}.get_throttle()"
+
+
+def encoder(channels: tuple[int, int] | None, index: int) -> Simulation:
+    """Return the simulation of an encoder, by its first channel if that is known."""
+    how = f"create_for_channel({channels[0]})" if channels else f"create_for_index({index})"
+    return Simulation(ENCODER, f"{ENCODER}.{how}")
+
+
+def duty_cycle_encoder(channel: int) -> Simulation:
+    """Return the simulation of an absolute encoder; its ``set`` takes turns."""
+    return Simulation("DutyCycleEncoderSim", f"DutyCycleEncoderSim({channel})")
+
+
+def analog_gyro(channel: int) -> Simulation:
+    """Return the simulation of an analog gyro."""
+    return Simulation("AnalogGyroSim", f"AnalogGyroSim({channel})")
+
+
+def turned_gyro(expression: str, turned: str, rate: str) -> list[str]:
+    """Return the lines that turn an analog gyro.
+
+    :param turned: what is added to its angle, with a sign and spaces: `` - turned``
+    :param rate: its rate
+    """
+    return [f"{expression}.set_angle({expression}.get_angle(){turned})", f"{expression}.set_rate({rate})"]
+
+
+def number(device: str, value: str) -> Simulation:
+    """Return a number of a SimDevice, with ``get`` and ``set``."""
+    made = f"SimDeviceSim({_quoted(device)}).get_double({_quoted(value)})"
+    return Simulation("SimDeviceSim", made)
+
+
+def wheel_speed(speeds: str, wheel: str) -> str:
+    """Return the speed of a wheel in WPILib's wheel speeds.
+
+    :param wheel: ``left`` or ``right``, of a mecanum drive such as ``front_left``
+    """
+    return f"{speeds}.{wheel}"
+
+
+def _quoted(text: str) -> str:
+    """Return `text` as a Python literal."""
+    return json.dumps(text, ensure_ascii=False)

@@ -1,0 +1,394 @@
+"""The driver station: what it sends, packets, and what the robot program has taken in of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Literal, NamedTuple, TypeAlias
+
+import hal
+from hal.simulation import (
+    get_driver_station_ds_attached,
+    get_driver_station_e_stop,
+    get_driver_station_enabled,
+    get_driver_station_match_time,
+    get_joystick_availables,
+    get_program_started,
+    notify_driver_station_new_data,
+    reset_driver_station_data,
+    set_driver_station_ds_attached,
+    set_driver_station_enabled,
+    set_driver_station_match_time,
+    set_event_name,
+    set_game_data_string,
+    set_joystick_axes_available,
+    set_joystick_axis,
+    set_joystick_buttons_available,
+    set_joystick_buttons_value,
+    set_joystick_pov,
+    set_joystick_povs_available,
+)
+from wpilib import DriverStationBackend, MatchState, MotorSafety, RobotState
+from wpilib.simulation import DriverStationSim
+
+from ...errors import UsageError
+from ..opmodes import Opmode
+
+#: The four modes that `TestController.get_mode` returns; "test" is WPILib's utility mode.
+Mode: TypeAlias = Literal["disabled", "autonomous", "teleop", "test"]
+
+JOYSTICKS = DriverStationBackend.JOYSTICK_PORTS
+#: As in 2019.
+EVENT_NAME = "sim-event"
+#: The default controls of each joystick: a gamepad has more buttons than a joystick of 2026.
+AXES, BUTTONS, POVS = 12, 12, 1
+#: The key in `hal_data` of what the driver station says of a gamepad.
+GAMEPAD_FLAG = "is_gamepad"
+#: The number that robot code gives the first button of a joystick.
+FIRST_BUTTON = 0
+#: The value of a POV that is not pressed; when pressed, it is an angle in degrees clockwise from up.
+NOT_PRESSED = -1
+#: The most buttons that a joystick can have.
+MAX_BUTTONS = 64
+
+RobotMode = hal.RobotMode
+JoystickPOV = hal.JoystickPOV
+
+#: Deliver the driver station's current data to the robot as the next packet.
+deliver_packet = notify_driver_station_new_data
+
+#: Have the robot program take in the last packet, as its loop does.
+refresh = DriverStationBackend.refresh_data
+
+
+class MatchInfo(NamedTuple):
+    """The match, as the field sends it."""
+
+    event_name: str = ""
+    match_type: int = 0
+    match_number: int = 0
+    replay_number: int = 0
+    game_data: str = ""
+
+
+def reset_driver_station() -> None:
+    """Set the initial data of the driver station: attached, disabled, red 1, six joysticks with nothing pressed."""
+    reset_driver_station_data()
+    set_driver_station_ds_attached(True)
+    DriverStationSim.set_robot_mode(RobotMode.TELEOPERATED)
+    DriverStationSim.set_alliance_station_id(hal.AllianceStationID.RED_1)
+    set_event_name(EVENT_NAME)
+    set_game_data_string("")  # a reset leaves it
+    for stick in range(JOYSTICKS):
+        plug_in(stick)
+
+
+def plug_in(stick: int) -> None:
+    """Plug in a joystick with nothing pressed."""
+    _set_counts(stick, AXES, BUTTONS, POVS)
+    for axis in range(AXES):
+        set_joystick_axis(stick, axis, 0.0)
+    set_joystick_buttons_value(stick, 0)
+    for pov in range(POVS):
+        set_joystick_pov(stick, pov, JoystickPOV.CENTERED)
+
+
+def unplug(stick: int) -> None:
+    """Unplug a joystick: it has no axes, buttons and POVs."""
+    _set_counts(stick, 0, 0, 0)
+
+
+def counts(stick: int) -> tuple[int, int, int]:
+    """Return how many axes, buttons and POVs a joystick has: up to the last that is available."""
+    axes, buttons, povs = get_joystick_availables(stick)
+    return axes.bit_length(), buttons.bit_length(), povs.bit_length()
+
+
+def _set_counts(stick: int, axes: int, buttons: int, povs: int) -> None:
+    set_joystick_axes_available(stick, mask(axes))
+    set_joystick_buttons_available(stick, mask(buttons))
+    set_joystick_povs_available(stick, mask(povs))
+
+
+def mask(count: int) -> int:
+    """Return the mask that says that so many controls are available."""
+    return (1 << count) - 1
+
+
+#: WPILib's POVs, by the angle in degrees.
+_POVS = {
+    NOT_PRESSED: JoystickPOV.CENTERED,
+    0: JoystickPOV.UP,
+    45: JoystickPOV.RIGHT_UP,
+    90: JoystickPOV.RIGHT,
+    135: JoystickPOV.RIGHT_DOWN,
+    180: JoystickPOV.DOWN,
+    225: JoystickPOV.LEFT_DOWN,
+    270: JoystickPOV.LEFT,
+    315: JoystickPOV.LEFT_UP,
+}
+_ANGLES = {int(pov): angle for angle, pov in _POVS.items()}
+
+
+def pov_of(angle: int) -> JoystickPOV:
+    """Return WPILib's value of a POV: of the direction that is nearest to an angle in degrees."""
+    return _POVS[NOT_PRESSED if angle < 0 else round(angle / 45) % 8 * 45]
+
+
+def angle_of(pov: int) -> int:
+    """Return the angle in degrees of WPILib's value of a POV; `NOT_PRESSED` for opposite directions at once."""
+    return _ANGLES.get(pov, NOT_PRESSED)
+
+
+def set_mode(*, autonomous: bool = False, test: bool = False, enabled: bool) -> None:
+    """Set the mode of the next driver-station packet."""
+    mode = RobotMode.AUTONOMOUS if autonomous else RobotMode.UTILITY if test else RobotMode.TELEOPERATED
+    DriverStationSim.set_robot_mode(mode)
+    set_driver_station_enabled(enabled)
+
+
+def sends(mode: RobotMode) -> bool:
+    """Return whether this was last set as the robot's mode."""
+    return DriverStationSim.get_robot_mode() == mode
+
+
+def get_mode() -> Mode:
+    """Return the mode that was last set, even if no packet has delivered it to the robot yet."""
+    if not get_driver_station_enabled():
+        return "disabled"
+    mode = DriverStationSim.get_robot_mode()
+    if mode == RobotMode.AUTONOMOUS:
+        return "autonomous"
+    return "test" if mode == RobotMode.UTILITY else "teleop"
+
+
+#: The modes of scripts: those that the robot can be in, and the disabled modes before them.
+_NAMED = {
+    "disabled": (False, False, False),
+    "autonomous": (True, False, True),
+    "teleop": (False, False, True),
+    "test": (False, True, True),
+    "disabled autonomous": (True, False, False),
+    "disabled test": (False, True, False),
+}
+MODES = tuple(_NAMED)
+
+
+def set_mode_named(name: str) -> None:
+    """Set one of `MODES`.
+
+    :raises UsageError: when there is no such mode
+    """
+    if name not in _NAMED:
+        raise UsageError(f"there is no mode {name!r}: the modes are {', '.join(MODES)}")
+    autonomous, test, enabled = _NAMED[name]
+    set_mode(autonomous=autonomous, test=test, enabled=enabled)
+
+
+def mode_name() -> str:
+    """Return which of `MODES` was last set."""
+    mode = get_mode()
+    if mode != "disabled":
+        return mode
+    if sends(RobotMode.AUTONOMOUS):
+        return "disabled autonomous"
+    return "disabled test" if sends(RobotMode.UTILITY) else "disabled"
+
+
+def when_mode_changes(listener: Callable[[str, object], None]) -> list[object]:
+    """Call a function whenever the result of `mode_name` may have changed.
+
+    :returns: objects that must be kept for as long as the function is to be called
+    """
+    station = DriverStationSim
+    return [
+        register(listener, False)
+        for register in (station.register_enabled_callback, station.register_robot_mode_callback)
+    ]
+
+
+def sends_enabled() -> bool:
+    """Return whether the next packet enables the robot, attached to the driver station or not."""
+    return bool(get_driver_station_enabled())
+
+
+def set_enabled(enabled: bool) -> None:
+    """Enable or disable the robot with the next packet; its mode stays."""
+    set_driver_station_enabled(enabled)
+
+
+def disable() -> None:
+    """Disable the robot with the next packet; its mode stays."""
+    set_driver_station_enabled(False)
+
+
+def is_enabled() -> bool:
+    """Return whether the robot may move: it is enabled, attached to a driver station, and not emergency-stopped."""
+    return (
+        bool(get_driver_station_enabled())
+        and bool(get_driver_station_ds_attached())
+        and not get_driver_station_e_stop()
+    )
+
+
+def is_attached() -> bool:
+    """Return whether a driver station is attached."""
+    return bool(get_driver_station_ds_attached())
+
+
+def is_stopped() -> bool:
+    """Return whether the emergency stop was pressed."""
+    return bool(get_driver_station_e_stop())
+
+
+def set_match_time(seconds_left: float) -> None:
+    """Set the time left in the current period, in seconds: `MatchState.get_match_time` in robot code."""
+    set_driver_station_match_time(seconds_left)
+
+
+def match_time() -> float:
+    """Return what was last set with `set_match_time`."""
+    return get_driver_station_match_time()
+
+
+def set_game_message(message: str) -> None:
+    """Set the message that the field sends to all robots: `MatchState.get_game_data`."""
+    set_game_data_string(message)
+
+
+# -- opmodes -----------------------------------------------------------------------------------------------------------
+
+
+_MODES_OF_OPMODES = {
+    int(RobotMode.AUTONOMOUS): "autonomous",
+    int(RobotMode.TELEOPERATED): "teleop",
+    int(RobotMode.UTILITY): "test",
+}
+
+
+def published_opmodes() -> list[Opmode]:
+    """Return the opmodes that the robot has published."""
+    return [
+        Opmode(
+            each.name,
+            _MODES_OF_OPMODES.get(int(hal.opmode_get_robot_mode(each.id)), ""),
+            each.id,
+            each.group,
+            each.description,
+        )
+        for each in DriverStationSim.get_opmode_options()
+    ]
+
+
+def selected_opmode() -> int:
+    """Return WPILib's number for the opmode that the robot finds selected, by the last packet; 0 for none."""
+    return int(RobotState.get_opmode_id())
+
+
+def select_opmode(opmode: Opmode | None) -> None:
+    """Select an opmode with the next packet, and its mode; None selects none."""
+    if opmode is not None:
+        set_mode(autonomous=opmode.mode == "autonomous", test=opmode.mode == "test", enabled=sends_enabled())
+    DriverStationSim.set_opmode(0 if opmode is None else opmode.id)
+
+
+# -- the robot's side --------------------------------------------------------------------------------------------------
+
+
+def program_state() -> str | None:
+    """Return the robot program's mode; None until it has started.
+
+    The program reports its mode to the HAL, which does not return it. So this is the mode of the last packet that the
+    program has read.
+    """
+    if not get_program_started():
+        return None
+    if RobotState.is_teleop_enabled():  # the mode of most packets
+        return "teleop"
+    if RobotState.is_disabled():
+        return "disabled"
+    return "autonomous" if RobotState.is_autonomous() else "test"
+
+
+def robot_is_enabled() -> bool:
+    """Return whether the robot finds itself enabled, by the last packet that its program has read."""
+    return bool(RobotState.is_enabled())
+
+
+def silence_joystick_warnings() -> None:
+    """Have the robot not warn of joysticks that it reads and that are not plugged in."""
+    DriverStationBackend.silence_joystick_connection_alert(True)
+
+
+# -- without a connection ----------------------------------------------------------------------------------------------
+
+
+def detach_at_boot() -> None:
+    """Show the robot what it sees after power-on: no driver station, alliance, match and joysticks."""
+    reset_driver_station_data()
+    set_game_data_string("")
+    deliver_packet()
+    set_driver_station_ds_attached(False)
+    refresh()
+
+
+def sent_match() -> MatchInfo:
+    """Return the match that packets contain now."""
+    info, message = hal.MatchInfo(), hal.GameData()
+    hal.simulation.get_match_info(info)
+    hal.simulation.get_game_data(message)
+    return MatchInfo(
+        text_of(info.event_name),
+        int(info.match_type),
+        info.match_number,
+        info.replay_number,
+        text_of(message.game_data),
+    )
+
+
+def text_of(characters: memoryview) -> str:
+    """Return the text in one of the HAL's buffers."""
+    return characters.tobytes().partition(b"\0")[0].decode(errors="replace")
+
+
+def deliver_loss() -> None:
+    """Show the robot the loss: not attached, disabled, and joysticks without axes, buttons and POVs."""
+    with _nothing_new():
+        deliver_packet()
+
+
+def check_motors_after_loss() -> None:
+    """Stop the motors that were not updated since the loss.
+
+    WPILib's own check does nothing in a robot that is disabled. So WPILib sees the robot enabled for as long as the
+    check takes.
+    """
+    enabled = get_driver_station_enabled()
+    with _nothing_new():
+        set_driver_station_enabled(True)
+        deliver_packet()
+        hal.refresh_ds_data()
+        MotorSafety.check_motors()
+        set_driver_station_enabled(enabled)
+    hal.refresh_ds_data()
+
+
+@contextmanager
+def _nothing_new() -> Iterator[None]:
+    """Make packets contain no joysticks, and the alliance and match time that the robot has, until the context ends."""
+    available = [get_joystick_availables(stick) for stick in range(JOYSTICKS)]
+    alliance, match_time = DriverStationSim.get_alliance_station_id(), get_driver_station_match_time()
+    for stick in range(JOYSTICKS):
+        unplug(stick)
+    DriverStationSim.set_alliance_station_id(hal.AllianceStationID(int(hal.get_alliance_station()[0])))
+    set_driver_station_match_time(MatchState.get_match_time())
+    try:
+        yield
+    finally:
+        for stick, (axes, buttons, povs) in enumerate(available):
+            set_joystick_axes_available(stick, axes)
+            set_joystick_buttons_available(stick, buttons)
+            set_joystick_povs_available(stick, povs)
+        DriverStationSim.set_alliance_station_id(alliance)
+        set_driver_station_match_time(match_time)
+        set_driver_station_ds_attached(False)

@@ -1,0 +1,1 @@
+"""Tests of season 2027."""

@@ -1,0 +1,10 @@
+"""Tests of season 2027: collected where WPILib 2027 is installed, and pyfrc is told to try it.
+
+That is ``PYFRC_TRY_UNFINISHED_SEASONS=1 pytest tests/season_2027``, with Python 3.11 or later on glibc 2.39 or later.
+"""
+
+from __future__ import annotations
+
+from pyfrc_core.season import CURRENT
+
+collect_ignore_glob = [] if CURRENT.year == 2027 else ["test_*.py"]

@@ -1,0 +1,90 @@
+"""An `OpModeRobot` in place: opmodes are made, started, called and ended as on a robot, and chosen by tests."""
+
+from __future__ import annotations
+
+from conftest import MakeProject
+
+ROBOT = """
+    import wpilib
+    import wpilib_drivers
+
+
+    class MyRobot(wpilib.OpModeRobot):
+        def __init__(self):
+            super().__init__()
+            self.motor, self.stick = wpilib_drivers.PWMSparkMax(1), wpilib.Joystick(0)
+            self.log, self.slow, self.fast = [], 0, []
+            self.add_periodic(self.on_slow, 0.1)
+
+        def on_slow(self):
+            self.slow += 1
+
+
+    @wpilib.autonomous
+    class Forward(wpilib.PeriodicOpMode):
+        def __init__(self, robot: MyRobot):
+            super().__init__()
+            self.robot = robot
+            robot.log.append("made")
+            self.add_periodic(self.on_fast, 0.005)
+
+        def on_fast(self):
+            self.robot.fast.append(wpilib.Timer.get_timestamp())
+
+        def start(self):
+            self.robot.log.append("start")
+
+        def periodic(self):
+            self.robot.motor.set_throttle(0.25)
+
+        def end(self):
+            self.robot.log.append("end")
+
+
+    @wpilib.teleop
+    class Drive(wpilib.PeriodicOpMode):
+        def __init__(self, robot: MyRobot):
+            super().__init__()
+            self.robot = robot
+
+        def periodic(self):
+            self.robot.motor.set_throttle(-self.robot.stick.get_y())
+"""
+
+
+def test_the_life_of_an_opmode(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "tests/test_robot.py": """
+                from pytest import raises
+
+                from pyfrc.tests import *
+
+
+                def test_life(control, hal_data, robot):
+                    with control.run_robot():
+                        control.step_timing(seconds=0.1, opmode="Forward", enabled=False)
+                        assert robot.log == ["made"]
+                        assert len(robot.fast) == 15  # while disabled, too
+                        control.step_timing(seconds=0.2, opmode="Forward", enabled=True)
+                        assert (robot.log, robot.slow) == (["made", "start"], 3)
+                        assert hal_data["pwm"][1]["value"] == 0.25
+                        hal_data["joysticks"][0]["axes"][1] = -0.75
+                        control.step_timing(seconds=0.1, opmode="Drive", enabled=True)
+                        assert robot.log == ["made", "start", "end"]
+                        assert hal_data["pwm"][1]["value"] == 0.75
+                        calls = len(robot.fast)
+                        control.step_timing(seconds=0.1, opmode="Drive", enabled=True)
+                        assert len(robot.fast) == calls
+
+
+                def test_what_there_is_not(control, robot):
+                    with control.run_robot():
+                        with raises(Exception, match="no opmode 'Back': the robot has published .*'Forward'"):
+                            control.set_opmode("Back")
+            """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 0, result.output
