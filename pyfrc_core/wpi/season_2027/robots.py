@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeGuard
@@ -179,6 +180,11 @@ def operating_directory() -> str:
 def set_deploy_directory(directory: Path) -> None:
     """Set the directory in which robot code finds its files."""
     wpilib.get_deploy_directory = lambda: str(directory)
+
+
+def load_extension(module: str) -> None:
+    """Load an extension of WPILib's simulation beside the simulated HAL, such as ``halsim_gui``."""
+    import_module(module).load_extension()
 
 
 def show_window() -> None:
