@@ -4,7 +4,8 @@
   each step of their lives), `watchdogs` (WPILib's own threads), `reports` (what it prints).
 - What robot code is made of: `names` (of methods), `callbacks` (what libraries call), `commands`, `joysticks`,
   `motor_controllers`, `network_reads`, `source` (what pyfrc writes of it).
-- What it works with: `devices`, `sim_devices`, `encoders`, `motors`, `geometry`, `fields`, `dashboards`, `network`, `logs`.
+- What it works with: `devices`, `sim_devices`, `encoders`, `motors`, `geometry`, `fields`, `dashboards`, `network`,
+  `logs`.
 
 Constants and types are part of a topic as functions are: `station.MODES`, `geometry.Pose2d`.
 """
