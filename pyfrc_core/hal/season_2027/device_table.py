@@ -13,7 +13,7 @@ from typing import Any
 import wpilib
 from wpilib import simulation as sim
 
-from ...wpi import encoders
+from ...wpi.season_2027 import encoders
 from ..containers import NOT_SET, LiveDict, Slot
 from ..fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind, group
 from ..kinds import BOOL, FLOAT, INT32, ValueKind, number, text, whole

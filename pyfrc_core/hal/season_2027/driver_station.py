@@ -14,7 +14,7 @@ import wpilib
 from hal import simulation as hs
 from wpilib.simulation import DriverStationSim
 
-from ...wpi import station
+from ...wpi.season_2027 import station
 from ..containers import LiveDict, LiveList, Slot, ValueList, stored
 from ..fields import HAS_SOURCE, DeviceField
 from ..kinds import BOOL, FLOAT, ValueKind, choice, number, text, whole

@@ -7,7 +7,7 @@ from typing import Any
 
 from wpilib.simulation import PWMSim
 
-from ...wpi import sim_devices
+from ...wpi.season_2027 import sim_devices
 
 _VALUE = "Throttle"
 
@@ -47,11 +47,17 @@ class MotorPwmSim(PWMSim):
         """
         store: list[Any] = []
 
-        def connect(*_: object) -> None:
+        def changed() -> None:
+            callback()
+
+        def connect() -> None:
             throttle = self.throttle()
             if throttle is not None and not store:
-                store.append(sim_devices.watch(throttle, lambda: callback()))
+                store.append(sim_devices.watch(throttle, changed))
+
+        def pulsed(*_: object) -> None:
+            connect()
+            changed()
 
         connect()
-        created = self.register_pulse_microsecond_callback(lambda *_: (connect(), callback())[0], False)
-        return created, store
+        return self.register_pulse_microsecond_callback(pulsed, False), store

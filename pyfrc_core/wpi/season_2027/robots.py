@@ -106,7 +106,8 @@ def when_initialized(robot: Any, call: Callable[[], object]) -> None:
 
     def initialized() -> None:
         __tracebackhide__ = True
-        type(this()).simulation_init(this())
+        robot: Any = this()
+        type(robot).simulation_init(robot)
         call()
 
     robot.simulation_init = initialized  # a `MagicRobot` calls it then, in simulation

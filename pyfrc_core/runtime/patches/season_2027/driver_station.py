@@ -30,7 +30,7 @@ def _match_information() -> list[Patch]:
 
         def get() -> Any:
             run = active_run.run
-            held = None if run is None else run.connection.held
+            held: Any = None if run is None else run.connection.held
             return real() if held is None else read(held)
 
         return Patch(owner, name, get)

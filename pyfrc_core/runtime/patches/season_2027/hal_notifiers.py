@@ -142,7 +142,8 @@ def patches() -> list[Patch]:
 
         return Patch(hal, name, call)
 
-    real_set_name, real_wait = hal.set_notifier_name, wpiutil.sync.wait_for_object
+    real_set_name = hal.set_notifier_name
+    real_wait: Callable[..., Any] = wpiutil.sync.wait_for_object
 
     def set_notifier_name(notifier_handle: int, name: str) -> Any:
         ours = active_run.run is not None and notifier_handle in active_run.run.alarms
@@ -150,7 +151,7 @@ def patches() -> list[Patch]:
 
     def wait_for_object(handle: int, *timeout: float, **named: float) -> Any:
         __tracebackhide__ = True
-        run = active_run.run
+        run: Any = active_run.run
         if run is None or handle not in run.alarms:
             return real_wait(handle, *timeout, **named)
         given = next(iter((*timeout, *named.values())), None)

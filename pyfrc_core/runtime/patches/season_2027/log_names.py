@@ -76,4 +76,5 @@ def patches() -> list[Patch]:
 def _open_like_background_writer(
     logs: DataLogs, dir: str = "", filename: str = "", period: float = 0.25, extra_header: str = ""
 ) -> DataLog:
-    return logs.open(dir, filename, period, extra_header)
+    log: DataLog = logs.open(dir, filename, period, extra_header)
+    return log

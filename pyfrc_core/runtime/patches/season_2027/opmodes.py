@@ -113,7 +113,7 @@ def look() -> None:
 
 def patches() -> list[Patch]:
     """Return the names of WPILib's to replace."""
-    real = wpilib.OpModeRobotBase.add_opmode_factory
+    real: Callable[..., None] = wpilib.OpModeRobotBase.add_opmode_factory
 
     def add_opmode_factory(robot: Any, *args: Any, **kwargs: Any) -> None:
         *rest, factory = [*args, *kwargs.values()]  # it is the last one of each overload

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import hal
 import wpilib
 
-from ....wpi import watchdogs
+from ....wpi.season_2027 import watchdogs
 from ...clock import WAKE_UP, Clock, to_us
 from ...threads import cooperative
 from ..loop_watchdog import BETWEEN_REPORTS_US

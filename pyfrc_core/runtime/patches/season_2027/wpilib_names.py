@@ -137,9 +137,10 @@ def _timed_robot(base: Any, loop_function: PrivateName) -> list[Patch]:
     def start_competition(robot: Any) -> None:
         __tracebackhide__ = True
         if active_run.run is None:
-            return real_start(robot)
+            real_start(robot)
+            return
         active_run.run.timed_loop.begin(robot)
-        return active_run.run.timed_loop.run_blocking(active_run.run.threads)
+        active_run.run.timed_loop.run_blocking(active_run.run.threads)
 
     def end_competition(robot: Any) -> None:
         run = active_run.run
