@@ -56,7 +56,10 @@ class LoadedModules:
         """Return what was imported since the last look, and perhaps some that was before."""
         count = _FEW
         while True:
-            newest = list(islice(reversed(sys.modules.items()), count))  # in one step: other threads may import
+            try:
+                newest = list(islice(reversed(sys.modules.items()), count))
+            except RuntimeError:  # another thread has imported meanwhile
+                continue
             if len(newest) < count or any(name == self._newest for name, _ in newest):
                 break
             count *= 4

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from types import ModuleType, SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -45,3 +46,18 @@ def test_python_its_packages_and_pyfrc_are_left_out(modules: dict[str, ModuleTyp
     loaded = LoadedModules()
     assert names(loaded) == ["robot", "teamlib"]
     assert loaded.files_of_pyfrc() == [module_under_test.__file__]
+
+
+def test_a_thread_that_imports_during_a_look_does_no_harm(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Growing(dict[str, ModuleType]):
+        """Modules to which another thread adds one while they are looked at for the first time."""
+
+        def items(self) -> Any:
+            if len(self) == 1:
+                self["late"] = module("late", "/home/team/late.py")
+                raise RuntimeError("dictionary changed size during iteration")
+            return super().items()
+
+    made = Growing(robot=module("robot", "/home/team/robot.py"))
+    monkeypatch.setattr(module_under_test, "sys", SimpleNamespace(modules=made))
+    assert names(LoadedModules()) == ["robot", "late"]

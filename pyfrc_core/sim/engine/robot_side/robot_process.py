@@ -143,7 +143,7 @@ def _logged(run: RobotRun, file: Path) -> Iterator[None]:
 
 
 def _libraries(project: Project) -> Iterator[str]:
-    for name, module in list(sys.modules.items()):
+    for name, module in sys.modules.copy().items():
         file = getattr(module, "__file__", None) if isinstance(module, ModuleType) else None
         if file is not None and any(part in file for part in _INSTALLED) and not project.files.is_project_file(file):
             yield name
