@@ -75,6 +75,7 @@ class Season:
     :param year:         the season's year, as in WPILib's version numbers
     :param kickoff:      when it begins; robot code's `time.time()` starts there
     :param cli_plugins:  group of the entry points by which the command `robotpy` finds commands
+    :param opmodes:      whether robots can have opmodes
     """
 
     year: int
@@ -84,3 +85,4 @@ class Season:
     controller: ControllerSoftware
     packages: Packages
     cli_plugins: str
+    opmodes: bool = False

@@ -25,4 +25,5 @@ SEASON_2027 = Season(
         utilities="robotpy-wpilib-utilities~=2027.0.0a7",
     ),
     cli_plugins="robotpy_cli.2027",
+    opmodes=True,
 )

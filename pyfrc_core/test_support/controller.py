@@ -25,6 +25,7 @@ from .fake_time import FakeTime
 if TYPE_CHECKING:
     from ..invariants.load import Invariant
     from ..project import Project
+    from ..wpi.opmodes import Opmode
 
 OnStep: TypeAlias = Callable[[float], object]
 Instance = TypeVar("Instance")
@@ -97,21 +98,27 @@ class TestController:
         """Put the robot in test mode (the robot mode, not related to unit testing), with the next packet."""
         station.set_mode(test=True, enabled=enabled)
 
-    def set_opmode(self, name: str, mode: str = "") -> None:
+    def set_opmode(self, opmode: str | Opmode, mode: str = "") -> None:
         """Select an opmode of an `OpModeRobot`, and the robot's mode that it is for, with the next packet.
 
         The robot is enabled, or disabled, as before. WPILib has opmodes from 2027 on.
 
+        :param opmode: its name, or what the fixture `opmode` gives
         :param mode: 'autonomous', 'teleop' or 'test', if opmodes of several modes have this name
         :raises UsageError: when the robot has not published such an opmode, or several
         """
+        name, mode = (opmode, mode) if isinstance(opmode, str) else (opmode.name, opmode.mode)
         published = station.published_opmodes()
         found = [each for each in published if each.name == name and mode in ("", each.mode)]
-        if len(found) != 1:
-            there = ", ".join(f"{each.name!r} ({each.mode})" for each in published) or "none"
-            problem = f"there are opmodes {name!r} in several modes" if found else f"there is no opmode {name!r}"
-            raise UsageError(f"{problem}: the robot has published {there}", remedy="" if not found else "give the mode")
-        station.select_opmode(found[0])
+        if len(found) == 1:
+            station.select_opmode(found[0])
+            return
+        there = ", ".join(f"{each.name!r} ({each.mode})" for each in published) or "none"
+        if found:
+            raise UsageError(
+                f"several opmodes are named {name!r}: the robot has published {there}", remedy="Give mode="
+            )
+        raise UsageError(f"there is no opmode {name!r}: the robot has published {there}")
 
     def set_practice_match(self) -> None:
         """Run a practice match. Call it before `run_test`.
@@ -252,7 +259,7 @@ class TestController:
         seconds: float,
         enabled: bool,
         autonomous: bool | None = None,
-        opmode: str | None = None,
+        opmode: str | Opmode | None = None,
         assert_alive: bool = True,
     ) -> float:
         """Run the robot for some time in a mode, with driver-station packets. Give either `autonomous` or `opmode`.
@@ -271,7 +278,7 @@ class TestController:
         if seconds < 0:
             raise ValueError(f"time cannot go back: step_timing(seconds={seconds!r})")
         if (autonomous is None) == (opmode is None):
-            raise TypeError("step_timing() takes either autonomous= or opmode=")
+            raise TypeError("step_timing() takes either autonomous or opmode")
         if opmode is not None:
             self.set_opmode(opmode)
             station.set_enabled(enabled)

@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from ..physics.core import PhysicsInterface
     from ..physics.engine import Physics, PhysicsModule
     from ..processes.crash_report import CrashLog
+    from ..wpi.opmodes import Opmode
 
 _READY_MADE_DIRECTORY = Path(__file__).parents[1] / "tests"
 
@@ -150,6 +151,23 @@ class PyFrcPlugin(WatchedTests):
         return _robot_run.construct(self.robot_class())
 
     @pytest.fixture
+    def opmode(self, request: pytest.FixtureRequest) -> Opmode:
+        """One of the opmodes that your robot publishes: the test runs once for each of them."""
+        opmode: Opmode = request.param
+        return opmode
+
+    @cached_property
+    def opmodes(self) -> tuple[Opmode, ...]:
+        """What the robot publishes."""
+        from ..wpi import robots
+
+        if self._robot_class is not None and not robots.can_have_opmodes(self._robot_class):
+            return ()
+        from .opmodes import published_opmodes
+
+        return published_opmodes(self.project)
+
+    @pytest.fixture
     def robot_file(self) -> str:
         """The absolute path of the file that your robot code is started from."""
         return self._robot_file
@@ -238,6 +256,9 @@ class PyFrcPlugin(WatchedTests):
         try:
             if "gamedata" in metafunc.fixturenames:
                 metafunc.parametrize("gamedata", self.project.game_specific_messages or [""])
+            elif "opmode" in metafunc.fixturenames:
+                published = [pytest.param(each, id=f"{each.mode}-{each.name}") for each in self.opmodes]
+                metafunc.parametrize("opmode", published, indirect=True)
             elif "_physics" in metafunc.fixturenames and self._physics_module is not None:
                 self.project.sim_config  # noqa: B018
         except PyfrcError as wrong:

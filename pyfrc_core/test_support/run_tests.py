@@ -14,6 +14,7 @@ from ..processes.fork import FORK_IS_SAFE
 from ..processes.prefork import PreforkedProcess
 from ..project import Project
 from ..runtime.threads.fork_obstacles import reasons_not_to_fork
+from ..season import CURRENT
 from .isolation.loop import IsolatedTests
 from .options import READY_MADE_TESTS, TestOptions
 from .pytest_plugin import PyFrcPlugin
@@ -110,7 +111,8 @@ def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str]) -> l
     if directory is not None:
         return [*args, str(directory)]
     if builtin:
-        return [*args, "--pyargs", f"{READY_MADE_TESTS}.basic"]
+        modules = ("basic", "opmode_test") if CURRENT.opmodes else ("basic",)
+        return [*args, "--pyargs", *(f"{READY_MADE_TESTS}.{module}" for module in modules)]
     looked = " and ".join(str(path) for path in project.test_directories)
     patterns = ("test_*.py", "*_test.py")
     remedies = list(find_uncollected(project.test_directories[0], set(), patterns))

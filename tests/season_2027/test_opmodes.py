@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+
+import pytest
 from conftest import MakeProject
 
 ROBOT = """
@@ -88,3 +91,47 @@ def test_the_life_of_an_opmode(make_project: MakeProject) -> None:
     )
     result = project.run("test")
     assert result.code == 0, result.output
+
+
+def test_a_test_runs_once_for_each_opmode_and_names_the_line_that_fails(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOT.replace("-self.robot.stick.get_y()", "1 / 0"),
+            "tests/test_robot.py": "from pyfrc.tests import test_opmode\n",
+        }
+    )
+    result = project.run("test", "--", "-v")
+    assert result.code == 1
+    assert "test_opmode[autonomous-Forward] PASSED" in result.stdout, result.output
+    assert "test_opmode[teleop-Drive] FAILED" in result.stdout
+    assert re.search(r"robot\.py:\d+: ZeroDivisionError", result.stdout)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'robot.log.append("made")',
+        'self.robot.log.append("start")',
+        "self.robot.fast.append(wpilib.Timer.get_timestamp())",
+    ],
+)
+def test_an_error_in_an_opmode_is_the_robots(line: str, make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOT.replace(line, "undefined_name"),
+            "tests/test_robot.py": "from pyfrc.tests import test_opmode\n",
+        }
+    )
+    result = project.run("test")
+    assert result.code == 1
+    assert re.search(r"robot\.py:\d+: NameError", result.stdout), result.output
+
+
+def test_a_robot_without_opmodes_skips_it(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n",
+            "tests/test_robot.py": "from pyfrc.tests import test_disabled, test_opmode\n",
+        }
+    )
+    assert "1 passed, 1 skipped" in project.run("test").stdout

@@ -74,6 +74,11 @@ def has_loop_of_its_own(robot: object) -> bool:
     return True
 
 
+def can_have_opmodes(robot_class: type[Any]) -> bool:
+    """Return whether robots of a class can have opmodes."""
+    return issubclass(robot_class, wpilib.OpModeRobotBase)
+
+
 def period(robot: object, default: float) -> float:
     """Return the seconds between two turns of the robot's loop.
 
