@@ -17,7 +17,7 @@ class MotorPwmSim(PWMSim):
 
     def __init__(self, channel: int) -> None:
         super().__init__(channel)
-        self._name = f"PWMMotorController[{channel}]"
+        self._name = f"{sim_devices.PWM_MOTOR}{channel}]"
         self._handle = 0
         self._throttle: sim_devices.SimValue | None = None
 

@@ -1,4 +1,4 @@
-"""The seasons' fields, as WPILib's optional library of AprilTags knows them."""
+"""The seasons' fields, as WPILib's optional library of fields knows them."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ class TaggedField(NamedTuple):
 
 def tagged_fields(year: str) -> Iterator[TaggedField]:
     """Yield the fields of a season; none if the library is not installed."""
-    if importlib.util.find_spec("robotpy_apriltag") is None:
+    if importlib.util.find_spec("robotpy_fields") is None:
         return
-    from robotpy_apriltag import AprilTagField, AprilTagFieldLayout
+    from robotpy_fields import FieldId, get_field
 
-    for name, field in AprilTagField.__members__.items():
-        if year in name:
-            layout = AprilTagFieldLayout.load_field(field)
-            placed = [(tag.ID, tag.pose.to_pose2d()) for tag in layout.get_tags()]
-            tags = tuple(FieldTag(number, at.X(), at.Y(), at.rotation().radians()) for number, at in placed)
-            yield TaggedField(layout.get_field_length(), layout.get_field_width(), tags)
+    for name, number in FieldId.__members__.items():
+        if name.startswith(f"FRC_{year}_"):
+            field = get_field(number)
+            placed = [(tag.id, tag.pose.to_pose2d()) for tag in field.get_tags()]
+            tags = tuple(FieldTag(number, at.x, at.y, at.rotation().radians()) for number, at in placed)
+            yield TaggedField(field.get_length(), field.get_width(), tags)

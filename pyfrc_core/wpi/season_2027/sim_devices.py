@@ -10,6 +10,7 @@ from hal import simulation as hs
 from wpilib.simulation import SimDeviceSim
 
 __all__ = [
+    "PWM_MOTOR",
     "Device",
     "SimValue",
     "access",
@@ -24,6 +25,9 @@ __all__ = [
 #: A SimDevice that was opened by its name.
 Device: TypeAlias = SimDeviceSim
 
+#: With this begin the names of the SimDevices that have the power of motor controllers at PWM channels.
+PWM_MOTOR = "PWMMotorController["
+
 #: Open a SimDevice by its name. It keeps the handle: to find that takes as long as to list the values.
 open_device = SimDeviceSim
 
@@ -35,8 +39,8 @@ values_of: Callable[[Device], list[tuple[str, bool]]] = SimDeviceSim.enumerate_v
 
 
 def names() -> list[str]:
-    """Return the names of the SimDevices that exist."""
-    return SimDeviceSim.enumerate_devices("")
+    """Return the names of the SimDevices that exist, without those that stand for a PWM channel (`hal`'s table)."""
+    return [name for name in SimDeviceSim.enumerate_devices("") if not name.startswith(PWM_MOTOR)]
 
 
 class SimValue(NamedTuple):
