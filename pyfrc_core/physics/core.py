@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, overload
 
 from ..config.document import document_of
 from ..config.resolve import resolve_document
@@ -260,12 +260,13 @@ class PhysicsInterface:
 
     def _move(self, forward: float, right: float, turn: float) -> geometry.Pose2d:
         _check(forward, right, turn)
-        if self._device_gyros and self._hal_data is not None:
+        if (self._device_gyros or device_table.HAS_IMU) and self._hal_data is not None:
             degrees = math.degrees(turn)
             self._device_rate.turned += degrees
             angles = self._hal_data["robot"]
             for key in self._device_gyros:
                 angles[key] = angles.get(key, 0.0) + degrees
+            device_table.turn_imu(self._hal_data, degrees)
         pose = self._current()
         if not (forward or right or turn):  # at rest, no update for dashboards is needed
             return self._shown
@@ -275,22 +276,16 @@ class PhysicsInterface:
     def _turn_analog_gyros(self, turn: float) -> None:
         if turn and self._hal_data is not None:
             self._analog_rate.turned += math.degrees(turn)
-            for gyro in self._analog_gyros():
-                gyro["angle"] += math.degrees(turn)
-
-    def _analog_gyros(self) -> Iterator[Any]:
-        if self._hal_data is not None:
-            for kind in device_table.GYROS:
-                yield from self._hal_data[kind]
+            device_table.turn_analog_gyros(self._hal_data, math.degrees(turn))
 
     def update_rates(self, tm_diff: float) -> None:
         """Set the gyros' rates after `update_sim`, in degrees/s, from the angles that it has turned them by."""
         if self._hal_data is None:
             return
         if self._analog_rate.update(tm_diff):
-            for gyro in self._analog_gyros():
-                gyro["rate"] = self._analog_rate.value
+            device_table.set_analog_gyro_rates(self._hal_data, self._analog_rate.value)
         if self._device_rate.update(tm_diff):
+            device_table.set_imu_rate(self._hal_data, self._device_rate.value)
             values = self._hal_data["robot"]
             for key in self._device_gyros:
                 rate_key = f"{key.removesuffix('angle')}rate"

@@ -51,6 +51,7 @@ _DEVICES: dict[str, tuple[tuple[str, InputKind], ...]] = {
 #: Those of devices of which there is only one.
 _GROUPS: dict[str, tuple[tuple[str, InputKind], ...]] = {
     "accelerometer": (("x", "acceleration"), ("y", "acceleration"), ("z", "acceleration")),
+    "onboard_imu": (("yaw", "turns"), ("gyro_rate_z", "turning")),
 }
 #: What a digital input measures that a `Counter` counts.
 _COUNTED: tuple[tuple[str, InputKind], ...] = (("value", "pulses"),)

@@ -306,6 +306,31 @@ BUTTONS: tuple[str, ...] = ("fpga_button",)
 #: The kinds of `KINDS` that are gyros, with `angle` and `rate`.
 GYROS: tuple[str, ...] = ("analog_gyro",)
 
+
+def turn_analog_gyros(tree: LiveDict, degrees: float) -> None:
+    """Turn the gyros at channels of the controller clockwise."""
+    for gyro in tree["analog_gyro"]:
+        gyro["angle"] += degrees
+
+
+def set_analog_gyro_rates(tree: LiveDict, degrees: float) -> None:
+    """Set how fast they turn clockwise, in degrees per second."""
+    for gyro in tree["analog_gyro"]:
+        gyro["rate"] = degrees
+
+
+#: Whether the controller has an IMU, which turns with the robot.
+HAS_IMU = False
+
+
+def turn_imu(tree: LiveDict, degrees: float) -> None:
+    """Do nothing: there is none."""
+
+
+def set_imu_rate(tree: LiveDict, degrees: float) -> None:
+    """Do nothing: there is none."""
+
+
 #: The groups that exist when one of their values says so, with its key.
 MAY_EXIST: Mapping[str, str] = {"accelerometer": "active"}
 #: Which values of groups that always exist are recorded: the rest is constant, or derived. Physics and robots change

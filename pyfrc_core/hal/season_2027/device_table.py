@@ -7,18 +7,20 @@ accelerometer, the rails of 5 and 6 volts.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from math import radians
 from operator import attrgetter
 from typing import Any
 
 import wpilib
 from wpilib import simulation as sim
 
-from ...wpi.season_2027 import encoders
+from ...wpi.season_2027 import encoders, imu
 from ..containers import NOT_SET, LiveDict, Slot
 from ..fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind, group
 from ..kinds import BOOL, FLOAT, INT32, ValueKind, number, text, whole
 from . import driver_station
 from .digital import DigitalSim
+from .onboard_imu import ImuSim
 from .pwm import MotorPwmSim
 
 _RGB = attrgetter("r", "g", "b")
@@ -151,11 +153,15 @@ SYSTEMCORE = (
 )
 
 
+ONBOARD_IMU = (F("active", "active", BOOL), *(F(value, value, FLOAT) for value in imu.VALUES))
+
+
 def groups() -> dict[str, Callable[[], LiveDict]]:
     """Return what there is only one of, by its key, each with the function that makes it."""
     return {
         "control": lambda: group("control", sim.DriverStationSim, driver_station.CONTROL),
         "time": lambda: group("time", sim.DriverStationSim, driver_station.TIME),
+        "onboard_imu": lambda: group("onboard_imu", ImuSim(), ONBOARD_IMU),
         "power": lambda: group("power", sim.RoboRioSim, POWER),
         # The controller's own values, under the key that they had when it was a roboRIO.
         "roborio": lambda: group("roborio", sim.RoboRioSim, SYSTEMCORE),
@@ -173,8 +179,33 @@ BUTTONS: tuple[str, ...] = ()
 #: The kinds of `KINDS` that are gyros, with `angle` and `rate`.
 GYROS: tuple[str, ...] = ()
 
+
+def turn_analog_gyros(tree: LiveDict, degrees: float) -> None:
+    """Do nothing: there are none."""
+
+
+def set_analog_gyro_rates(tree: LiveDict, degrees: float) -> None:
+    """Do nothing: there are none."""
+
+
+#: Whether the controller has an IMU, which turns with the robot.
+HAS_IMU = True
+
+
+def turn_imu(tree: LiveDict, degrees: float) -> None:
+    """Turn the controller's IMU clockwise. WPILib's yaw is counter-clockwise."""
+    gyro = tree["onboard_imu"]
+    gyro["yaw"] -= radians(degrees)
+    gyro["angle_z"] -= radians(degrees)
+
+
+def set_imu_rate(tree: LiveDict, degrees: float) -> None:
+    """Set how fast it turns clockwise, in degrees per second."""
+    tree["onboard_imu"]["gyro_rate_z"] = -radians(degrees)
+
+
 #: The groups that exist when one of their values says so, with its key.
-MAY_EXIST: Mapping[str, str] = {}
+MAY_EXIST: Mapping[str, str] = {"onboard_imu": "active"}
 #: Which values of groups that always exist are recorded: the rest is constant, or derived. Physics changes the supply.
 RECORDED: Mapping[str, tuple[str, ...]] = {
     "power": ("vin_voltage", "brownout_voltage"),

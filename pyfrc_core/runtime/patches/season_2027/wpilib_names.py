@@ -13,6 +13,7 @@ import wpilib
 import wpilib.simulation
 
 from ....compat.private_name import PrivateName
+from ....hal.season_2027 import onboard_imu
 from ....wpi.season_2027 import robots, timing
 from ...clock import to_us
 from ...exceptions import TestEnded
@@ -41,6 +42,7 @@ def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
         *hal_resets.patches(),
         *_timed_robots(),
         *_directories(files),
+        _onboard_imu(),
         Patch(wpilib.RobotController, "is_browned_out", _is_browned_out),
         *log_names.patches(),
         *noise.patches(),
@@ -167,6 +169,17 @@ def _directories(files: Callable[[], RobotFiles]) -> list[Patch]:
         Patch(wpilib, "get_operating_directory", lambda: str(Path(files().root))),
         Patch(wpilib, "get_deploy_directory", lambda: str(Path(files().root, "deploy"))),
     ]
+
+
+def _onboard_imu() -> Patch:
+    """Tell `hal_data` of the robot's IMU: the HAL does not."""
+    real: Callable[..., None] = wpilib.OnboardIMU.__init__
+
+    def __init__(self: Any, *args: Any, **kwargs: Any) -> None:
+        real(self, *args, **kwargs)
+        onboard_imu.note(self)
+
+    return Patch(wpilib.OnboardIMU, "__init__", __init__)
 
 
 def _is_browned_out() -> bool:

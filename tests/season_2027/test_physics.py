@@ -1,0 +1,58 @@
+"""Physics of a 2027 robot: outputs of PWM motors, which are off while it is disabled, encoders, and the IMU."""
+
+from __future__ import annotations
+
+from conftest import MakeProject
+
+ROBOT = """
+    import wpilib
+    import wpilib_drivers
+
+
+    class MyRobot(wpilib.TimedRobot):
+        def __init__(self):
+            super().__init__()
+            self.left_motor, self.right_motor = wpilib_drivers.PWMSparkMax(0), wpilib_drivers.PWMSparkMax(1)
+            self.right_motor.set_inverted(True)
+            self.drive = wpilib.DifferentialDrive(self.left_motor, self.right_motor)
+            self.left_encoder = wpilib.Encoder(0, 1)
+            self.left_encoder.set_distance_per_pulse(0.001)
+            self.imu = wpilib.OnboardIMU(wpilib.OnboardIMU.MountOrientation.FLAT)
+
+        def autonomous_periodic(self):
+            self.drive.arcade_drive(0.5, 0.2)
+
+        def disabled_periodic(self):
+            self.drive.arcade_drive(1, 0)
+"""
+
+
+def test_what_create_physics_writes_moves_the_robot(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "tests/test_robot.py": """
+                from pytest import approx
+
+
+                def test_moves(control, hal_data, robot, physics_controller):
+                    with control.run_robot():
+                        control.step_timing(seconds=1, autonomous=False, enabled=False)
+                        before = physics_controller.get_pose()
+                        assert hal_data["pwm"][0]["value"] != 0  # what the code has set
+                        control.step_timing(seconds=1, autonomous=False, enabled=False)
+                        assert physics_controller.get_pose() == before
+                        control.step_timing(seconds=2, autonomous=True, enabled=True)
+                        turned = physics_controller.get_pose().rotation().radians()
+                        assert turned > 0.2
+                        assert robot.imu.get_yaw() == hal_data["onboard_imu"]["yaw"] == approx(turned)
+                        assert robot.imu.get_gyro_rate_z() > 0.1
+                        assert robot.left_encoder.get_distance() > 0.5
+                        assert "onboard_imu.yaw" in dict(hal_data.leaves())
+                        assert not any("PWMMotorController" in path for path, _ in hal_data.leaves())
+            """,
+        }
+    )
+    assert project.run("create-physics").code == 0
+    result = project.run("test")
+    assert result.code == 0, result.output
