@@ -50,6 +50,13 @@ CONTROL = (
         DeviceField(name, "robot_mode", BOOL, get=_mode(mode), put=_set_mode(mode))
         for name, mode in (("autonomous", hal.RobotMode.AUTONOMOUS), ("test", hal.RobotMode.UTILITY))
     ),
+    DeviceField(
+        "opmode",
+        "opmode",
+        text(255),
+        get=lambda sim: station.opmode_name(),
+        put=lambda sim, name: station.select_opmode_named(name),
+    ),
     DeviceField("eStop", "e_stop", BOOL),
     DeviceField("dsAttached", "ds_attached", BOOL),
     DeviceField("fmsAttached", "fms_attached", BOOL),

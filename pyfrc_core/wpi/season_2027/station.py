@@ -12,6 +12,7 @@ from hal.simulation import (
     get_driver_station_e_stop,
     get_driver_station_enabled,
     get_driver_station_match_time,
+    get_driver_station_opmode,
     get_joystick_availables,
     get_program_started,
     notify_driver_station_new_data,
@@ -283,6 +284,35 @@ def published_opmodes() -> list[Opmode]:
 def selected_opmode() -> int:
     """Return WPILib's number for the opmode that the robot finds selected, by the last packet; 0 for none."""
     return int(RobotState.get_opmode_id())
+
+
+#: The names of opmodes by their ids, which follow from mode and name.
+_names: dict[int, str] = {}
+
+
+def opmode_name() -> str:
+    """Return the name of the opmode that was last selected, even if no packet has delivered it yet; "" for none."""
+    number = int(get_driver_station_opmode())
+    if number and number not in _names:
+        _names.update((each.id, each.name) for each in published_opmodes())
+    return _names.get(number, "")
+
+
+def select_opmode_named(name: str) -> None:
+    """Select an opmode with the next packet, of the mode that is set if there are several; "" selects none.
+
+    :raises UsageError: when the robot has published no such opmode
+    """
+    if not name:
+        DriverStationSim.set_opmode(0)
+        return
+    published = published_opmodes()
+    found = [each for each in published if each.name == name]
+    if not found:
+        there = ", ".join(repr(each.name) for each in published) or "none"
+        raise UsageError(f"there is no opmode {name!r}: the robot has published {there}")
+    mode = mode_name().removeprefix("disabled ").replace("disabled", "teleop")
+    DriverStationSim.set_opmode(next((each for each in found if each.mode == mode), found[0]).id)
 
 
 def select_opmode(opmode: Opmode | None) -> None:
