@@ -135,3 +135,39 @@ def test_a_robot_without_opmodes_skips_it(make_project: MakeProject) -> None:
         }
     )
     assert "1 passed, 1 skipped" in project.run("test").stdout
+
+
+def test_a_recording_has_the_opmodes_and_its_replay_is_the_same(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "tests/test_robot.py": """
+                def test_two(control, hal_data, robot):
+                    with control.run_robot():
+                        control.step_timing(seconds=0.2, opmode="Forward", enabled=True)
+                        control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+                        hal_data["control"]["opmode"] = "Drive"
+                        hal_data["joysticks"][0]["axes"][1] = -0.75
+                        control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+                        assert hal_data["pwm"][1]["value"] == 0.75
+                        control.set_autonomous()  # of each mode, the opmode that was chosen for it
+                        assert hal_data["control"]["opmode"] == "Forward"
+            """,
+        }
+    )
+    assert project.run("test", "--record", "recorded").code == 0
+    (script,) = (each for each in (project.path / "recorded").glob("*.jsonl") if "trace" not in each.name)
+    assert script.read_text("utf-8").count("control.opmode") == 4  # Forward, none yet in teleop, Drive, Forward
+    result = project.run("replay", f"recorded/{script.name}")
+    assert "The trace equals the recorded one." in result.stdout, result.output
+
+
+def test_fuzz_selects_opmodes_and_finds_what_fails_in_one(make_project: MakeProject) -> None:
+    project = make_project(
+        {"robot.py": ROBOT.replace("-self.robot.stick.get_y()", "1 / (self.robot.stick.get_y() - 1)")}
+    )
+    result = project.run("fuzz", "--runs", "25", "--seed", "1", "-j", "1")
+    assert re.search(r"robot\.py:\d+: ZeroDivisionError", result.output), result.output
+    (script,) = (project.path / "tests" / "fuzz").glob("*.jsonl")
+    assert '"control.opmode": "Drive"' in script.read_text("utf-8")
+    assert "ZeroDivisionError" in project.run("replay", f"tests/fuzz/{script.name}").output

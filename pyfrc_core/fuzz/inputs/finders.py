@@ -184,6 +184,8 @@ def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN, has_mod
         if target in names.ASKED_BY and constants.asks(names.ASKED_BY[target]):
             yield Input(target, kind, target)
     channels = _used()
+    if opmodes := station.published_opmodes():
+        yield Input("control.opmode", "option", "opmode", tuple(sorted({each.name for each in opmodes})))
     yield Input("power.vin_voltage", "battery", "power")
     for key in device_table.BUTTONS:
         yield Input(key, "switch", key)

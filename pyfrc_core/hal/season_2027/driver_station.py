@@ -36,9 +36,9 @@ def _mode(mode: hal.RobotMode) -> Callable[[type[DriverStationSim]], bool]:
 def _set_mode(mode: hal.RobotMode) -> Callable[[type[DriverStationSim], bool], None]:
     def put(sim: type[DriverStationSim], on: bool) -> None:
         if on:
-            sim.set_robot_mode(mode)
+            station.send_mode(mode)
         elif sim.get_robot_mode() == mode:
-            sim.set_robot_mode(hal.RobotMode.TELEOPERATED)
+            station.send_mode(hal.RobotMode.TELEOPERATED)
 
     return put
 

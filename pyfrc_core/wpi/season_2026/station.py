@@ -215,8 +215,8 @@ def published_opmodes() -> list[Opmode]:
     return []
 
 
-def select_opmode(opmode: Opmode | None) -> None:
-    """Select an opmode with the next packet, and its mode; None selects none."""
+def select_opmode(opmode: Opmode) -> None:
+    """Select an opmode with the next packet, and its mode."""
 
 
 # -- the robot's side --------------------------------------------------------------------------------------------------

@@ -75,6 +75,7 @@ class MatchInfo(NamedTuple):
 def reset_driver_station() -> None:
     """Set the initial data of the driver station: attached, disabled, red 1, six joysticks with nothing pressed."""
     reset_driver_station_data()
+    _chosen.clear()
     set_driver_station_ds_attached(True)
     DriverStationSim.set_robot_mode(RobotMode.TELEOPERATED)
     DriverStationSim.set_alliance_station_id(hal.AllianceStationID.RED_1)
@@ -141,11 +142,21 @@ def angle_of(pov: int) -> int:
     return _ANGLES.get(pov, NOT_PRESSED)
 
 
+#: The opmode that is chosen for each mode, by the number of the mode: what a driver station sends is that of the mode.
+_chosen: dict[int, int] = {}
+
+
 def set_mode(*, autonomous: bool = False, test: bool = False, enabled: bool) -> None:
     """Set the mode of the next driver-station packet."""
     mode = RobotMode.AUTONOMOUS if autonomous else RobotMode.UTILITY if test else RobotMode.TELEOPERATED
-    DriverStationSim.set_robot_mode(mode)
+    send_mode(mode)
     set_driver_station_enabled(enabled)
+
+
+def send_mode(mode: RobotMode) -> None:
+    """Set the robot's mode for the next packet, with the opmode that is chosen for it."""
+    DriverStationSim.set_robot_mode(mode)
+    DriverStationSim.set_opmode(_chosen.get(int(mode), 0))
 
 
 def sends(mode: RobotMode) -> bool:
@@ -299,27 +310,34 @@ def opmode_name() -> str:
 
 
 def select_opmode_named(name: str) -> None:
-    """Select an opmode with the next packet, of the mode that is set if there are several; "" selects none.
+    """Choose the opmode of this name, for its mode; "" chooses none for the mode that is set.
+
+    With the next packet it is selected, if its mode is the one that is set. If opmodes of several modes have this name,
+    it is that of the mode that is set.
 
     :raises UsageError: when the robot has published no such opmode
     """
+    mode = int(DriverStationSim.get_robot_mode())
     if not name:
-        DriverStationSim.set_opmode(0)
-        return
-    published = published_opmodes()
-    found = [each for each in published if each.name == name]
-    if not found:
-        there = ", ".join(repr(each.name) for each in published) or "none"
-        raise UsageError(f"there is no opmode {name!r}: the robot has published {there}")
-    mode = mode_name().removeprefix("disabled ").replace("disabled", "teleop")
-    DriverStationSim.set_opmode(next((each for each in found if each.mode == mode), found[0]).id)
+        _chosen.pop(mode, None)
+    else:
+        published = published_opmodes()
+        found = [each for each in published if each.name == name]
+        if not found:
+            there = ", ".join(repr(each.name) for each in published) or "none"
+            raise UsageError(f"there is no opmode {name!r}: the robot has published {there}")
+        _choose(next((each for each in found if each.mode == _MODES_OF_OPMODES.get(mode)), found[0]))
+    DriverStationSim.set_opmode(_chosen.get(mode, 0))
 
 
-def select_opmode(opmode: Opmode | None) -> None:
-    """Select an opmode with the next packet, and its mode; None selects none."""
-    if opmode is not None:
-        set_mode(autonomous=opmode.mode == "autonomous", test=opmode.mode == "test", enabled=sends_enabled())
-    DriverStationSim.set_opmode(0 if opmode is None else opmode.id)
+def select_opmode(opmode: Opmode) -> None:
+    """Select an opmode with the next packet, and its mode."""
+    _choose(opmode)
+    set_mode(autonomous=opmode.mode == "autonomous", test=opmode.mode == "test", enabled=sends_enabled())
+
+
+def _choose(opmode: Opmode) -> None:
+    _chosen[int(hal.opmode_get_robot_mode(opmode.id))] = opmode.id
 
 
 # -- the robot's side --------------------------------------------------------------------------------------------------
