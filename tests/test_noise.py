@@ -66,7 +66,7 @@ MAKE: dict[str, tuple[int, Callable[[list[float]], object]]] = {
 def test_mechanisms_are_named_if_they_have_noise(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(unrepeatable, "_noisy_mechanisms", set())
     count, make = MAKE[kind]
-    with patched(noise.patches()):
+    with patched(noise.patches("createKitbotSim")):
         make([0.0] * count)
         assert unrepeatable.unrepeatable_devices(()) == ()
         make([0.0] * (count - 1) + [0.1])

@@ -17,12 +17,12 @@ from pyfrc_core.hal import HalData
 from pyfrc_core.hal.change_reader import MISSING, ChangeReader, Changes
 from pyfrc_core.hal.season_2026.device_table import KINDS
 from pyfrc_core.runtime.patch_table import patched
-from pyfrc_core.runtime.patches.season_2026.hal_resets import patches
+from pyfrc_core.runtime.patches.hal_resets import patches
 
 
 @pytest.fixture
 def tree() -> Iterator[HalData]:
-    with patched(patches()):
+    with patched(patches("resetData", "resetDriverStationData", "resetAllSimData", lambda: None)):
         hs.resetAllSimData()
         yield HalData()
         gc.collect()

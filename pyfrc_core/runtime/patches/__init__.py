@@ -16,11 +16,10 @@ from ...season import CURRENT
 
 if TYPE_CHECKING:
     from .season_2026 import hal_notifiers as hal_notifiers
-    from .season_2026 import noise as noise
     from .season_2026 import wpilib_names as wpilib_names
 
 #: The modules of each season's package.
-_OF_A_SEASON = ("hal_notifiers", "noise", "wpilib_names")
+_OF_A_SEASON = ("hal_notifiers", "wpilib_names")
 
 
 def __getattr__(name: str) -> ModuleType:

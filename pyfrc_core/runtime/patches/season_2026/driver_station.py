@@ -18,6 +18,7 @@ from ...clock import to_us
 from ...patch_table import Patch
 from ...threads import cooperative
 from ..active_run import active_run
+from ..stepping import delivering
 
 if TYPE_CHECKING:
     from ...threads.robot_threads import RobotThread
@@ -81,23 +82,7 @@ def _waiting() -> Patch:
 def _packets() -> list[Patch]:
     """Return the functions by which a test delivers packets out of turn: a recorder must record them."""
 
-    def delivering(owner: object, name: str, refreshes: bool) -> Patch:
-        real = getattr(owner, name)
-
-        def notify() -> None:
-            run = active_run.run
-            if run is None:
-                real()
-                return
-            if run.recorder is not None:
-                run.recorder.on_packet_out_of_turn()
-            run.connection.packet()
-            if refreshes:
-                wpilib.DriverStation.refreshData()
-
-        return Patch(owner, name, notify)
-
     return [
-        delivering(wpilib.simulation.DriverStationSim, "notifyNewData", refreshes=True),
-        delivering(hal.simulation, "notifyDriverStationNewData", refreshes=False),
+        delivering(wpilib.simulation.DriverStationSim, "notifyNewData", wpilib.DriverStation.refreshData),
+        delivering(hal.simulation, "notifyDriverStationNewData", None),
     ]

@@ -1,21 +1,14 @@
-"""`wpilib.Watchdog` in robot time, for robot code's own.
-
-WPILib has one C++ thread for all of them, which follows the wall clock: what it has to say comes whenever the machine
-lets it. So it is ended, and what it did is done here.
-"""
+"""`wpilib.Watchdog` in robot time, for robot code's own: see `expiry`."""
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Callable
 
 import hal
 import wpilib
 
 from ....wpi import watchdogs
-from ...clock import WAKE_UP, Clock, to_us
-from ...threads import cooperative
-from ..loop_watchdog import BETWEEN_REPORTS_US
+from ..expiry import Expiry
 
 _ERROR_CODE = 1
 _WPILibs = wpilib.Watchdog
@@ -31,73 +24,37 @@ class Watchdog(_WPILibs):
     def __init__(self, timeout: float, callback: Callable[[], None]) -> None:
         watchdogs.end_watchdog_thread()
         super().__init__(timeout, callback)
-        self._callback = callback
-        self._silent = self._expired = False
-        self._told_us = -BETWEEN_REPORTS_US
-        self._due_us: int | None = None
-        self._alarm_us: int | None = None  # the clock's, which may be earlier: feeding does not move it
+        self._expiry = Expiry(callback, _warn)
 
     def reset(self) -> None:
         """Feed the watchdog: restart its time, and enable it."""
         super().reset()
-        self._begin()
+        self._expiry.begin(self.getTimeout())
 
     def enable(self) -> None:
         """Start its time."""
         super().enable()
-        self._begin()
+        self._expiry.begin(self.getTimeout())
 
     def disable(self) -> None:
         """Stop its time: it no longer expires."""
         super().disable()
-        self._due_us = None
+        self._expiry.stop()
 
     def setTimeout(self, timeout: float) -> None:
         """Set another time-out, in seconds, and restart its time."""
         super().setTimeout(timeout)
-        self._begin()
+        self._expiry.begin(timeout)
 
     def isExpired(self) -> bool:
         """Whether it was not fed in time, since it was last enabled or fed."""
-        return self._expired
+        return self._expiry.expired
 
     def suppressTimeoutMessage(self, suppress: bool) -> None:
         """Whether to print nothing when it expires: the callback may have more to say."""
         super().suppressTimeoutMessage(suppress)
-        self._silent = suppress
+        self._expiry.silent = suppress
 
-    def _begin(self) -> None:
-        threads = cooperative.scope.threads
-        self._expired = False
-        if threads is not None:
-            self._due_us = threads.clock.now_us + to_us(self.getTimeout())
-            self._set_alarm(threads.clock, self._due_us)
 
-    def _set_alarm(self, clock: Clock, due_us: int) -> None:
-        if self._alarm_us is not None and clock.now_us <= self._alarm_us <= due_us:
-            return
-        self._alarm_us = due_us
-        this = weakref.ref(self)  # as in WPILib, one that was dropped is silent
-
-        def alarm() -> None:
-            __tracebackhide__ = True
-            watchdog = this()
-            if watchdog is not None and watchdog._alarm_us == due_us:
-                watchdog._on_alarm(clock)
-
-        clock.at(due_us, WAKE_UP, alarm)
-
-    def _on_alarm(self, clock: Clock) -> None:
-        __tracebackhide__ = True
-        self._alarm_us = None
-        if self._due_us is None:
-            return
-        if clock.now_us < self._due_us:
-            self._set_alarm(clock, self._due_us)
-            return
-        self._due_us, self._expired = None, True
-        if not self._silent and clock.now_us - self._told_us >= BETWEEN_REPORTS_US:
-            self._told_us = clock.now_us
-            message = f"Watchdog not fed within {self.getTimeout():.6f}s, at {clock.now:.3f} s"
-            hal.sendError(False, _ERROR_CODE, False, message, "Watchdog", "", True)
-        self._callback()
+def _warn(message: str) -> None:
+    hal.sendError(False, _ERROR_CODE, False, message, "Watchdog", "", True)

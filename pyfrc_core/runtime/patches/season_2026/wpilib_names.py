@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,17 +13,15 @@ import wpilib.simulation
 
 from ....wpi import robots
 from ...clock import to_us
-from ...exceptions import TestEnded
 from ...patch_table import Patch
-from ...threads import cooperative
+from .. import hal_resets, noise
 from ..active_run import active_run
-from . import counters, driver_station, hal_notifiers, hal_resets, log_names, noise, sysid_logs
+from ..stepping import left_to_the_run, stepping, wait
+from . import counters, driver_station, hal_notifiers, log_names, sysid_logs
 from .watchdog import Watchdog
 
 if TYPE_CHECKING:
     from ....project.robot_files import RobotFiles
-
-_real_sleep = time.sleep
 
 
 def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
@@ -33,68 +30,24 @@ def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
     :param files: returns the files of the robot project
     """
     return [
-        *_waiting(),
+        Patch(wpilib, "wait", wait),
+        Patch(wpilib, "Watchdog", Watchdog),
         *hal_notifiers.patches(),
         *_stepping_in_tests(),
         *driver_station.patches(),
-        *hal_resets.patches(),
+        *hal_resets.patches("resetData", "resetDriverStationData", "resetAllSimData", _attach),
         *_timed_robot(),
         *_directories(files),
         Patch(wpilib.RobotController, "isBrownedOut", _is_browned_out),
         *counters.patches(),
         *log_names.patches(),
         *sysid_logs.patches(),
-        *noise.patches(),
-    ]
-
-
-def _waiting() -> list[Patch]:
-    def wait(seconds: float) -> None:
-        __tracebackhide__ = True
-        threads = cooperative.scope.taking_part()
-        if threads is None:
-            return _real_sleep(seconds)
-        return threads.sleep_until(threads.clock.now_us + max(0, to_us(seconds)))
-
-    return [
-        Patch(wpilib, "wait", wait),
-        Patch(wpilib, "Watchdog", Watchdog),
+        *noise.patches("createKitbotSim"),
     ]
 
 
 def _stepping_in_tests() -> list[Patch]:
     """Tests that step WPILib's simulated time themselves move the robot with it."""
-
-    def stepping(owner: object, name: str, in_us: Callable[[float], int]) -> Patch:
-        real = getattr(owner, name)
-
-        def step(delta: float) -> None:
-            __tracebackhide__ = True
-            run = active_run.run
-            if run is None:
-                real(delta)
-                return
-            target_us = run.clock.now_us + in_us(delta)
-            if run.sleep_on_robot_thread(target_us):
-                return
-            try:
-                run.clock.run_until(target_us)
-            except TestEnded:
-                if run.threads.failure is None:
-                    raise
-                raise run.threads.failure from None  # to the test, which has called this
-
-        return Patch(owner, name, step)
-
-    def left_to_the_run(owner: object, name: str) -> Patch:
-        real = getattr(owner, name)
-
-        def call() -> None:
-            if active_run.run is None:
-                real()
-
-        return Patch(owner, name, call)
-
     table = []
     for owner, in_us in ((wpilib.simulation, to_us), (hal.simulation, int)):
         table += [stepping(owner, "stepTiming", in_us), stepping(owner, "stepTimingAsync", in_us)]
@@ -155,6 +108,10 @@ def _timed_robot() -> list[Patch]:
         Patch(TimedRobot, "getLoopStartTime", loop_start_time),
         Patch(*robots.LOOP_FUNCTION.place, _loopFunc),
     ]
+
+
+def _attach() -> None:
+    hal.simulation.setDriverStationDsAttached(True)
 
 
 def _directories(files: Callable[[], RobotFiles]) -> list[Patch]:

@@ -17,6 +17,7 @@ import wpilib.simulation
 from ....wpi.season_2027 import station
 from ...patch_table import Patch
 from ..active_run import active_run
+from ..stepping import delivering
 
 
 def patches() -> list[Patch]:
@@ -50,23 +51,7 @@ def _match_information() -> list[Patch]:
 def _packets() -> list[Patch]:
     """Return the functions by which a test delivers packets out of turn: a recorder must record them."""
 
-    def delivering(owner: object, name: str, refreshes: bool) -> Patch:
-        real = getattr(owner, name)
-
-        def notify() -> None:
-            run = active_run.run
-            if run is None:
-                real()
-                return
-            if run.recorder is not None:
-                run.recorder.on_packet_out_of_turn()
-            run.connection.packet()
-            if refreshes:
-                wpilib.DriverStationBackend.refresh_data()
-
-        return Patch(owner, name, notify)
-
     return [
-        delivering(wpilib.simulation.DriverStationSim, "notify_new_data", refreshes=True),
-        delivering(hal.simulation, "notify_driver_station_new_data", refreshes=False),
+        delivering(wpilib.simulation.DriverStationSim, "notify_new_data", wpilib.DriverStationBackend.refresh_data),
+        delivering(hal.simulation, "notify_driver_station_new_data", None),
     ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,17 +15,15 @@ from ....compat.private_name import PrivateName
 from ....hal.season_2027 import onboard_imu
 from ....wpi.season_2027 import robots, timing
 from ...clock import to_us
-from ...exceptions import TestEnded
 from ...patch_table import Patch
-from ...threads import cooperative
+from .. import hal_resets, noise
 from ..active_run import active_run
-from . import driver_station, hal_notifiers, hal_resets, log_names, noise, opmodes
+from ..stepping import left_to_the_run, stepping, wait
+from . import driver_station, hal_notifiers, log_names, opmodes
 from .watchdog import Watchdog
 
 if TYPE_CHECKING:
     from ....project.robot_files import RobotFiles
-
-_real_sleep = time.sleep
 
 
 def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
@@ -35,67 +32,23 @@ def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
     :param files: returns the files of the robot project
     """
     return [
-        *_waiting(),
+        Patch(wpilib, "wait", wait),
+        Patch(wpilib, "Watchdog", Watchdog),
         *hal_notifiers.patches(),
         *_stepping_in_tests(),
         *driver_station.patches(),
-        *hal_resets.patches(),
+        *hal_resets.patches("reset_data", "reset_driver_station_data", "reset_all_sim_data", _attach),
         *_timed_robots(),
         *_directories(files),
         _onboard_imu(),
         Patch(wpilib.RobotController, "is_browned_out", _is_browned_out),
         *log_names.patches(),
-        *noise.patches(),
-    ]
-
-
-def _waiting() -> list[Patch]:
-    def wait(seconds: float) -> None:
-        __tracebackhide__ = True
-        threads = cooperative.scope.taking_part()
-        if threads is None:
-            return _real_sleep(seconds)
-        return threads.sleep_until(threads.clock.now_us + max(0, to_us(seconds)))
-
-    return [
-        Patch(wpilib, "wait", wait),
-        Patch(wpilib, "Watchdog", Watchdog),
+        *noise.patches("create_kitbot_sim"),
     ]
 
 
 def _stepping_in_tests() -> list[Patch]:
     """Tests that step WPILib's simulated time themselves move the robot with it."""
-
-    def stepping(owner: object, name: str, in_us: Callable[[Any], int]) -> Patch:
-        real = getattr(owner, name)
-
-        def step(delta: float) -> None:
-            __tracebackhide__ = True
-            run = active_run.run
-            if run is None:
-                real(delta)
-                return
-            target_us = run.clock.now_us + in_us(delta)
-            if run.sleep_on_robot_thread(target_us):
-                return
-            try:
-                run.clock.run_until(target_us)
-            except TestEnded:
-                if run.threads.failure is None:
-                    raise
-                raise run.threads.failure from None  # to the test, which has called this
-
-        return Patch(owner, name, step)
-
-    def left_to_the_run(owner: object, name: str) -> Patch:
-        real = getattr(owner, name)
-
-        def call() -> None:
-            if active_run.run is None:
-                real()
-
-        return Patch(owner, name, call)
-
     table = []
     for owner, in_us in ((wpilib.simulation, to_us), (hal.simulation, lambda ns: int(ns) // timing.NS_PER_US)):
         table += [stepping(owner, "step_timing", in_us), stepping(owner, "step_timing_async", in_us)]
@@ -161,6 +114,10 @@ def _timed_robot(base: Any, loop_function: PrivateName) -> list[Patch]:
         Patch(base, "get_loop_start_time", loop_start_time),
         Patch(base, loop_function.name, _loop_func),
     ]
+
+
+def _attach() -> None:
+    hal.simulation.set_driver_station_ds_attached(True)
 
 
 def _directories(files: Callable[[], RobotFiles]) -> list[Patch]:

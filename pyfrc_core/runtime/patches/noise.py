@@ -1,7 +1,7 @@
-"""Notice simulations that draw noise by chance, which nobody can seed: what they simulate does not repeat.
+"""Notice simulations that draw random noise without a seed: what they simulate does not repeat.
 
 REV's SPARKs draw some whenever physics calls `iterate`; without it they repeat. WPILib's mechanisms draw some if they
-were made with `measurement_std_devs` that are not 0.
+were made with standard deviations of their measurements that are not 0.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from typing import Any
 
 import wpilib.simulation
 
-from ....compat.unrepeatable import report_noise, report_noisy_mechanism
-from ...patch_table import Patch
+from ...compat.unrepeatable import report_noise, report_noisy_mechanism
+from ..patch_table import Patch
 
 _simulation: Any = wpilib.simulation
 _MECHANISMS = (
@@ -25,12 +25,15 @@ _MECHANISMS = (
 )
 
 
-def patches() -> Iterator[Patch]:
-    """Return the patches that notice mechanisms with noise."""
+def patches(make_kit: str) -> Iterator[Patch]:
+    """Return the patches that notice mechanisms with noise.
+
+    :param make_kit: the name of the function that makes a `DifferentialDrivetrainSim` of a kit
+    """
     for kind in _MECHANISMS:
         yield Patch(kind, "__init__", _making(kind, kind.__init__))
     drivetrain = _simulation.DifferentialDrivetrainSim
-    yield Patch(drivetrain, "create_kitbot_sim", _making(drivetrain, drivetrain.create_kitbot_sim))
+    yield Patch(drivetrain, make_kit, _making(drivetrain, getattr(drivetrain, make_kit)))
 
 
 def spark_patch(rev: Any) -> Patch:
