@@ -251,8 +251,8 @@ class RobotProject:
         """
         typed = None
         if stdin is not None:
-            typed, told = os.pipe()
-            with os.fdopen(told, "w", encoding="utf-8") as file:
+            typed, typing = os.pipe()
+            with os.fdopen(typing, "w", encoding="utf-8") as file:
                 file.write(stdin)  # fits into a pipe
         command = start_command(
             lambda streams: self.start_with(streams, *args, env=env, cwd=cwd, program=program, cold=cold), typed, True

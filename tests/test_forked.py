@@ -162,7 +162,7 @@ COMMANDS = [
 MEASURED = re.compile(r"0x[0-9a-f]+|\d[\d.,]*|[-=]{3,}|(?<=\S)  +")
 
 
-def told(result: Result, project: RobotProject) -> tuple[int, str, str]:
+def shown(result: Result, project: RobotProject) -> tuple[int, str, str]:
     stdout, stderr = (
         MEASURED.sub("~", text.replace(str(project.path), ".")) for text in (result.stdout, result.stderr)
     )
@@ -182,7 +182,7 @@ def left(directory: Path) -> dict[str, str]:
 def test_a_command_does_the_same_as_in_a_new_interpreter(command: str, make_shared_project: MakeProject) -> None:
     cold, warm = make_shared_project(FILES), make_shared_project(FILES)
     program, *words = command.split()
-    assert told(cold.run(*words, program=program, cold=True), cold) == told(warm.run(*words, program=program), warm)
+    assert shown(cold.run(*words, program=program, cold=True), cold) == shown(warm.run(*words, program=program), warm)
     assert left(cold.path) == left(warm.path)
     assert left(warm.temporary) == {}
 

@@ -10,6 +10,7 @@ topic, such as `robots` or `geometry`, of the season whose WPILib is installed::
 `season_2026` has a module for each topic, in that season's spelling. Another season is a package beside it, with
 modules and functions of the same names; nothing else changes. So a function says what pyfrc wants, and is not WPILib's
 name in another spelling: where a caller would need ten of WPILib's calls in a row, the whole step is the function.
+What needs no WPILib, and is the same in each season, stands once beside the packages, such as `motor_calls`.
 
 Only this room, `hal` (the table of devices) and `runtime.patches` (the names that are replaced) import WPILib. A topic
 is imported when it is asked for: importing this package imports no WPILib.

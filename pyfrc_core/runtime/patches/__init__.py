@@ -2,8 +2,9 @@
 
 In: a call by robot code, or by a test. Out: what a robot would do, in robot time, for the run of this process
 (`active_run`); what the original does where no robot runs. `install` has the table of what is replaced in each season;
-WPILib's names are in a package for each season (`season_2026`), with modules of the same names. As in `wpi`, what is
-asked of this package is the season's whose WPILib is installed: ``from .patches import wpilib_names``.
+WPILib's names are in a package for each season (`season_2026`), with modules of the same names. What is the same in
+each season stands once beside them, and takes the names that differ. As in `wpi`, what is asked of this package is the
+season's whose WPILib is installed: ``from .patches import wpilib_names``.
 """
 
 from __future__ import annotations

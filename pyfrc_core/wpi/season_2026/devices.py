@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import hal
 import hal.simulation
 import wpilib
 from wpilib.simulation import RoboRioSim, SimDeviceSim
+
+from ..device_values import Sensor, SimValue, SimValueKind, find_sensor
 
 #: Reset all devices of the simulated HAL to their initial values.
 reset_all = hal.simulation.resetAllSimData
@@ -63,17 +64,6 @@ def channels_of(thing: Any, kind: WiredKind) -> tuple[int, ...]:
     return (thing.getChannel(),)
 
 
-class Sensor(NamedTuple):
-    """A sensor in `hal_data`.
-
-    :param place: the parts of its path there
-    :param where: where it is, if that is no part of the path, to be read after its name
-    """
-
-    place: tuple[str | int, ...]
-    where: str = ""
-
-
 #: What a sensor is, by the name of its class: a vendor's library need not be installed.
 _SENSORS: dict[str, Callable[[Any], Sensor]] = {
     "DigitalInput": lambda each: Sensor(("dio", each.getChannel()), f" on DIO {each.getChannel()}"),
@@ -94,29 +84,10 @@ _SENSORS: dict[str, Callable[[Any], Sensor]] = {
 
 def sensor(thing: object) -> Sensor | None:
     """Return what a sensor is in `hal_data`; None for other objects, and for one that is closed."""
-    for kind in type(thing).__mro__[:-1]:
-        if (find := _SENSORS.get(kind.__name__)) is not None:
-            with suppress(Exception):  # it is closed, or of a class of the robot's with that name
-                return find(thing)
-            return None
-    return None
+    return find_sensor(thing, _SENSORS)
 
 
-class SimValue(NamedTuple):
-    """A value of a SimDevice.
-
-    :param is_output: whether only the device itself writes it
-    :param kind: its type; ``whole`` is a whole number
-    :param options: what an option can be
-    """
-
-    name: str
-    is_output: bool
-    kind: Literal["boolean", "number", "whole", "option"]
-    options: tuple[str, ...] = ()
-
-
-_SIM_KINDS: dict[hal.Type, Literal["boolean", "number", "whole", "option"]] = {
+_SIM_KINDS: dict[hal.Type, SimValueKind] = {
     hal.Type.BOOLEAN: "boolean",
     hal.Type.DOUBLE: "number",
     hal.Type.ENUM: "option",

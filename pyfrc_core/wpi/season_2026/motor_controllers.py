@@ -9,6 +9,8 @@ from typing import Any
 import wpilib
 from wpilib.interfaces import MotorController
 
+from ..motor_calls import MotorCalls, OnMotorCall, noting_members, numbers_in, of_drive, with_derived
+
 #: The packages of WPILib's own motor controllers.
 _WPILIBS = ("wpilib",)
 
@@ -51,7 +53,7 @@ def with_own_getter() -> list[type[Any]]:
     """
     own = [
         each
-        for each in _with_derived(MotorController)
+        for each in with_derived(MotorController)
         if each.__module__.partition(".")[0] not in _WPILIBS and callable(vars(each).get(POWER_GETTER))
     ]
     return [*dict.fromkeys(own), wpilib.MotorControllerGroup] if own else []
@@ -82,46 +84,21 @@ def _drives() -> list[tuple[type[Any], tuple[str, ...]]]:
 
 # -- the calls that set motors -----------------------------------------------------------------------------------------
 
-#: Called with the motor controller or drive, the function's name, its numeric arguments, and whether they are powers
-#: from -1 to 1.
-OnMotorCall = Callable[[Any, str, tuple[float, ...], bool], None]
-
-
-class MotorCalls:
-    """The calls of one run.
-
-    Attributes:
-        listener: called with each call, before it has an effect
-        members: the motors of each group and drive that was created, by its id: objects of WPILib's are not hashable
-            in all versions
-    """
-
-    def __init__(self) -> None:
-        self.listener: OnMotorCall = lambda motor, name, numbers, is_power: None
-        self.members: dict[int, list[Any]] = {}
-
 
 def replacements(calls: MotorCalls) -> Iterator[tuple[Any, str, Any]]:
     """Return the functions that set motors, with their owner and name: each reports its call.
 
     They are replaced in Python, since WPILib passes 0 for NaN, and 1 for greater values.
     """
-    for owner in _with_derived(MotorController):
+    for owner in with_derived(MotorController):
         for name, wrap in (("set", _set), ("setVoltage", _set_voltage)):
             if name in vars(owner):
                 yield owner, name, wrap(vars(owner)[name], calls)
     for drive, names in _drives():
         for name in names:
-            yield drive, name, _drive(vars(drive)[name], name, calls)
+            yield drive, name, of_drive(vars(drive)[name], name, calls)
     for group in _groups():
-        yield group, "__init__", _init(group.__init__, calls.members)
-
-
-def _with_derived(base: type[object]) -> Iterator[type[Any]]:
-    yield base
-    subclasses: list[type[Any]] = base.__subclasses__()
-    for derived in subclasses:
-        yield from _with_derived(derived)
+        yield group, "__init__", noting_members(group.__init__, calls.members, MotorController)
 
 
 # Each wrapper must have the name of the function it wraps: WPILib's bindings take a call from a function of the same
@@ -130,7 +107,7 @@ def _with_derived(base: type[object]) -> Iterator[type[Any]]:
 
 def _set(real: Callable[..., object], calls: MotorCalls) -> Callable[..., Any]:
     def set(self: object, *args: object, **kwargs: object) -> Any:
-        calls.listener(self, "set", _numbers(args, kwargs), True)
+        calls.listener(self, "set", numbers_in(args, kwargs), True)
         return real(self, *args, **kwargs)
 
     return set
@@ -138,31 +115,7 @@ def _set(real: Callable[..., object], calls: MotorCalls) -> Callable[..., Any]:
 
 def _set_voltage(real: Callable[..., object], calls: MotorCalls) -> Callable[..., Any]:
     def setVoltage(self: object, *args: object, **kwargs: object) -> Any:
-        calls.listener(self, "setVoltage", _numbers(args, kwargs), False)
+        calls.listener(self, "setVoltage", numbers_in(args, kwargs), False)
         return real(self, *args, **kwargs)
 
     return setVoltage
-
-
-def _drive(real: Callable[..., object], name: str, calls: MotorCalls) -> Callable[..., Any]:
-    def drive(self: object, *args: object, **kwargs: object) -> Any:
-        calls.listener(self, name, _numbers(args, kwargs), False)
-        return real(self, *args, **kwargs)
-
-    return drive
-
-
-def _init(real: Callable[..., None], members: dict[int, list[Any]]) -> Callable[..., None]:
-    def __init__(self: object, *args: object, **kwargs: object) -> None:
-        real(self, *args, **kwargs)
-        members[id(self)] = [each for each in (*args, *kwargs.values()) if isinstance(each, MotorController)]
-
-    return __init__
-
-
-def _numbers(args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[float, ...]:
-    if len(args) == 1 and type(args[0]) is float and not kwargs:  # nearly always
-        return args
-    return tuple(
-        each for each in (*args, *kwargs.values()) if isinstance(each, float | int) and not isinstance(each, bool)
-    )
