@@ -35,7 +35,6 @@ _NAMED_TYPES = {
 _FMS = "NT:/FMSInfo/"
 _HAL = "/hal_data/"
 _FROM_OUTSIDE = re.compile(r"NT:(/.+/selected|/limelight[^/]*/.+|/photonvision/.+)", re.DOTALL)
-_STICK = re.compile(r"DS:joystick([0-5])/(axes|buttons|povs)")
 
 #: The bits of ``FMSControlData``.
 _FMS_ATTACHED, _DS_ATTACHED = 16, 32
