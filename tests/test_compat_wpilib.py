@@ -13,7 +13,7 @@ import pytest
 from pyfrc_core import wpi
 from pyfrc_core.compat.private_name import IncompatibleLibraryError, PrivateName
 from pyfrc_core.season import CURRENT
-from pyfrc_core.wpi import commands, encoders, network, reports, robots
+from pyfrc_core.wpi import commands, network, reports, robots
 
 
 def private_names() -> list[PrivateName]:
@@ -140,16 +140,6 @@ report()
     assert robots.count("the robot's lines") == 2, f"a report's stack does not come from the hook: {used_for}"
     assert "in report" in all_lines, reports.STACK_TRACE_HOOK.used_for
     assert "the robot's lines" not in all_lines
-
-
-def test_the_channels_of_an_encoder() -> None:
-    program = """
-from pyfrc_core.wpi import encoders
-
-encoder = wpilib.Encoder(4, 7)
-print(encoders.channels_of(0))
-"""
-    assert said_by(program) == ["(4, 7)"], encoders.NATIVE_HAL.gone
 
 
 # -- WPILib's threads -------------------------------------------------------------------------------------------------

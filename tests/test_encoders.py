@@ -72,3 +72,35 @@ def test_a_shaft_refuses_what_is_not_a_number(values: tuple[float, float], make_
     assert result.code == 1
     assert "ParameterError" in result.output
     assert "must be a finite number" in result.output
+
+
+@pytest.mark.parametrize(
+    "made", ["2, 3", "bChannel=3, aChannel=2", "wpilib.DigitalInput(2), wpilib.DigitalInput(3)", "2, bChannel=3"]
+)
+def test_the_channels_of_an_encoder(made: str, make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": f"""
+                import wpilib
+
+                class Turner(wpilib.Encoder):
+                    def __init__(self):
+                        super().__init__({made})
+
+                class MyRobot(wpilib.TimedRobot):
+                    def robotInit(self):
+                        self.first, self.turner = wpilib.Encoder(0, 1), Turner()
+            """,
+            "tests/test_it.py": """
+            def test_it(control, robot, hal_data):
+                with control.run_robot():
+                    channels = [each["config"] for each in hal_data["encoder"]]
+                    assert channels[:2] == [
+                        {"ASource_Channel": 0, "BSource_Channel": 1}, {"ASource_Channel": 2, "BSource_Channel": 3}
+                    ]
+                    assert channels[2] == {"ASource_Channel": None, "BSource_Channel": None}
+            """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 0, result.output

@@ -94,7 +94,6 @@ _DISTRIBUTIONS = {
     "_pytest": "pytest",
     "commands2": "robotpy-commands-v2",
     "magicbot": "robotpy-wpilib-utilities",
-    "native": "robotpy-native-wpihal",
     "pytest": "pytest",
     "wpilib": "wpilib",
     "wpiutil": "robotpy-wpiutil",

@@ -10,7 +10,7 @@ import wpilib
 import wpilib.simulation
 import wpilib_drivers
 
-from pyfrc_core.wpi.season_2027 import commands, encoders, network, reports, robots, watchdogs
+from pyfrc_core.wpi.season_2027 import commands, network, reports, robots, watchdogs
 
 
 def test_names() -> None:
@@ -18,7 +18,6 @@ def test_names() -> None:
         robots.LOOP_FUNCTION,
         robots.OPMODE_LOOP_FUNCTION,
         network.NETWORK_LOG,
-        encoders.NATIVE_HAL,
         reports.STACK_TRACE_HOOK,
         reports.SET_STACK_TRACE_HOOK,
         commands.STATE_OF_MACHINE,
@@ -44,11 +43,6 @@ def test_the_power_of_a_pwm_motor_is_a_value_of_a_sim_device() -> None:
     device = wpilib.simulation.SimDeviceSim("PWMMotorController[7]")
     assert [name for name, _ in device.enumerate_values()] == ["Throttle"]
     assert device.get_double("Throttle").get() == 0.25
-
-
-def test_an_encoder_tells_its_channels() -> None:
-    encoder = wpilib.Encoder(3, 4)
-    assert encoders.channels_of(encoder.get_fpga_index()) == (3, 4)
 
 
 def test_hal_time_counts_nanoseconds_and_can_be_moved_on() -> None:

@@ -94,6 +94,7 @@ def test_modes_controls_and_outputs(make_project: MakeProject) -> None:
                         hal_data["encoder"][0]["count"] = 12
                         hal_data["power"]["vin_voltage"] = 11.5
                         assert (robot.input.get(), robot.encoder.get()) == (False, 12)
+                        assert hal_data["encoder"][0]["config"] == {"ASource_Channel": 0, "BSource_Channel": 1}
                         assert wpilib.RobotController.get_battery_voltage() == 11.5
                         control.game_specific_message = "LRL"
                         control.step_timing(seconds=0.1, autonomous=True, enabled=True)

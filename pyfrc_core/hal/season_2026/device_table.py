@@ -10,7 +10,7 @@ import hal
 import wpilib
 from wpilib import simulation as sim
 
-from ...wpi import encoders
+from ...wpi.encoder_channels import channels_of
 from ..containers import NOT_SET, LiveDict, Slot
 from ..fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind, group
 from ..kinds import BOOL, FLOAT, INT32, INT64, ValueKind, choice, number, text, whole
@@ -35,8 +35,8 @@ def _initialize_relay(relay: sim.RelaySim, value: bool) -> None:
 
 
 def encoder_channels(index: int) -> dict[str, int | None]:
-    """Return the digital channels of an encoder; None where the HAL does not know them."""
-    channels = encoders.channels_of(index) if sim.EncoderSim.createForIndex(index).getInitialized() else None
+    """Return the digital channels of an encoder; None where they are not known."""
+    channels = channels_of(index) if sim.EncoderSim.createForIndex(index).getInitialized() else None
     a, b = channels or (None, None)
     return {"ASource_Channel": a, "BSource_Channel": b}
 

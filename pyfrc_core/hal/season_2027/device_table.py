@@ -14,7 +14,8 @@ from typing import Any
 import wpilib
 from wpilib import simulation as sim
 
-from ...wpi.season_2027 import encoders, imu
+from ...wpi.encoder_channels import channels_of
+from ...wpi.season_2027 import imu
 from ..containers import NOT_SET, LiveDict, Slot
 from ..fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind, group
 from ..kinds import BOOL, FLOAT, INT32, ValueKind, number, text, whole
@@ -29,8 +30,8 @@ _SMART_IO = 6
 
 
 def encoder_channels(index: int) -> dict[str, int | None]:
-    """Return the digital channels of an encoder; None where the HAL does not know them."""
-    channels = encoders.channels_of(index) if sim.EncoderSim.create_for_index(index).get_initialized() else None
+    """Return the digital channels of an encoder; None where they are not known."""
+    channels = channels_of(index) if sim.EncoderSim.create_for_index(index).get_initialized() else None
     a, b = channels or (None, None)
     return {"ASource_Channel": a, "BSource_Channel": b}
 

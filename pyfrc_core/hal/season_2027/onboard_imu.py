@@ -20,7 +20,7 @@ _made: WeakSet[Any] = WeakSet()
 _watches: WeakSet[_Watch] = WeakSet()
 
 
-def note(made: object) -> None:
+def note(made: object, *_: object, **__: object) -> None:
     """Note an `OnboardIMU` that robot code has made."""
     _made.add(made)
     for watch in list(_watches):

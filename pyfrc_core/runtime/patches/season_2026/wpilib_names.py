@@ -11,11 +11,12 @@ import hal.simulation
 import wpilib
 import wpilib.simulation
 
-from ....wpi import robots
+from ....wpi import encoder_channels, robots
 from ...clock import to_us
 from ...patch_table import Patch
 from .. import hal_resets, noise
 from ..active_run import active_run
+from ..made_devices import noting
 from ..stepping import left_to_the_run, stepping, wait
 from . import counters, driver_station, hal_notifiers, log_names, sysid_logs
 from .watchdog import Watchdog
@@ -38,6 +39,9 @@ def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
         *hal_resets.patches("resetData", "resetDriverStationData", "resetAllSimData", _attach),
         *_timed_robot(),
         *_directories(files),
+        noting(
+            wpilib.Encoder, lambda made, *args, **kwargs: encoder_channels.note(made.getFPGAIndex(), *args, **kwargs)
+        ),
         Patch(wpilib.RobotController, "isBrownedOut", _is_browned_out),
         *counters.patches(),
         *log_names.patches(),

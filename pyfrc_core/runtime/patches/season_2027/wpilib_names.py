@@ -13,11 +13,13 @@ import wpilib.simulation
 
 from ....compat.private_name import PrivateName
 from ....hal.season_2027 import onboard_imu
+from ....wpi import encoder_channels
 from ....wpi.season_2027 import robots, timing
 from ...clock import to_us
 from ...patch_table import Patch
 from .. import hal_resets, noise
 from ..active_run import active_run
+from ..made_devices import noting
 from ..stepping import left_to_the_run, stepping, wait
 from . import driver_station, hal_notifiers, log_names, opmodes
 from .watchdog import Watchdog
@@ -40,7 +42,10 @@ def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
         *hal_resets.patches("reset_data", "reset_driver_station_data", "reset_all_sim_data", _attach),
         *_timed_robots(),
         *_directories(files),
-        _onboard_imu(),
+        noting(
+            wpilib.Encoder, lambda made, *args, **kwargs: encoder_channels.note(made.get_fpga_index(), *args, **kwargs)
+        ),
+        noting(wpilib.OnboardIMU, onboard_imu.note),
         Patch(wpilib.RobotController, "is_browned_out", _is_browned_out),
         *log_names.patches(),
         *noise.patches("create_kitbot_sim"),
@@ -126,17 +131,6 @@ def _directories(files: Callable[[], RobotFiles]) -> list[Patch]:
         Patch(wpilib, "get_operating_directory", lambda: str(Path(files().root))),
         Patch(wpilib, "get_deploy_directory", lambda: str(Path(files().root, "deploy"))),
     ]
-
-
-def _onboard_imu() -> Patch:
-    """Tell `hal_data` of the robot's IMU: the HAL does not."""
-    real: Callable[..., None] = wpilib.OnboardIMU.__init__
-
-    def __init__(self: Any, *args: Any, **kwargs: Any) -> None:
-        real(self, *args, **kwargs)
-        onboard_imu.note(self)
-
-    return Patch(wpilib.OnboardIMU, "__init__", __init__)
 
 
 def _is_browned_out() -> bool:
