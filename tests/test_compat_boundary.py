@@ -23,8 +23,8 @@ FILES = [file for package in ("pyfrc", "pyfrc_cli", "pyfrc_core") for file in so
 DOCUMENTED = {"_asdict", "_exit", "_fields", "_replace"}
 #: Files that may have names in text: they are of files, or what users call their methods.
 TEXT_OF_OTHERS = {"pyfrc_core/project/hidden_libraries.py", "pyfrc_core/deploy/program_imports.py"}
-#: What runs without pyfrc: the agent on a robot. And what is private to C's library, not to Python.
-ON_ITS_OWN = {"pyfrc_core/deploy/agent/system.py", "pyfrc_core/sim/c_exit.py"}
+#: What runs without pyfrc: the agent on a robot.
+ON_ITS_OWN = {"pyfrc_core/deploy/agent/system.py"}
 
 NAMED = {
     each.name

@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-from pyfrc_core.compat import cpython_private
+from pyfrc_core.compat import c_calls, cpython_private
 from pyfrc_core.compat.private_name import IncompatibleLibraryError, PrivateName
 from pyfrc_core.runtime.threads.locks import CooperativeLock
 
@@ -119,7 +119,7 @@ def test_an_exception_in_another_thread() -> None:
     thread.start()
     assert running.wait(60)
     assert thread.ident is not None
-    cpython_private.raise_in_thread(thread.ident, ZeroDivisionError)
+    c_calls.raise_in_thread(thread.ident, ZeroDivisionError)
     thread.join(60)
     assert raised, f"PyThreadState_SetAsyncExc raised nothing: {cpython_private.SET_ASYNC_EXCEPTION.used_for}"
 

@@ -87,14 +87,3 @@ def target_of(thread: Thread) -> Callable[..., Any] | None:
     """Return the function that a thread calls; None when it overrides `run`, has ended, or Python does not say."""
     target: Callable[..., Any] | None = getattr(thread, THREAD_TARGET.name, None)
     return target
-
-
-def raise_in_thread(ident: int, error: type[BaseException]) -> None:
-    """Raise an exception in another thread, as soon as that executes Python code.
-
-    :param ident: of the thread; one that has ended is left alone
-    :param error: a class, without arguments, since CPython instantiates it
-    """
-    import ctypes
-
-    SET_ASYNC_EXCEPTION.find()(ctypes.c_ulong(ident), ctypes.py_object(error))

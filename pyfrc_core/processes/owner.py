@@ -3,27 +3,15 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
-from functools import cache
-from typing import Any
 
 from .exit import exit_now
 
-_PR_SET_PDEATHSIG = 1
-
-
-@cache
-def _libc() -> Any:
-    import ctypes  # not where nothing is started
-
-    return ctypes.CDLL(None)
-
 
 def prepare_end_with() -> None:
-    """Load what `end_with` needs: forks of this process then have it."""
+    """Import what `end_with` needs: forks of this process then have it."""
     if sys.platform == "linux":
-        _libc().prctl  # noqa: B018 - looked up, and kept
+        from ..compat import c_calls  # noqa: F401
 
 
 def end_with(owner: int) -> None:
@@ -34,8 +22,10 @@ def end_with(owner: int) -> None:
     """
     if sys.platform != "linux":
         return
+    from ..compat.c_calls import kill_with_parent  # imported only where something is started
+
     if os.getppid() == owner:
-        _libc().prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        kill_with_parent()
         if os.getppid() == owner:
             return
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from functools import partial
@@ -15,7 +14,6 @@ from ..project import Project
 from ..runtime.scripts.inputs_file import load_inputs
 from ..runtime.scripts.script import trace_beside
 from ..text_files import check_writable
-from .c_exit import calling_at_c_exit
 from .engine.options import NT4_PORT, SimOptions
 from .engine.simulation import Simulation
 from .engine.watch import watching
@@ -67,8 +65,6 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         interruption = closing.enter_context(ending_like_ctrl_c())
         if not kind.prints:
             simulation.echo = partial(_echo, say)
-        if kind.opens_display:
-            closing.enter_context(calling_at_c_exit(partial(_end_without_display, simulation, files, say)))
         if request.watch:
             closing.enter_context(watching(simulation, front_end.saved))
         if page is not None:
@@ -119,26 +115,6 @@ def _echo(say: Callable[[str], object], text: str) -> None:
         say(text.encode("ascii", "backslashreplace").decode())
     except OSError:  # the terminal has gone
         pass
-
-
-def _end_without_display(simulation: Simulation, files: OutputFiles, say: Callable[[str], object]) -> None:
-    """Write the files of a simulation whose display has gone, and end the process. Nothing may be drawn here."""
-    from ..processes.exit import exit_now
-
-    with suppress(KeyboardInterrupt):
-        simulation.close()
-    problem = "error: the display has gone, and the window with it"
-    try:
-        written = files.write(simulation)
-    except Exception as wrong:
-        written, problem = [], f"{problem}. {wrong}"
-    with suppress(OSError):
-        for file in written:
-            _echo(say, f"wrote {file}\n")
-        sys.stdout.flush()
-        sys.stderr.write(f"{problem}\n")
-        sys.stderr.flush()
-    exit_now(2)
 
 
 def draw_script(project: Project, script: Path, picture: Path, until: float | None = None) -> None:

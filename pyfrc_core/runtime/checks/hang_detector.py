@@ -18,7 +18,8 @@ from contextlib import ExitStack, contextmanager, suppress
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from ...compat.cpython_private import allocate_lock, current_frames, raise_in_thread, start_bare_thread
+from ...compat.c_calls import raise_in_thread
+from ...compat.cpython_private import allocate_lock, current_frames, start_bare_thread
 from ...processes.exit import EXIT_HANGS, prepare_sudden_exit
 from ...processes.standstill import Standstill, StandstillNotice
 from ..exceptions import TestFroze

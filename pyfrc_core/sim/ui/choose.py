@@ -72,7 +72,6 @@ class FrontEndKind:
     :param make: makes it
     :param interactive: whether a person looks at it and drives
     :param needs_display: whether it opens a window
-    :param opens_display: whether this process opens the window, and ends when the display goes away
     :param prints: whether it prints the robot's output to the terminal itself; otherwise the command does
     :param extensions: the simulation extensions that it needs in the robot's process
     :param shows_network: whether it shows the values of NetworkTables
@@ -82,7 +81,6 @@ class FrontEndKind:
     make: Callable[[SimRequest, Say], FrontEnd]
     interactive: bool = True
     needs_display: bool = False
-    opens_display: bool = False
     prints: bool = False
     extensions: tuple[str, ...] = ()
     shows_network: bool = False
@@ -117,7 +115,7 @@ def _make_headless(request: SimRequest, say: Say) -> FrontEnd:
 
 FRONT_ENDS: dict[str, FrontEndKind] = {
     "web": FrontEndKind(_make_web, shows_network=True, is_served=True),
-    "tk": FrontEndKind(_make_tk, needs_display=True, opens_display=True),
+    "tk": FrontEndKind(_make_tk, needs_display=True),
     "wpilib": FrontEndKind(_make_wpilib, needs_display=True, prints=True, extensions=(WINDOW,)),
     "none": FrontEndKind(_make_headless, interactive=False, prints=True),
 }

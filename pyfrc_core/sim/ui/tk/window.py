@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import sys
 import time
 import tkinter as tk
 from collections import deque
@@ -11,6 +10,7 @@ from tkinter import ttk
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from ....compat.c_calls import draw_sharp_text
 from ....display import WITHOUT_DISPLAY
 from ....errors import UsageError
 from ....interruption import calling_when_ended
@@ -250,10 +250,7 @@ class Window:
 
 
 def _open(screen: str | None) -> tk.Tk:
-    if sys.platform == "win32":
-        import ctypes
-
-        ctypes.windll.shcore.SetProcessDpiAwareness(1)  # sharp text on high-density screens
+    draw_sharp_text()
     try:
         return tk.Tk(screenName=screen, className="pyfrc")
     except tk.TclError as wrong:
