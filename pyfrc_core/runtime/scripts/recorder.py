@@ -18,14 +18,14 @@ from .targets import MATCH_TIME, MODE, PACKET, REMAINING, Countdown, plugged
 
 _RECORDED_PACKAGES = ("pyfrc", "wpilib")
 
-#: Leaves that scripts contain in another form, such as `mode`.
-_TOLD_OTHERWISE = {"control.enabled", "control.autonomous", "control.test"}
+#: Leaves that scripts contain in another form: `mode`.
+_LEAVES_OF_THE_MODE = {"control.enabled", "control.autonomous", "control.test"}
 
 #: The types that entries of NetworkTables have for people. Of all others, only structs of doubles are recorded.
 _PLAIN = (bool, int, float, str)
 
 #: How many packets in a row, of which only the match time is recorded, end the reports from NetworkTables.
-_PACKETS_HEARD = 50
+_PACKETS_UNREAD = 50
 
 
 class Recorder:
@@ -47,7 +47,7 @@ class Recorder:
         self._steps: list[Step] = []
         self._forgotten = 0
         self._match_time = _MatchTime()
-        self._told_by_name = {MODE, *map(plugged, range(station.JOYSTICKS))}
+        self._named_targets = {MODE, *map(plugged, range(station.JOYSTICKS))}
         self._start_us = 0
         #: When the step that is being taken from outside began, if one is.
         self._stepping_since: int | None = None
@@ -87,7 +87,7 @@ class Recorder:
             self._left = station.match_time()
         else:
             writes.update(self._writes(self._look()))
-        self._match_time.hear(writes, left_before, self._left, at_us, stepping)
+        self._match_time.add_to(writes, left_before, self._left, at_us, stepping)
         if writes:
             self._steps.append(Step(at_us, writes))
 
@@ -155,14 +155,14 @@ class Recorder:
 
     def _writes(self, changes: list[Change]) -> Iterator[tuple[str, Any]]:
         for target, old, value in changes:
-            if target in _TOLD_OTHERWISE or target == REMAINING:
+            if target in _LEAVES_OF_THE_MODE or target == REMAINING:
                 continue
             if target.startswith("CAN[") and is_real_time(target):  # a thread of its library may have written it
                 continue
             if value == math.inf and target.startswith("encoder") and target.endswith(".period"):
                 # JSON has no infinity; the HAL keeps a rate as its period.
                 target, value = target.replace(".period", ".rate"), 0.0
-            if target.startswith(NETWORK) or target in self._told_by_name:
+            if target.startswith(NETWORK) or target in self._named_targets:
                 yield target, value
             elif self._hal_data.can_write(target):
                 yield from _parts(target, old, value)
@@ -177,7 +177,7 @@ class _MatchTime:
         #: What was last written to stand still, and may turn out to be the beginning of a countdown.
         self._last: dict[str, Any] = {}
 
-    def hear(self, writes: dict[str, object], before: float, left: float, at_us: int, stepping: bool) -> None:
+    def add_to(self, writes: dict[str, object], before: float, left: float, at_us: int, stepping: bool) -> None:
         """Add to `writes` what has to be said of the seconds that are left now."""
         if self._counting:
             if not stepping or left == self._countdown.left(at_us):
@@ -226,12 +226,12 @@ class _Network:
 
     def look(self) -> list[Change]:
         """Return the entries that have changed since the last look, in the order in which they were first heard of."""
-        if self._waiting >= _PACKETS_HEARD:
+        if self._waiting >= _PACKETS_UNREAD:
             self.skip()
         before: dict[str, Any] = {}
-        for target, value in self._heard():
+        for target, value in self._read_news():
             before.setdefault(target, self._found.get(target, MISSING))
-            self._hear(target, value)
+            self._note(target, value)
         changed = [target for target in before if target in self._found]
         if len(changed) > 1:
             places = {target: place for place, target in enumerate(self._found)}
@@ -244,16 +244,16 @@ class _Network:
 
     def skip(self) -> None:
         """Look without finding what has changed."""
-        paused = self._waiting >= _PACKETS_HEARD
+        paused = self._waiting >= _PACKETS_UNREAD
         self._waiting = 0
         if not paused:
-            for target, value in self._heard():
-                self._hear(target, value)
+            for target, value in self._read_news():
+                self._note(target, value)
             return
         before, self._found = self._found, {}
         self._news.resume()  # reports all current values
-        for target, value in self._heard():
-            self._hear(target, value)
+        for target, value in self._read_news():
+            self._note(target, value)
         self._found = {target: self._found[target] for target in before if target in self._found} | self._found
 
     def skip_later(self) -> None:
@@ -262,10 +262,10 @@ class _Network:
         After many of these calls, nothing is heard until then: `skip` gets all current values.
         """
         self._waiting += 1
-        if self._waiting == _PACKETS_HEARD:
+        if self._waiting == _PACKETS_UNREAD:
             self._news.pause()
 
-    def _heard(self) -> Iterator[tuple[str, Any]]:
+    def _read_news(self) -> Iterator[tuple[str, Any]]:
         """Return the news since the last look: targets, with their plain values or `MISSING`."""
         for update in self._news.read():
             value = update.value
@@ -279,7 +279,7 @@ class _Network:
                 is_plain = isinstance(value, _PLAIN) or all(isinstance(each, _PLAIN) for each in value)
                 yield NETWORK + update.name, value if is_plain else MISSING
 
-    def _hear(self, target: str, value: object) -> None:
+    def _note(self, target: str, value: object) -> None:
         if value is MISSING:
             self._found.pop(target, None)
         else:
