@@ -20,6 +20,8 @@ _HIDDEN = re.compile(
             r"NT: could not open persistent file .* \(this can be ignored .*\)",
             # Data logs: pyfrc prints their names.
             r"DataLog: Logging to '.*' \(.* free space\)",
+            # WPILib, of an opmode: what robot code does then is what a user looks for.
+            r"\*{10} (Creating|Starting|Ending|Closing) OpMode .* \*{10}",
             # Studica's navX, of the sensor that it simulates.
             r"Instantiating NavX on .*",
             r"navX-Sensor SimDevice created\.",
@@ -39,7 +41,17 @@ _THEN_TAB = re.compile(r"\[phoenix\] Library|\[phoenix-diagnostics\]")
 _TAB = "\t"
 
 #: What the lines above begin with.
-_STARTS = ("Not loading ", "Default ", "NT: ", "DataLog: ", "Instantiating NavX ", "navX-", "NavX: ", "[phoenix")
+_STARTS = (
+    "Not loading ",
+    "Default ",
+    "NT: ",
+    "DataLog: ",
+    "*" * 10,
+    "Instantiating NavX ",
+    "navX-",
+    "NavX: ",
+    "[phoenix",
+)
 #: Longer lines are none of these.
 _LONGEST = 400
 

@@ -16,6 +16,7 @@ from typing import Any
 from .._version import requirement
 from ..errors import UsageError
 from ..project.robot_files import RobotFiles
+from ..season import CURRENT
 from ..text_files import write_whole
 from ..wording import counted, table
 from .figures import WHOLE_LOOP, Figures, Measurand, Overrun, distribution
@@ -90,7 +91,7 @@ def _loop(times: Mapping[Measurand, array[int]], period_ns: int) -> Iterator[str
     if 0 < p95 < period:
         factor = _rounded_down(period / p95)
         yield f"  19 of 20 turns would be in time on a computer that is up to {factor} times slower."
-    yield "  A roboRIO is slower than this computer. By how much has not been measured."
+    yield f"  A {CURRENT.controller.name} is slower than this computer. By how much has not been measured."
 
 
 def _is_periodic(what: Measurand) -> bool:

@@ -12,7 +12,7 @@ from functools import partial
 from types import FunctionType
 from typing import Any
 
-from ..project.robot_files import RobotFiles
+from ..project.robot_files import RobotFiles, is_pyfrc
 from ..runtime.patch_table import PatchTable
 from ..runtime.patches.notifier import PeriodicThread
 from ..runtime.threads.robot_threads import RobotThreads
@@ -93,7 +93,7 @@ class UserFunctions:
         def schedule(loop: TimedLoop, call: Callable[[], object], first_due_us: int, period_us: int) -> Periodic:
             if getattr(call, "__name__", "") == robots.LOOP_FUNCTION.name:
                 call = self._stopwatch.timed(self._wrap(call), WHOLE_LOOP, period_us * 1000)
-            else:
+            elif (code := _code_of(call)) is None or not is_pyfrc(code.co_filename):  # else it calls a timed method
                 call = self._timed(call, "periodic", period_ns=period_us * 1000)
             return real(loop, call, first_due_us, period_us)
 

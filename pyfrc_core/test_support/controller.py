@@ -20,12 +20,13 @@ from ..runtime.scripts.inputs_file import load_inputs
 from ..runtime.scripts.player import Player
 from ..runtime.seeds import seed_generators
 from ..wpi import station
+from ..wpi.opmodes import mode_name
 from .fake_time import FakeTime
 
 if TYPE_CHECKING:
     from ..invariants.load import Invariant
     from ..project import Project
-    from ..wpi.opmodes import Opmode
+    from ..wpi.opmodes import OpmodeOfTests
 
 OnStep: TypeAlias = Callable[[float], object]
 Instance = TypeVar("Instance")
@@ -98,16 +99,17 @@ class TestController:
         """Put the robot in test mode (the robot mode, not related to unit testing), with the next packet."""
         station.set_mode(test=True, enabled=enabled)
 
-    def set_opmode(self, opmode: str | Opmode, mode: str = "") -> None:
+    def set_opmode(self, opmode: str | OpmodeOfTests, mode: str = "") -> None:
         """Select an opmode of an `OpModeRobot`, and the robot's mode that it is for, with the next packet.
 
         The robot is enabled, or disabled, as before. WPILib has opmodes from 2027 on.
 
         :param opmode: its name, or what the fixture `opmode` gives
-        :param mode: 'autonomous', 'teleop' or 'test', if opmodes of several modes have this name
+        :param mode: 'autonomous', 'teleop' or 'utility', if opmodes of several modes have this name
         :raises UsageError: when the robot has not published such an opmode, or several
         """
         name, mode = (opmode, mode) if isinstance(opmode, str) else (opmode.name, opmode.mode)
+        mode = mode_name(mode)
         published = station.published_opmodes()
         found = [each for each in published if each.name == name and mode in ("", each.mode)]
         if len(found) == 1:
@@ -259,7 +261,7 @@ class TestController:
         seconds: float,
         enabled: bool,
         autonomous: bool | None = None,
-        opmode: str | Opmode | None = None,
+        opmode: str | OpmodeOfTests | None = None,
         assert_alive: bool = True,
     ) -> float:
         """Run the robot for some time in a mode, with driver-station packets. Give either `autonomous` or `opmode`.

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+import pytest
+
+from ..errors import UsageError
 from ..processes.call import run_in_subprocess
 from ..runtime.checks.hang_detector import HangDetector
 from ..runtime.loading import load_robot
@@ -15,6 +19,48 @@ if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
     from ..project import Project
     from ..wpi.opmodes import Opmode
+
+
+#: Limits a test with the fixture `opmode` to the opmodes that it names: ``@pytest.mark.opmode("Drive")``.
+MARK = "opmode"
+
+
+def run_for_each(metafunc: pytest.Metafunc, published: Callable[[], tuple[Opmode, ...]]) -> None:
+    """Make a test that has the fixture `opmode` one test for each opmode, or for each that its mark names.
+
+    :param published: returns the opmodes of the robot
+    :raises UsageError: when there is no opmode of a name, or a mark without the fixture
+    """
+    named = [name for mark in metafunc.definition.iter_markers(MARK) for name in mark.args]
+    if "opmode" not in metafunc.fixturenames:
+        if metafunc.definition.get_closest_marker(MARK) is not None:
+            raise UsageError(
+                f"{metafunc.function.__name__} has the mark opmode, but no argument opmode",
+                where=_place(metafunc),
+                remedy="Give it the argument, and pass that on: control.step_timing(..., opmode=opmode).",
+            )
+        return
+    if any("opmode" in str(mark.args[:1]) for mark in metafunc.definition.iter_markers("parametrize")):
+        return  # the test's own choice
+    opmodes = published()
+    wrong = sorted(set(named) - {each.name for each in opmodes})
+    if wrong:
+        there = ", ".join(repr(each.name) for each in opmodes) or "none"
+        raise UsageError(
+            f"{metafunc.function.__name__} is marked with the opmode {wrong[0]!r}: the robot has published {there}",
+            where=_place(metafunc),
+        )
+    chosen = [each for each in opmodes if not named or each.name in named]
+    metafunc.parametrize(
+        "opmode",
+        [pytest.param(station.opmode_of_tests(each), id=f"{each.mode}-{each.name}") for each in chosen],
+        indirect=True,
+    )
+
+
+def _place(metafunc: pytest.Metafunc) -> str:
+    file, line, _ = metafunc.definition.location
+    return f"{file}:{(line or 0) + 1}"
 
 
 def published_opmodes(project: Project) -> tuple[Opmode, ...]:

@@ -41,7 +41,8 @@ from ..runtime.scripts.files import recorded, traced
 from ..runtime.seeds import seed_generators
 from ..runtime.threads.cooperative import line_of_thread
 from ..runtime.threads.robot_threads import RobotThread
-from . import controller
+from ..wpi import robots
+from . import controller, opmodes
 from .controller import TestController
 from .device_misuse import warning_of_misuse
 from .fake_time import FakeTime
@@ -53,7 +54,7 @@ if TYPE_CHECKING:
     from ..physics.core import PhysicsInterface
     from ..physics.engine import Physics, PhysicsModule
     from ..processes.crash_report import CrashLog
-    from ..wpi.opmodes import Opmode
+    from ..wpi.opmodes import Opmode, OpmodeOfTests
 
 _READY_MADE_DIRECTORY = Path(__file__).parents[1] / "tests"
 
@@ -151,21 +152,17 @@ class PyFrcPlugin(WatchedTests):
         return _robot_run.construct(self.robot_class())
 
     @pytest.fixture
-    def opmode(self, request: pytest.FixtureRequest) -> Opmode:
+    def opmode(self, request: pytest.FixtureRequest) -> OpmodeOfTests:
         """One of the opmodes that your robot publishes: the test runs once for each of them."""
-        opmode: Opmode = request.param
+        opmode: OpmodeOfTests = request.param
         return opmode
 
     @cached_property
     def opmodes(self) -> tuple[Opmode, ...]:
         """What the robot publishes."""
-        from ..wpi import robots
-
         if self._robot_class is not None and not robots.can_have_opmodes(self._robot_class):
             return ()
-        from .opmodes import published_opmodes
-
-        return published_opmodes(self.project)
+        return opmodes.published_opmodes(self.project)
 
     @pytest.fixture
     def robot_file(self) -> str:
@@ -180,8 +177,6 @@ class PyFrcPlugin(WatchedTests):
     @pytest.fixture
     def wpilib(self) -> ModuleType:
         """The `wpilib` module, for backwards compatibility."""
-        from ..wpi import robots
-
         return robots.library()
 
     @pytest.fixture
@@ -242,6 +237,9 @@ class PyFrcPlugin(WatchedTests):
 
     # -- hooks ------------------------------------------------------------------------------------------------
 
+    def pytest_configure(self, config: pytest.Config) -> None:
+        config.addinivalue_line("markers", f"{opmodes.MARK}(names): run with these opmodes only")
+
     def pytest_pycollect_makemodule(self, module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
         """Name the ready-made tests after the module that users import, wherever pyfrc is installed."""
         if module_path.parent != _READY_MADE_DIRECTORY:
@@ -256,10 +254,8 @@ class PyFrcPlugin(WatchedTests):
         try:
             if "gamedata" in metafunc.fixturenames:
                 metafunc.parametrize("gamedata", self.project.game_specific_messages or [""])
-            elif "opmode" in metafunc.fixturenames:
-                published = [pytest.param(each, id=f"{each.mode}-{each.name}") for each in self.opmodes]
-                metafunc.parametrize("opmode", published, indirect=True)
-            elif "_physics" in metafunc.fixturenames and self._physics_module is not None:
+            opmodes.run_for_each(metafunc, lambda: self.opmodes)
+            if "_physics" in metafunc.fixturenames and self._physics_module is not None:
                 self.project.sim_config  # noqa: B018
         except PyfrcError as wrong:
             raise pytest.Collector.CollectError(str(wrong)) from None

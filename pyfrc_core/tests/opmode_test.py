@@ -7,13 +7,13 @@ from typing import Any
 from ..season import CURRENT
 from ..test_support.controller import TestController
 from ..test_support.fake_time import FakeTime
-from ..wpi.opmodes import Opmode
+from ..wpi.opmodes import OpmodeOfTests
 
 #: How long it is disabled before and after, in seconds.
 _DISABLED_SECONDS = 0.5
 
 
-def test_opmode(control: TestController, fake_time: FakeTime, robot: Any, opmode: Opmode) -> None:
+def test_opmode(control: TestController, fake_time: FakeTime, robot: Any, opmode: OpmodeOfTests) -> None:
     """Run an opmode as long as autonomous mode lasts, disabled before and after."""
     __tracebackhide__ = True
     with control.run_robot():

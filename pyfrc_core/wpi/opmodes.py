@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol
+
+#: The robot's modes that have opmodes, by WPILib's numbers for them.
+MODES = {1: "autonomous", 2: "teleop", 3: "test"}
+_WPILIBS_NAMES = {"teleoperated": "teleop", "utility": "test"}
 
 
 class Opmode(NamedTuple):
@@ -17,3 +21,20 @@ class Opmode(NamedTuple):
     id: int
     group: str = ""
     description: str = ""
+
+
+class OpmodeOfTests(Protocol):
+    """What the fixture `opmode` gives: that of WPILib's own tests, with WPILib's enumeration of modes."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def mode(self) -> Any: ...
+
+
+def mode_name(mode: Any) -> str:
+    """Return the name of a mode, from that or WPILib's name for it, or a member of WPILib's enumeration."""
+    if isinstance(mode, str):
+        return _WPILIBS_NAMES.get(mode.lower(), mode.lower())
+    return MODES.get(int(mode), "")

@@ -11,6 +11,7 @@ from typing import Any
 from ...project.robot_files import RobotFiles
 from ...runtime.clock import PACKET_US
 from ...runtime.robot import RobotRun
+from ...season import CURRENT
 from ...wording import counted
 from .growth import NETWORK_TABLES, Containers, Growth, Growths
 from .unfinished_commands import UnfinishedCommands
@@ -157,5 +158,5 @@ class CampaignHints:
             yield (
                 f"several loops of a match need {slow.loop_seconds * 1000:.0f} ms of processor time or more on this "
                 f"computer, and a period is {slow.period * 1000:.0f} ms "
-                f"({counted(len(self._slow), 'match', 'matches')}): a roboRIO needs many times as long"
+                f"({counted(len(self._slow), 'match', 'matches')}): a {CURRENT.controller.name} needs longer"
             )

@@ -8,7 +8,7 @@ that waits is looked at.
 from __future__ import annotations
 
 from collections.abc import Callable
-from types import FrameType
+from types import CodeType, FrameType
 from typing import TYPE_CHECKING
 
 from ...compat.cpython_private import current_frames, get_frame
@@ -24,6 +24,12 @@ if TYPE_CHECKING:
 #: Functions of ours that call a loop's body: what is further out on the stack is not part of the turn.
 _LOOP_FUNCTION = robots.LOOP_FUNCTION.name
 _CALLERS = {"_turn", _LOOP_FUNCTION}
+
+
+def _name_of(code: CodeType) -> str:
+    """Return the name of a periodic function: of an opmode's, with its class."""
+    with_class: str = code.co_qualname if code.co_name in names.OF_AN_OPMODE else code.co_name
+    return with_class
 
 
 class LoopWaitsError(NamesItsPlace):
@@ -166,6 +172,6 @@ class LoopLimit:
                 file = self._files.relative(code.co_filename)
                 place = place or f"{file}:{frame.f_lineno}"
                 begins_at = begins_at or f"{file}:{code.co_firstlineno}"
-                function = code.co_name
+                function = _name_of(code)
             frame = frame.f_back
         return LoopWaitsError(place, begins_at, function or "the robot's loop", seconds)

@@ -84,9 +84,14 @@ def _in_class(cls: type, project: Project) -> Iterator[CodeWarning]:
             )
         if name in known or name.startswith("__"):
             continue
+        if (instead := names.GONE.get(_plain(name))) is not None:
+            where = _place(method.__code__, project)
+            yield CodeWarning(where, f"WPILib does not call {cls.__name__}.{name}", f"Move its lines to {instead}.")
+            continue
         meant = _nearest(name, missing)
         if meant is not None and not _is_referred_to(name, project):
-            season = " (snake_case names are those of WPILib 2027)" if "_" in name.strip("_") else ""
+            spelling, whose = names.OTHER_SPELLING
+            season = f" ({whose})" if spelling.search(name) else ""
             yield CodeWarning(
                 _place(method.__code__, project),
                 f"WPILib never calls {cls.__name__}.{name}: did you mean {meant}?{season}",
@@ -111,7 +116,7 @@ def _nearest(name: str, known: set[str]) -> str | None:
     """Return the most probable correct name, if there is one."""
     plain = _plain(name)
     allowed = {each: 2 if len(each) >= 12 else 1 if len(each) >= 7 else 0 for each in known}
-    distances = {each: _distance(plain, each.strip("_").lower()) for each in known}
+    distances = {each: _distance(plain, each.replace("_", "").lower()) for each in known}
     close = [each for each in sorted(known) if distances[each] <= allowed[each]]
     return min(close, key=distances.__getitem__, default=None)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 #: The libraries whose classes robot classes derive from.
 LIBRARIES = ("wpilib", "commands2", "magicbot")
@@ -31,6 +32,8 @@ _OF_ALL_ROBOTS = frozenset({*OF_A_LOOP, "driverStationConnected", "createObjects
 END_CONDITION = "isFinished"
 #: The methods of commands, subsystems and magicbot's components that libraries call.
 OF_A_COMMAND = frozenset({"initialize", "execute", "end", END_CONDITION})
+#: The methods of an opmode: there are none before 2027.
+OF_AN_OPMODE: frozenset[str] = frozenset()
 OF_A_SUBSYSTEM = frozenset({"periodic", "simulationPeriodic"})
 OF_A_COMPONENT = frozenset({"execute", "on_enable", "on_disable"})
 
@@ -75,3 +78,8 @@ SYNONYMS = (
     (re.compile("^(disable)(?=init|periodic|exit)"), "disabled"),
     (re.compile("^(utility)(?=init|periodic|exit)"), "test"),
 )
+
+#: What another season's spelling of a name has, and whose it is.
+OTHER_SPELLING = re.compile("(?<=[^_])_(?=[^_])"), "snake_case names are those of WPILib 2027"
+#: The methods of earlier seasons that are not called any more, in lower case, and where their lines go.
+GONE: Mapping[str, str] = {}

@@ -39,7 +39,7 @@ from wpilib import DriverStation, MotorSafety
 from wpilib.simulation import DriverStationSim
 
 from ...errors import UsageError
-from ..opmodes import Opmode
+from ..opmodes import Opmode, OpmodeOfTests
 
 #: The four modes that `TestController.get_mode` returns.
 Mode: TypeAlias = Literal["disabled", "autonomous", "teleop", "test"]
@@ -213,6 +213,11 @@ def set_game_message(message: str) -> None:
 def published_opmodes() -> list[Opmode]:
     """Return the opmodes that the robot has published: there are none before 2027."""
     return []
+
+
+def opmode_of_tests(opmode: Opmode) -> OpmodeOfTests:
+    """Return what tests get for an opmode."""
+    return opmode
 
 
 def select_opmode(opmode: Opmode) -> None:

@@ -43,7 +43,7 @@ SUBSYSTEM, REGISTERING = "commands2.subsystem.Subsystem", frozenset({"__init__",
 REFRESH = "wpilib.DriverStationBackend.refresh_data()"
 
 #: All methods that robot code overrides, besides those of the modes.
-OVERRIDDEN = _OF_ALL_ROBOTS | OF_A_COMMAND | {"periodic", "runs_when_disabled", "get_interruption_behavior"}
+OVERRIDDEN = _OF_ALL_ROBOTS | OF_A_COMMAND | OF_AN_OPMODE | {"runs_when_disabled", "get_interruption_behavior"}
 
 #: The tables of NetworkTables whose entries are settings, and those that only WPILib itself writes.
 SETTINGS = ("/SmartDashboard/", "/Shuffleboard/", "/Preferences/")
@@ -70,8 +70,13 @@ ASKED_BY = {
 
 #: Words that are written for a mode's name: those of other seasons, and abbreviations.
 SYNONYMS = (
-    (re.compile("^auto(n|nomus|nomos)?(?=_(init|periodic|exit))"), "autonomous"),
-    (re.compile("^(teleoperated|tele)(?=_(init|periodic|exit))"), "teleop"),
-    (re.compile("^(disable)(?=_(init|periodic|exit))"), "disabled"),
-    (re.compile("^(test)(?=_(init|periodic|exit))"), "utility"),
+    (re.compile("^auto(n|nomus|nomos)?(?=init|periodic|exit)"), "autonomous"),
+    (re.compile("^(teleoperated|tele)(?=init|periodic|exit)"), "teleop"),
+    (re.compile("^(disable)(?=init|periodic|exit)"), "disabled"),
+    (re.compile("^(test)(?=init|periodic|exit)"), "utility"),
 )
+
+#: What another season's spelling of a name has, and whose it is.
+OTHER_SPELLING = re.compile("[A-Z]"), "camelCase names are those of WPILib 2026"
+#: The methods of earlier seasons that are not called any more, in lower case, and where their lines go.
+GONE = {"robotinit": "__init__, after super().__init__()"}

@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeGuard
+from weakref import WeakKeyDictionary
 
 import hal
 import wpilib
@@ -79,6 +80,16 @@ def can_have_opmodes(robot_class: type[Any]) -> bool:
     return issubclass(robot_class, wpilib.OpModeRobotBase)
 
 
+#: The periods that robots with opmodes were made with: WPILib does not return them.
+_periods: WeakKeyDictionary[wpilib.OpModeRobotBase, float] = WeakKeyDictionary()
+
+
+def note_period(robot: wpilib.OpModeRobotBase, period: float | None = None) -> None:
+    """Keep the period of a robot with opmodes, from the arguments of its constructor."""
+    if period is not None:
+        _periods[robot] = float(period)
+
+
 def period(robot: object, default: float) -> float:
     """Return the seconds between two turns of the robot's loop.
 
@@ -86,6 +97,8 @@ def period(robot: object, default: float) -> float:
     """
     if isinstance(robot, wpilib.IterativeRobotBase):
         return robot.get_period()
+    if isinstance(robot, wpilib.OpModeRobotBase):
+        return _periods.get(robot, default)
     return float(getattr(robot, "control_loop_wait_time", default))
 
 

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import Literal, NamedTuple, TypeAlias
 
 import hal
+import wpilib.testing
 from hal.simulation import (
     get_driver_station_ds_attached,
     get_driver_station_e_stop,
@@ -33,7 +34,8 @@ from wpilib import DriverStationBackend, MatchState, MotorSafety, RobotState
 from wpilib.simulation import DriverStationSim
 
 from ...errors import UsageError
-from ..opmodes import Opmode
+from ..opmodes import MODES as MODES_OF_OPMODES
+from ..opmodes import Opmode, OpmodeOfTests
 
 #: The four modes that `TestController.get_mode` returns; "test" is WPILib's utility mode.
 Mode: TypeAlias = Literal["disabled", "autonomous", "teleop", "test"]
@@ -271,25 +273,23 @@ def set_game_message(message: str) -> None:
 # -- opmodes -----------------------------------------------------------------------------------------------------------
 
 
-_MODES_OF_OPMODES = {
-    int(RobotMode.AUTONOMOUS): "autonomous",
-    int(RobotMode.TELEOPERATED): "teleop",
-    int(RobotMode.UTILITY): "test",
-}
-
-
 def published_opmodes() -> list[Opmode]:
     """Return the opmodes that the robot has published."""
     return [
         Opmode(
             each.name,
-            _MODES_OF_OPMODES.get(int(hal.opmode_get_robot_mode(each.id)), ""),
+            MODES_OF_OPMODES.get(int(hal.opmode_get_robot_mode(each.id)), ""),
             each.id,
             each.group,
             each.description,
         )
         for each in DriverStationSim.get_opmode_options()
     ]
+
+
+def opmode_of_tests(opmode: Opmode) -> OpmodeOfTests:
+    """Return what tests get for an opmode: what WPILib's own fixture gives."""
+    return wpilib.testing.OpMode(RobotMode(int(hal.opmode_get_robot_mode(opmode.id))), opmode.name)
 
 
 def selected_opmode() -> int:
@@ -326,7 +326,7 @@ def select_opmode_named(name: str) -> None:
         if not found:
             there = ", ".join(repr(each.name) for each in published) or "none"
             raise UsageError(f"there is no opmode {name!r}: the robot has published {there}")
-        _choose(next((each for each in found if each.mode == _MODES_OF_OPMODES.get(mode)), found[0]))
+        _choose(next((each for each in found if each.mode == MODES_OF_OPMODES.get(mode)), found[0]))
     DriverStationSim.set_opmode(_chosen.get(mode, 0))
 
 

@@ -43,11 +43,15 @@ class _Callbacks:
         self._loop, self._opmode = loop, weakref.ref(opmode)
         self.selected = station.selected_opmode()
         self.started = False
+        # Those of `get_callbacks` are wrapped: what runs has no name, and no line.
+        callbacks = opmode.get_callbacks()
+        own = _added.pop(opmode, ())
+        functions = own if len(own) == len(callbacks) else [each.func for each in callbacks]
         self._scheduled: list[Periodic] = [
             loop.schedule(
-                each.func, timing.robot_us(each.expiration_time // _MICROSECOND * 1_000), each.period // _MICROSECOND
+                function, timing.robot_us(each.expiration_time // _MICROSECOND * 1_000), each.period // _MICROSECOND
             )
-            for each in opmode.get_callbacks()
+            for function, each in zip(functions, callbacks, strict=True)
         ]
         opmode.start = self._watched(start, after=self._on_start)
         opmode.end = self._watched(end, before=self.remove)
@@ -89,6 +93,9 @@ class _Callbacks:
         return watched
 
 
+#: The functions that opmodes have added, until they are scheduled.
+_added: weakref.WeakKeyDictionary[Any, list[Callable[[], object]]] = weakref.WeakKeyDictionary()
+
 #: The callbacks of the opmode that was made last.
 _current: _Callbacks | None = None
 
@@ -114,6 +121,7 @@ def look() -> None:
 def patches() -> list[Patch]:
     """Return the names of WPILib's to replace."""
     real: Callable[..., None] = wpilib.OpModeRobotBase.add_opmode_factory
+    real_add: Callable[..., None] = wpilib.PeriodicOpMode.add_periodic
 
     def add_opmode_factory(robot: Any, *args: Any, **kwargs: Any) -> None:
         *rest, factory = [*args, *kwargs.values()]  # it is the last one of each overload
@@ -127,4 +135,12 @@ def patches() -> list[Patch]:
         else:
             real(robot, *rest, make)
 
-    return [Patch(wpilib.OpModeRobotBase, "add_opmode_factory", add_opmode_factory)]
+    def add_periodic(opmode: Any, callback: Callable[[], object], *args: Any, **kwargs: Any) -> None:
+        __tracebackhide__ = True
+        real_add(opmode, callback, *args, **kwargs)
+        _added.setdefault(opmode, []).append(callback)
+
+    return [
+        Patch(wpilib.OpModeRobotBase, "add_opmode_factory", add_opmode_factory),
+        Patch(wpilib.PeriodicOpMode, "add_periodic", add_periodic),
+    ]

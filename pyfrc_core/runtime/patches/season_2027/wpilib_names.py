@@ -46,6 +46,7 @@ def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
             wpilib.Encoder, lambda made, *args, **kwargs: encoder_channels.note(made.get_fpga_index(), *args, **kwargs)
         ),
         noting(wpilib.OnboardIMU, onboard_imu.note),
+        noting(wpilib.OpModeRobotBase, robots.note_period),
         Patch(wpilib.RobotController, "is_browned_out", _is_browned_out),
         *log_names.patches(),
         *noise.patches("create_kitbot_sim"),
