@@ -33,10 +33,9 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None) 
     Exit codes: 0 the files exist, written now or before,
     1 the robot's code failed, or a test with the new physics.py, 2 wrong usage.
     """
+    project = chosen_project(directory, main, robot_class)
     with collector_paused():
         from pyfrc_core.physics.create.files import create_physics
-
-    project = chosen_project(directory, main, robot_class)
     done = create_physics(project)
     if done.problem:
         click.secho(f"warning: the joysticks could not be tested: {done.problem}", fg="yellow", err=True)

@@ -136,6 +136,7 @@ def command(
     for each in directories:
         if not each.is_dir():
             raise click.BadParameter(f"there is no directory {each}", param_hint="DIRECTORIES")
+    project = chosen_project(directory, main, robot_class)
     with collector_paused():
         from pyfrc_core.compat.unrepeatable import explain_unrepeatable
         from pyfrc_core.fuzz.campaign.campaign import run_campaign
@@ -143,8 +144,6 @@ def command(
         from pyfrc_core.fuzz.campaign.stream import Shard
         from pyfrc_core.processors import usable_processors
         from pyfrc_core.runtime.scripts.inputs_file import load_inputs
-
-    project = chosen_project(directory, main, robot_class)
     if merge:
         _merge(project, directories)
         return

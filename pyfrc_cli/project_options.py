@@ -46,14 +46,14 @@ def chosen_project(directory: Path | None, main: Path | None, robot_class: str |
 
     :raises ProjectError: when there is none, one of its files hides a library, or WPILib is of another season
     """
-    from pyfrc_core.config.robotpy import load_robotpy_version
+    from pyfrc_core.config.robotpy import load_season_settings
     from pyfrc_core.project import find_project
     from pyfrc_core.project.hidden_libraries import refuse_hidden_libraries
     from pyfrc_core.season import installed_wpilib, refuse_other_season
 
     project = find_project(directory, main, robot_class)
     refuse_hidden_libraries(project.root, project.main_file)
-    refuse_other_season(installed_wpilib(), *load_robotpy_version(project.pyproject))
+    refuse_other_season(installed_wpilib(), load_season_settings(project.pyproject))
     return project
 
 

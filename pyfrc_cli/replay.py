@@ -52,11 +52,10 @@ def command(
     Exit codes: 0 the trace equals the recorded one, or none was recorded, or a vendor's devices do not repeat;
     1 it differs, or the robot's code failed; 2 wrong usage, or no such script.
     """
+    project = chosen_project(directory, main, robot_class)
     with collector_paused():
         from pyfrc_core.compat.unrepeatable import explain_unrepeatable
         from pyfrc_core.replay import replay
-
-    project = chosen_project(directory, main, robot_class)
     if picture is not None:
         from pyfrc_core.sim.simulate import draw_script
 

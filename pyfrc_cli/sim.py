@@ -96,8 +96,7 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None, 
     \b
     Exit codes: 0 all went well, 1 the robot's code failed, 2 wrong usage.
     """
+    project = chosen_project(directory, main, robot_class)
     with collector_paused():
         from pyfrc_core.sim.simulate import SimRequest, simulate
-
-    project = chosen_project(directory, main, robot_class)
     sys.exit(simulate(project, SimRequest(**request, quiet=verbosity().quiet), partial(click.echo, nl=False)))

@@ -1,4 +1,7 @@
-"""The version: the season's year, then the release within it, as WPILib and robotpy number theirs."""
+"""The version: the year of the season in which it is released, then the release within it.
+
+Which seasons' robots it runs is in `season.SEASONS`.
+"""
 
 __version__ = "2026.1.0"
 

@@ -154,7 +154,7 @@ def _values(template: Template, team: int | None) -> Mapping[str, str]:
     return {
         "components": _toml_array(template.extras),
         "requires": _toml_array([package for package in template.packages if package not in by_extras]),
-        "packages": "\n".join((requirement(), *template.packages)),
+        "packages": "\n".join((requirement(), CURRENT.requirement, *template.packages)),
         "team_number": number,
         "robotpy_version": f'"{CURRENT.packages.wpilib}"',
     }

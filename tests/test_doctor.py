@@ -82,7 +82,7 @@ def test_python_itself(version: tuple[int, int], bits: int, status: str) -> None
 
 def test_no_wpilib() -> None:
     (finding,) = problems(check_wpilib(Installed([])))
-    assert finding.remedy == "pip install wpilib"
+    assert finding.remedy == 'Install the one of 2026: pip install "wpilib>=2026.2.2,<2027"'
 
 
 @pytest.mark.parametrize(

@@ -116,10 +116,10 @@ def test_a_robot_of_another_user_is_not_run(make_project: MakeProject, name: str
 
 
 def other_season(directory: Path) -> dict[str, str]:
-    """Make a `wpilib` of the next season with a test tool of its own, and return the environment that has it."""
-    info = directory / "wpilib-2027.0.0a7.dist-info"
+    """Make a `wpilib` of an unknown season with a test tool of its own, and return the environment that has it."""
+    info = directory / "wpilib-2028.0.0a1.dist-info"
     for file, text in {
-        info / "METADATA": "Metadata-Version: 2.1\nName: wpilib\nVersion: 2027.0.0a7\n",
+        info / "METADATA": "Metadata-Version: 2.1\nName: wpilib\nVersion: 2028.0.0a1\n",
         directory / "wpilib/__init__.py": "class TimedRobot:\n    pass\n",
         directory / "hal/__init__.py": "",
         directory / "their_tool.py": "import pytest\n\n\n@pytest.fixture\ndef control():\n    return 'theirs'\n\n\n"
@@ -131,7 +131,7 @@ def other_season(directory: Path) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("args", [["-p", "their_tool"], ["-p", "their_tool", "-q"]])
-def test_beside_another_season_it_is_as_if_not_installed(
+def test_beside_an_unknown_season_it_is_as_if_not_installed(
     make_project: MakeProject, tmp_path: Path, args: list[str]
 ) -> None:
     test = "def test_theirs(control, robot):\n    assert control == robot == 'theirs'\n"
@@ -139,7 +139,7 @@ def test_beside_another_season_it_is_as_if_not_installed(
     result = project.run(*args, env=other_season(tmp_path / "site"), program="pytest", cold=True)
     assert result.code == 0, result.output
     lines = [line for line in result.output.splitlines() if "pyfrc:" in line]
-    wanted = ["pyfrc: not active: it is for wpilib 2026, and 2027.0.0a7 is installed"]
+    wanted = ["pyfrc: not active: wpilib 2028.0.0a1 is installed here, and this pyfrc runs robots of 2026 and 2027"]
     assert lines == ([] if "-q" in args else wanted)
 
 

@@ -12,6 +12,7 @@ from packaging.requirements import Requirement
 
 from pyfrc_core._version import __version__
 from pyfrc_core.deploy.targets import controller_of
+from pyfrc_core.errors import UsageError
 from pyfrc_core.runtime.clock import KICKOFF
 from pyfrc_core.season import CURRENT, FIELDS, SEASONS
 
@@ -48,23 +49,39 @@ def test_robot_time_begins_at_kickoff() -> None:
     assert KICKOFF == 1_768_064_400  # recordings and hashes of this season depend on it
 
 
-def test_the_version_is_of_the_season() -> None:
-    assert __version__.split(".")[0] == str(CURRENT.year)
+def test_the_version_is_of_a_season() -> None:
+    assert int(__version__.split(".")[0]) in SEASONS
 
 
 def test_wpilib_is_asked_for_as_new_projects_do() -> None:
-    wpilib = requirement("wpilib").specifier
-    assert wpilib.contains(CURRENT.packages.wpilib)
-    assert not wpilib.contains(f"{CURRENT.year + 1}.1.0")
+    for name in ("wpilib", "robotpy-halsim-gui"):
+        wpilib = requirement(name).specifier
+        for season in SEASONS.values():
+            assert wpilib.contains(season.packages.wpilib, prereleases=True)
+            asked = Requirement(season.requirement).specifier
+            assert asked.contains(season.packages.wpilib)  # a preview too, without --pre
+            assert [year for year in SEASONS if asked.contains(f"{year}.9.9")] == [season.year]
+        for other in (f"{max(SEASONS) + 1}.0.0a1", f"{max(SEASONS) + 1}.1.0", f"{min(SEASONS) - 1}.3.2"):
+            assert not wpilib.contains(other, prereleases=True)
     for project_asks in map(Requirement, (CURRENT.packages.commands, CURRENT.packages.utilities)):
         (newest,) = [each.version for each in requirement(project_asks.name).specifier if each.operator == ">="]
         assert project_asks.specifier.contains(newest)
 
 
+def test_without_pre_pip_takes_wpilib_2026() -> None:
+    """A preview that the requirement named as its lower bound would be taken."""
+    wpilib = requirement("wpilib").specifier
+    offered = ["2025.3.2", "2026.2.2", "2027.0.0a2", "2027.0.0a6.post4", "2027.0.0a7", "2027.0.0b1", "2028.0.0a1"]
+    assert not wpilib.prereleases
+    assert [*wpilib.filter(offered, prereleases=False)] == ["2026.2.2"]
+    assert [*wpilib.filter(offered, prereleases=True)] == ["2026.2.2", "2027.0.0a7", "2027.0.0b1"]
+
+
 def test_the_robotpy_command_finds_our_commands() -> None:
-    assert CURRENT.cli_plugins in PYPROJECT["project"]["entry-points"]
+    assert all(season.cli_plugins in PYPROJECT["project"]["entry-points"] for season in SEASONS.values())
 
 
-def test_a_deploy_knows_the_controller_of_each_season() -> None:
-    for season in SEASONS.values():
-        assert controller_of(season).layout.home == season.controller.home
+def test_a_deploy_knows_the_controller_of_2026_and_says_that_it_does_not_know_the_next() -> None:
+    assert controller_of(SEASONS[2026]).layout.home == SEASONS[2026].controller.home
+    with pytest.raises(UsageError, match=r"cannot deploy to a SystemCore yet\n.*python -m robotpy deploy"):
+        controller_of(SEASONS[2027])

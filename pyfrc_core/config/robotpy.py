@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import SettingsError, nearest
+from ..season import SEASONS, SeasonSetting, year_of
 from .toml_file import TomlFile
 
 if TYPE_CHECKING:
@@ -20,6 +21,9 @@ COMPONENTS: dict[str, tuple[str, ...]] = {
     "cscore": ("robotpy-cscore",),
 }
 COMPONENTS["all"] = tuple(package for packages in COMPONENTS.values() for package in packages)
+
+#: How the names of packages begin whose versions begin with a season's year.
+_NUMBERED_BY_SEASON = ("wpilib", "robotpy", "pyntcore")
 
 #: Components that install nothing on a robot.
 _ON_DESKTOPS = ("romi", "sim", "xrp")
@@ -58,16 +62,47 @@ def load_robot_packages(pyproject: Path) -> RobotPackages:
     return RobotPackages(_version_in(table), components, tuple(requires), lines)
 
 
-def load_robotpy_version(pyproject: Path) -> tuple[str | None, str | None]:
-    """Return the version of WPILib that ``[tool.robotpy]`` asks for, and where: as of `load_robot_packages`.
+def load_season_settings(pyproject: Path) -> list[SeasonSetting]:
+    """Return what in ``[tool.robotpy]`` fits one season: its version of WPILib, and packages of one season.
 
-    Nothing else in the table is read, so nothing else in it can be wrong.
+    What is wrong there otherwise is not reported here.
     """
     if not pyproject.is_file():
-        return None, None
+        return []
     file = TomlFile(pyproject)
-    version = _version_in(file.table_at("tool", "robotpy") or {})
-    return version, file.place_of("tool", "robotpy", "robotpy_version") if version is not None else None
+    table = file.table_at("tool", "robotpy") or {}
+    found = []
+    version = _version_in(table)
+    if version is not None and (year := year_of(version)) is not None:
+        where = file.place_of("tool", "robotpy", "robotpy_version")
+        # A project from before the seasons that pyfrc knows may well run with the oldest of these.
+        found.append(SeasonSetting(f"robotpy_version is {version}", max(year, min(SEASONS)), where))
+    requires = table.get("requires")
+    for each in requires if isinstance(requires, list) else ():
+        if (only := _only_season(each)) is not None:
+            where = file.place_of("tool", "robotpy", "requires")
+            found.append(SeasonSetting(f"requires has {each!r}", only, where))
+    return found
+
+
+def _only_season(requirement: object) -> int | None:
+    """Return the one known season that a requirement fits; None if it fits several or none, or is not WPILib's."""
+    from packaging.requirements import InvalidRequirement, Requirement
+
+    try:
+        needed = Requirement(str(requirement))
+    except InvalidRequirement:
+        return None
+    if not needed.name.lower().startswith(_NUMBERED_BY_SEASON):
+        return None
+    named = [each.version.removesuffix(".*") for each in needed.specifier]
+    fitting = [
+        year
+        for year in SEASONS
+        for version in (f"{year}.9999", *named)
+        if year_of(version) == year and needed.specifier.contains(version, prereleases=True)
+    ]
+    return fitting[0] if len(set(fitting)) == 1 else None
 
 
 def _version_in(table: dict[str, object]) -> str | None:

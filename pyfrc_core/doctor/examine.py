@@ -9,9 +9,11 @@ from pathlib import Path
 
 from .._version import requirement
 from ..browser import why_no_browser
+from ..config.robotpy import load_season_settings
 from ..display import GET_TKINTER, WITHOUT_DISPLAY, has_display, has_tkinter
-from ..errors import PyfrcError
+from ..errors import PyfrcError, SettingsError
 from ..project import Project, find_project
+from ..season import SeasonSetting, installed_wpilib, season_of
 from .check_result import CheckResult, hint, ok
 from .installed import find_installed
 from .packages import check_imports, check_pyfrc, check_python, check_wpilib
@@ -88,8 +90,9 @@ def examine(wanted: DoctorOptions) -> Iterator[CheckResult]:
     search = RobotSearch(project, wanted.robot, wanted.team) if wanted.look_for_robot else None
     installed = find_installed()
     yield from check_python()
-    yield from check_pyfrc(installed)
-    yield from check_wpilib(installed)
+    settings = _season_settings(project)
+    yield from check_pyfrc(installed, season_of(installed_wpilib(), settings))
+    yield from check_wpilib(installed, settings)
     yield from check_imports(installed)
     yield from check_browser()
     yield from check_window()
@@ -98,9 +101,16 @@ def examine(wanted: DoctorOptions) -> Iterator[CheckResult]:
     if about_project is not None:
         yield about_project
     if project is not None:
-        yield from check_project(project, installed)
+        yield from check_project(project, installed, settings)
     if search is not None:
         yield from search.findings()
+
+
+def _season_settings(project: Project | None) -> list[SeasonSetting]:
+    try:
+        return load_season_settings(project.pyproject) if project is not None else []
+    except SettingsError:  # `check_project` reports it
+        return []
 
 
 def _project(wanted: DoctorOptions) -> tuple[Project | None, CheckResult | None]:

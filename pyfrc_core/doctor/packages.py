@@ -13,13 +13,16 @@ import struct
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
+from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 from .._version import __version__, requirement
 from ..config.packages import PACKAGES, quoted_requirement
-from ..season import CURRENT
+from ..errors import ProjectError
+from ..season import CURRENT, Season, SeasonSetting, refuse_unknown_wpilib
 from .check_result import CheckResult, hint, ok, problem
 from .installed import Installed, Package, Unmet
 
@@ -54,14 +57,19 @@ def check_python(
         yield ok("Python", what)
 
 
-def check_pyfrc(installed: Installed) -> Iterator[CheckResult]:
-    """Check that pyfrc is installed once, with its requirements, and without conflicting names."""
+def check_pyfrc(installed: Installed, season: Season = CURRENT) -> Iterator[CheckResult]:
+    """Check that pyfrc is installed once, with its requirements, and without conflicting names.
+
+    :param season: whose WPILib is to be installed, where it is not
+    """
     copies = installed.copies.get("pyfrc", [])
     if not copies:
         yield hint("pyfrc", f"{__version__} runs from {CODE} without being installed", f'pip install -e "{CODE}"')
         return
     problems = list(_mixed_up(copies))
     for unmet in installed.unmet(copies[0]):
+        if unmet.needed.name == "wpilib":  # pyfrc's own requirement fits each season
+            unmet = replace(unmet, needed=Requirement(season.requirement))
         problems.append(problem("pyfrc", str(unmet), f"pip install {quoted_requirement(unmet.needed)}"))
     yield from problems or [ok("pyfrc", f"{__version__}, {CODE}")]
 
@@ -81,19 +89,26 @@ def _mixed_up(copies: Sequence[Package]) -> Iterator[CheckResult]:
         yield problem(
             "pyfrc", f"import pyfrc finds another one: {where}", f"Rename it if it is yours; else: {reinstall}"
         )
-    ours = {"test", "sim", "coverage", "profiler", "create-physics", "add-tests"}
-    for command in importlib.metadata.entry_points(group=CURRENT.cli_plugins):
+    commands = importlib.metadata.entry_points(group=CURRENT.cli_plugins)
+    ours = {command.name for command in commands if command.value.startswith("pyfrc_cli.")}
+    for command in commands:
         if command.name in ours and not command.value.startswith("pyfrc_cli.") and command.dist is not None:
             other = command.dist.metadata["Name"]
             text = f"both {other} and pyfrc provide robotpy {command.name}"
             yield hint("pyfrc", text, f"Use pyfrc {command.name}, or: pip uninstall {other}")
 
 
-def check_wpilib(installed: Installed) -> Iterator[CheckResult]:
-    """Check that the packages of WPILib and those that depend on it are compatible and of the same season."""
+def check_wpilib(installed: Installed, settings: Sequence[SeasonSetting] = ()) -> Iterator[CheckResult]:
+    """Check that the packages of WPILib and those that depend on it are compatible and of the same season.
+
+    :param settings: the project's settings that fit one season
+    """
     wpilib = installed.get("wpilib")
+    try:
+        refuse_unknown_wpilib(wpilib.version if wpilib else None, settings)
+    except ProjectError as unknown:
+        yield problem("wpilib", unknown.message, unknown.remedy or "")
     if wpilib is None:
-        yield problem("wpilib", "not installed", "pip install wpilib")
         return
     family = installed.of_wpilib()
     problems = [*_unmet(installed, family, wpilib), *_other_seasons(family, wpilib)]

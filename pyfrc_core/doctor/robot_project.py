@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from codecs import BOM_UTF8
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, TypeVar
 
 from .._version import __version__
@@ -14,27 +14,38 @@ from ..errors import ProjectError, PyfrcError, SettingsError
 from ..processes.call import run_in_subprocess
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_libraries
-from ..runtime.checks.code_checks import find_code_warnings
-from ..runtime.checks.code_warning import CodeWarning
-from ..runtime.loading import load_robot
-from ..season import refuse_other_season
+from ..season import SeasonSetting, refuse_other_season
 from .check_result import CheckResult, hint, ok, problem
-from .installed import Installed, fits
+from .installed import Installed, Package, fits
 
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
+    from ..runtime.checks.code_warning import CodeWarning
 
 Answer = TypeVar("Answer")
 
 
-def check_project(project: Project, installed: Installed) -> Iterator[CheckResult]:
-    """Check the project, without importing it in this process."""
+def check_project(
+    project: Project, installed: Installed, settings: Sequence[SeasonSetting] = ()
+) -> Iterator[CheckResult]:
+    """Check the project, without importing it in this process.
+
+    :param settings: its settings that fit one season
+    """
     yield from _hidden_libraries(project)
-    yield from _asked_for(project, installed)
-    program = [*_robot_class(project)]
+    wpilib = installed.get("wpilib")
+    refused = False
+    try:
+        refuse_other_season(wpilib.version if wpilib else None, settings)
+    except ProjectError as other:
+        refused = True  # its program is not imported: it would fail by this
+        if other.where is not None:  # otherwise it is about WPILib alone, which another check reports
+            yield problem_from_error("project", other, "")
+    yield from _asked_for(project, installed, None if refused else wpilib)
+    program = [] if refused else [*_robot_class(project)]
     yield from program
     yield from _sim_config(project)
-    yield from _physics(project, imports=all(each.status != "problem" for each in program))
+    yield from _physics(project, imports=not refused and all(each.status != "problem" for each in program))
     tests = project.find_tests()
     if tests is not None:
         yield ok("tests", str(tests))
@@ -59,8 +70,11 @@ def _hidden_libraries(project: Project) -> Iterator[CheckResult]:
         yield problem("project", hidden.text, hidden.remedy)
 
 
-def _asked_for(project: Project, installed: Installed) -> Iterator[CheckResult]:
-    """Compare ``[tool.robotpy]`` with the packages on this computer."""
+def _asked_for(project: Project, installed: Installed, wpilib: Package | None) -> Iterator[CheckResult]:
+    """Compare ``[tool.robotpy]`` with the packages on this computer.
+
+    :param wpilib: the installed one, if it is of the project's season
+    """
     if not project.pyproject.is_file():
         return
     name = project.pyproject.name
@@ -72,13 +86,6 @@ def _asked_for(project: Project, installed: Installed) -> Iterator[CheckResult]:
     if project.pyproject.read_bytes().startswith(BOM_UTF8):
         text = f"{name} begins with a byte-order mark, which robotpy and plain pytest do not read"
         yield hint("project", text, "Save it as UTF-8 without a byte-order mark (VS Code: UTF-8, not UTF-8 with BOM).")
-    wpilib = installed.get("wpilib")
-    try:
-        if wpilib is not None:
-            refuse_other_season(wpilib.version, wanted.version, wanted.lines.get("robotpy_version"))
-    except ProjectError as contradiction:
-        yield problem_from_error("project", contradiction, "")
-        wpilib = None
     if wanted.version is not None and wpilib is not None and wanted.version != wpilib.version:
         yield hint(
             "project",
@@ -134,6 +141,10 @@ def _imported(
 
 
 def _look_at_class(project: Project, log: CrashLog) -> tuple[str, list[CodeWarning], tuple[str, ...]]:
+    # Here: they import WPILib, which may be broken or missing.
+    from ..runtime.checks.code_checks import find_code_warnings
+    from ..runtime.loading import load_robot
+
     name = load_robot(project).__name__
     return name, find_code_warnings(project), real_time_libraries()
 
@@ -153,6 +164,7 @@ def _physics(project: Project, imports: bool) -> Iterator[CheckResult]:
 
 def _load_physics(project: Project, log: CrashLog) -> None:
     from ..physics.engine import load_physics
+    from ..runtime.loading import load_robot
 
     load_robot(project)
     load_physics(project)

@@ -4,11 +4,31 @@ All of it is one `record.Season`; other rooms ask `CURRENT`. Of earlier seasons 
 `field.season` in sim/config.json. CONTRIBUTING.md says how to add a season.
 """
 
-from .choice import SEASONS, installed_wpilib, refuse_other_season, season_of
+from .choice import (
+    SEASONS,
+    SeasonSetting,
+    installed_wpilib,
+    refuse_other_season,
+    refuse_unknown_wpilib,
+    season_of,
+    year_of,
+)
 from .earlier_fields import EARLIER_FIELDS
 from .record import Season, SeasonField
 
-__all__ = ["CURRENT", "FIELDS", "SEASONS", "Season", "SeasonField", "installed_wpilib", "refuse_other_season"]
+__all__ = [
+    "CURRENT",
+    "FIELDS",
+    "SEASONS",
+    "Season",
+    "SeasonField",
+    "SeasonSetting",
+    "installed_wpilib",
+    "refuse_other_season",
+    "refuse_unknown_wpilib",
+    "season_of",
+    "year_of",
+]
 
 #: The season of the WPILib that is installed.
 CURRENT = season_of(installed_wpilib())

@@ -3,29 +3,38 @@
 from __future__ import annotations
 
 import importlib.metadata
-import os
+from collections.abc import Sequence
+from typing import NamedTuple
 
 from ..errors import ProjectError
 from .record import Season
 from .season_2026 import SEASON_2026
 from .season_2027 import SEASON_2027
 
-#: Seasons that are being written. pyfrc refuses their WPILib, except in an environment with this variable: pyfrc's own
-#: tests of them have it.
-UNFINISHED, _TRY_UNFINISHED = (SEASON_2027,), "PYFRC_TRY_UNFINISHED_SEASONS"
+#: The seasons that pyfrc knows, by year.
+SEASONS: dict[int, Season] = {season.year: season for season in (SEASON_2026, SEASON_2027)}
 
-#: The seasons that pyfrc knows entirely, by year.
-SEASONS: dict[int, Season] = {
-    season.year: season for season in (SEASON_2026, *(UNFINISHED if os.environ.get(_TRY_UNFINISHED) else ()))
-}
+
+class SeasonSetting(NamedTuple):
+    """A setting of a project that fits one season.
+
+    :param text:  what it says, such as ``robotpy_version is 2026.2.2``
+    :param year:  the season's year
+    :param where: its place, such as ``pyproject.toml:2``
+    """
+
+    text: str
+    year: int
+    where: str
 
 
 def installed_wpilib() -> str | None:
     """Return the version of the installed WPILib, which is not imported; None if there is none."""
     try:
-        return importlib.metadata.version("wpilib")
+        version: str | None = importlib.metadata.version("wpilib")
     except importlib.metadata.PackageNotFoundError:
         return None
+    return version or None  # what an incomplete removal has left may have no version
 
 
 def year_of(version: str) -> int | None:
@@ -34,40 +43,79 @@ def year_of(version: str) -> int | None:
     return int(year) if year.isdecimal() else None
 
 
-def season_of(version: str | None) -> Season:
-    """Return the season of a version of WPILib; where pyfrc does not know it, the season that pyfrc is for."""
-    return SEASONS.get(year_of(version or "") or 0, SEASON_2026)
+def season_of(version: str | None, settings: Sequence[SeasonSetting] = ()) -> Season:
+    """Return the season of a version of WPILib.
+
+    Without one, or where pyfrc does not know its season, return the season of the project's first setting; without
+    settings, the oldest season that pyfrc knows.
+    """
+    years = [year_of(version or ""), *(each.year for each in settings)]
+    return next((SEASONS[year] for year in years if year in SEASONS), SEASON_2026)
 
 
-def refuse_other_season(installed: str | None, wanted: str | None, where: str | None) -> None:
-    """Refuse to go on with a WPILib that pyfrc does not know, or that is of another season than the project.
+def refuse_unknown_wpilib(installed: str | None, settings: Sequence[SeasonSetting] = ()) -> None:
+    """Refuse to go on without WPILib, or with one that pyfrc does not know.
 
-    A project of a season before those that pyfrc knows may well run with today's WPILib.
-
-    :param installed: the version of the installed WPILib
-    :param wanted: the ``robotpy_version`` of the project
-    :param where: the place of ``robotpy_version``
+    :param installed: the version of the installed WPILib; None if there is none
+    :param settings:  the project's settings that fit one season
     :raises ProjectError: with what to install
     """
-    here = None if installed is None else year_of(installed)
-    year = None if wanted is None else year_of(wanted)
-    known = ", ".join(map(str, SEASONS))
-    if installed is not None and here not in SEASONS:
-        season = SEASONS.get(year or 0, SEASON_2026)
-        raise ProjectError(
-            f"wpilib {installed} is installed here, and this pyfrc runs robots of {known}",
-            remedy=f'Install that season\'s: pip install "wpilib>={season.packages.wpilib},<{season.year + 1}"',
-        )
-    if year is None or here is None or year == here or year < min(SEASONS):
+    season = season_of(installed, settings)
+    if installed is None:
+        wrong = "WPILib is not installed here"
+    elif year_of(installed) not in SEASONS:
+        wrong = f"wpilib {installed} is installed here, and this pyfrc runs robots of {_KNOWN}"
+    elif _is_older_prerelease(installed, season.packages.wpilib):
+        wrong = f"wpilib {installed} is installed here, and this pyfrc needs {season.packages.wpilib} or newer"
+    else:
         return
-    if year not in SEASONS:
+    raise ProjectError(wrong, remedy=f'Install the one of {season.year}: pip install "{season.requirement}"')
+
+
+def refuse_other_season(installed: str | None, settings: Sequence[SeasonSetting]) -> None:
+    """Refuse to go on with a WPILib that pyfrc does not know, or that is of another season than the project.
+
+    :param installed: the version of the installed WPILib; None if there is none
+    :param settings:  the project's settings that fit one season
+    :raises ProjectError: with what to install, or to write
+    """
+    for other in settings[1:]:
+        if other.year != settings[0].year:
+            raise ProjectError(
+                f"{settings[0].text}, but {other.text} in {other.where}, which is of another season",
+                where=settings[0].where,
+                remedy="Write packages of one season there.",
+            )
+    refuse_unknown_wpilib(installed, settings)
+    if not settings or installed is None:
+        return
+    wanted = settings[0]
+    if wanted.year == year_of(installed):
+        return
+    if wanted.year not in SEASONS:
         raise ProjectError(
-            f"robotpy_version is {wanted}, and this pyfrc runs robots of {known}",
-            where=where,
+            f"{wanted.text}, and this pyfrc runs robots of {_KNOWN}",
+            where=wanted.where,
             remedy=f'Install the pyfrc of that season, or write: robotpy_version = "{installed}"',
         )
     raise ProjectError(
-        f"robotpy_version is {wanted}, but wpilib {installed} is installed here",
-        where=where,
-        remedy=f'Install the project\'s: pip install "wpilib=={wanted}"; or write: robotpy_version = "{installed}"',
+        f"{wanted.text}, but wpilib {installed} is installed here",
+        where=wanted.where,
+        remedy=f'Install the project\'s: pip install "{SEASONS[wanted.year].requirement}"; '
+        f'or, if its code is for {year_of(installed)}, write: robotpy_version = "{installed}"',
     )
+
+
+_KNOWN = " and ".join(map(str, SEASONS))
+
+
+def _is_older_prerelease(version: str, oldest: str) -> bool:
+    """Return whether this is a preview of a season from before the oldest one that pyfrc runs with."""
+    if version == oldest:
+        return False
+    from packaging.version import InvalidVersion, Version  # here: the usual case needs none
+
+    try:
+        return Version(version).is_prerelease and Version(version) < Version(oldest)
+    except InvalidVersion:
+        return False

@@ -58,7 +58,7 @@ class ControllerSoftware:
 class Packages:
     """The Python packages of the season, from which new projects are made.
 
-    :param wpilib:   the version of WPILib that new projects ask for
+    :param wpilib:   the version of WPILib that new projects ask for; pyfrc runs with no older preview
     :param commands: requirement for the command-based library
     :param utilities: requirement for the library with `MagicRobot`
     """
@@ -86,3 +86,11 @@ class Season:
     packages: Packages
     cli_plugins: str
     opmodes: bool = False
+
+    @property
+    def requirement(self) -> str:
+        """The requirement for its WPILib, as pip takes it. It names a preview where there is nothing else yet.
+
+        pip installs a preview that is named, without ``--pre``, and then takes no previews of other packages.
+        """
+        return f"wpilib>={self.packages.wpilib},<{self.year + 1}"

@@ -34,12 +34,12 @@ class _Inactive:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    if config.pluginmanager.hasplugin("pyfrc.robot"):
-        return  # `pyfrc test` has registered its own
+    if config.pluginmanager.hasplugin("pyfrc.robot") or _is_run_by_wpilib(config):
+        return  # `pyfrc test` has registered its own; so has `robotpy test` of WPILib 2027, with the same fixtures
     for start in _start_directories(config):
         directory = _robot_project_of(start)
         if directory is not None:
-            reason = _other_owner(directory) or _other_wpilib() or _register(config, directory)
+            reason = _other_owner(directory) or _unknown_wpilib() or _register(config, directory)
             if reason:
                 config.pluginmanager.register(_Inactive(reason), "pyfrc.inactive")
             return
@@ -95,18 +95,22 @@ def _other_owner(directory: Path) -> str:
     return f"{other} belongs to another user. If you trust it, run: pyfrc test" if other else ""
 
 
-def _other_wpilib() -> str:
-    """Return the reason not to run beside another season's `wpilib`, whose own tool has fixtures of the same names."""
-    from importlib import metadata
+def _is_run_by_wpilib(config: pytest.Config) -> bool:
+    return any(type(plugin).__module__.startswith("wpilib.") for plugin in config.invocation_params.plugins or ())
 
-    from .._version import __version__
 
-    season = __version__.split(".")[0]
+def _unknown_wpilib() -> str:
+    """Return the reason not to run beside a `wpilib` of another season, whose own tool may have the same fixtures."""
+    from ..errors import ProjectError
+    from ..season import installed_wpilib, refuse_unknown_wpilib
+
+    wpilib = installed_wpilib()
     try:
-        version = metadata.version("wpilib")
-    except metadata.PackageNotFoundError:
-        return ""
-    return "" if version.split(".")[0] == season else f"it is for wpilib {season}, and {version} is installed"
+        if wpilib is not None:
+            refuse_unknown_wpilib(wpilib)
+    except ProjectError as unknown:
+        return unknown.message
+    return ""
 
 
 def _register(config: pytest.Config, directory: Path) -> str:
@@ -114,21 +118,27 @@ def _register(config: pytest.Config, directory: Path) -> str:
     import pytest
 
     try:
+        from ..config.robotpy import load_season_settings
         from ..errors import PyfrcError
         from ..project import find_project
         from ..project.hidden_libraries import refuse_hidden_libraries
-        from .isolation.loop import IsolatedTests
-        from .pytest_plugin import PyFrcPlugin
-        from .summary import SummaryPlugin
+        from ..season import installed_wpilib, refuse_other_season
+
+        try:
+            project = find_project(directory)
+            refuse_hidden_libraries(project.root, project.main_file)
+            refuse_other_season(installed_wpilib(), load_season_settings(project.pyproject))
+
+            from .isolation.loop import IsolatedTests
+            from .pytest_plugin import PyFrcPlugin
+            from .summary import SummaryPlugin
+
+            plugin = PyFrcPlugin(None, project.main_file, project.root, project=project)
+        except PyfrcError as error:
+            raise pytest.UsageError(str(error)) from None
     except (ImportError, AttributeError) as error:  # packages that do not fit together must not end a run of pytest
         return f"{str(error).splitlines()[0]}. To see which package is wrong, run: pyfrc doctor"
 
-    try:
-        project = find_project(directory)
-        refuse_hidden_libraries(project.root, project.main_file)
-        plugin = PyFrcPlugin(None, project.main_file, project.root, project=project)
-    except PyfrcError as error:
-        raise pytest.UsageError(str(error)) from None
     config.pluginmanager.register(plugin, "pyfrc.robot")
     config.pluginmanager.register(IsolatedTests(plugin), "pyfrc.isolation")
     config.pluginmanager.register(SummaryPlugin(project), "pyfrc.summary")

@@ -1,6 +1,15 @@
 """Ready-made tests for any robot: put ``from pyfrc.tests import *`` in a file in your tests directory."""
 
-from ..season import CURRENT
+from ..errors import ProjectError
+from ..season import CURRENT, installed_wpilib, refuse_unknown_wpilib
+
+try:
+    refuse_unknown_wpilib(installed_wpilib())
+except ProjectError as unknown:
+    import pytest
+
+    raise pytest.Collector.CollectError(f"pyfrc: {unknown}") from None  # pytest shows this text instead of a traceback
+
 from .basic import test_autonomous, test_disabled, test_operator_control, test_practice
 from .fuzz_test import test_fuzz
 

@@ -6,6 +6,7 @@ No other part of a deploy names a controller. To add one, write a module such as
 
 from __future__ import annotations
 
+from ...errors import UsageError
 from ...season import Season
 from .controller import AdministratorTask, ControllerKind
 from .roborio import ROBORIO
@@ -27,13 +28,22 @@ MAX_TEAM = 25_599
 
 
 def controller_of(season: Season) -> ControllerKind:
-    """Return the controller of a season's robots."""
+    """Return the controller of a season's robots.
+
+    :raises UsageError: if a deploy to it is not possible yet
+    """
     return controller_named(season.controller.name)
 
 
 def controller_named(name: str) -> ControllerKind:
-    """Return the controller with this name."""
-    return next(each for each in CONTROLLERS if each.name == name)
+    """Return the controller with this name.
+
+    :raises UsageError: if a deploy to it is not possible yet
+    """
+    found = next((each for each in CONTROLLERS if each.name == name), None)
+    if found is None:
+        raise UsageError(f"pyfrc cannot deploy to a {name} yet", remedy="To deploy: python -m robotpy deploy")
+    return found
 
 
 def team_of_host(host: str) -> int | None:
