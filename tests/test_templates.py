@@ -28,6 +28,7 @@ from pyfrc_core.deploy.session import DeployOptions
 from pyfrc_core.deploy.team import RobotChoice
 from pyfrc_core.project import find_project
 from pyfrc_core.scaffold import TEMPLATES
+from pyfrc_core.season import CURRENT
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -219,7 +220,7 @@ def test_todays_tools_and_pip_read_what_it_needs(project: RobotProject, template
     else:
         assert settings["requires"] == list(needed)
     lines = (project.path / "requirements.txt").read_text("utf-8").splitlines()
-    assert [line for line in lines if not line.startswith("#")] == ["pyfrc>=2026.1", *needed]
+    assert [line for line in lines if not line.startswith("#")] == ["pyfrc>=2026.1", CURRENT.requirement, *needed]
     readme = (project.path / "README.md").read_text("utf-8")
     for package in needed:
         assert package.partition("~")[0] in readme

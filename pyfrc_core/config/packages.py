@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import SettingsError
-from .robotpy import COMPONENTS, load_robot_packages
+from ..season import CURRENT
+from .robotpy import COMPONENTS, NUMBERED_BY_SEASON, load_robot_packages
 
 if TYPE_CHECKING:
     from packaging.requirements import Requirement
@@ -35,13 +36,18 @@ PACKAGES = {
     "rev": "robotpy-rev",
     "robotpy_apriltag": "robotpy-apriltag",
     "robotpy_ext": "robotpy-wpilib-utilities",
+    "robotpy_fields": "robotpy-fields",
     "romi": "robotpy-romi",
     "scipy": "scipy",
     "serial": "pyserial",
     "simple_pid": "simple-pid",
+    "telemetry": "robotpy-telemetry",
+    "tunables": "robotpy-tunables",
     "urcl": "robotpy-urcl",
     "usb": "pyusb",
     "wpilib": "wpilib",
+    "wpilib_drivers": "wpilib-drivers",
+    "wpilog": "robotpy-wpilog",
     "wpimath": "robotpy-wpimath",
     "wpinet": "robotpy-wpinet",
     "wpiutil": "robotpy-wpiutil",
@@ -72,7 +78,19 @@ SUCCESSORS = {
 }
 
 #: Packages that come with WPILib: a robot needs no line for them.
-_WITH_WPILIB = frozenset({"wpilib", "pyntcore", "robotpy-hal", "robotpy-wpimath", "robotpy-wpinet", "robotpy-wpiutil"})
+_WITH_WPILIB = frozenset(
+    {
+        "pyntcore",
+        "robotpy-hal",
+        "robotpy-telemetry",
+        "robotpy-tunables",
+        "robotpy-wpilog",
+        "robotpy-wpimath",
+        "robotpy-wpinet",
+        "robotpy-wpiutil",
+        "wpilib",
+    }
+)
 #: Packages for this computer only.
 _NOT_ON_ROBOT = frozenset({"hypothesis", "robotpy-halsim-gui", "robotpy-romi", "robotpy-xrp"})
 #: OpenCV comes with `cscore` on a robot.
@@ -90,7 +108,8 @@ def quoted_requirement(needed: Requirement) -> str:
 
 def install_line(package: str) -> str:
     """Return the command that installs a package on this computer."""
-    return f"python -m pip install {package}"
+    needed = CURRENT.requirement_of(package) if package.startswith(NUMBERED_BY_SEASON) else package
+    return f"python -m pip install {needed}"
 
 
 def robot_line(package: str, pyproject: Path) -> str:

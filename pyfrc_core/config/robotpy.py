@@ -23,7 +23,7 @@ COMPONENTS: dict[str, tuple[str, ...]] = {
 COMPONENTS["all"] = tuple(package for packages in COMPONENTS.values() for package in packages)
 
 #: How the names of packages begin whose versions begin with a season's year.
-_NUMBERED_BY_SEASON = ("wpilib", "robotpy", "pyntcore")
+NUMBERED_BY_SEASON = ("wpilib", "robotpy", "pyntcore")
 
 #: Components that install nothing on a robot.
 _ON_DESKTOPS = ("romi", "sim", "xrp")
@@ -93,7 +93,7 @@ def _only_season(requirement: object) -> int | None:
         needed = Requirement(str(requirement))
     except InvalidRequirement:
         return None
-    if not needed.name.lower().startswith(_NUMBERED_BY_SEASON):
+    if not needed.name.lower().startswith(NUMBERED_BY_SEASON):
         return None
     named = [each.version.removesuffix(".*") for each in needed.specifier]
     fitting = [

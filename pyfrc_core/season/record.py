@@ -94,3 +94,12 @@ class Season:
         pip installs a preview that is named, without ``--pre``, and then takes no previews of other packages.
         """
         return f"wpilib>={self.packages.wpilib},<{self.year + 1}"
+
+    def requirement_of(self, package: str) -> str:
+        """Return a package of WPILib's for the command line of pip.
+
+        While there are only previews, pip would otherwise take last year's, and WPILib of last year with it.
+        """
+        if self.packages.wpilib.replace(".", "").isdecimal():
+            return package
+        return f'"{package}>={self.year}.0.0a1,<{self.year + 1}"'

@@ -22,6 +22,7 @@ from pyfrc_core.explain import explain
 from pyfrc_core.explain.names import GONE
 from pyfrc_core.project.robot_files import RobotFiles
 from pyfrc_core.runtime.checks.failures import headline
+from pyfrc_core.season import SEASONS
 
 rev = pytest.importorskip("rev")
 
@@ -225,6 +226,11 @@ def test_the_line_for_the_robot(tmp_path: Path) -> None:
     assert robot_line("robotpy-commands-v2", file).endswith('["commands2"] under [tool.robotpy] in pyproject.toml')
     assert robot_line("pyntcore", file) == ""
     assert install_line("robotpy-rev") == "python -m pip install robotpy-rev"
+
+
+def test_while_there_are_only_previews_pip_is_asked_for_one() -> None:
+    assert SEASONS[2026].requirement_of("robotpy-rev") == "robotpy-rev"
+    assert SEASONS[2027].requirement_of("robotpy-rev") == '"robotpy-rev>=2027.0.0a1,<2028"'
 
 
 @pytest.mark.parametrize(
