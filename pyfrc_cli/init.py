@@ -42,7 +42,7 @@ def _show_templates(ctx: click.Context, param: click.Parameter, wanted: bool) ->
     is_eager=True,
     expose_value=False,
     callback=_show_templates,
-    help="Show the templates and their descriptions.",
+    help="Show the templates of the installed season and their descriptions.",
 )
 def command(directory: Path, template: str, team: int | None) -> None:
     """Create a new robot project in DIRECTORY (default: the current one), with tests and a simulation.

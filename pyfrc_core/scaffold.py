@@ -1,4 +1,7 @@
-"""Create robot projects from templates: the files that all have in common (`base`), and those of one template."""
+"""Create robot projects from templates: the files that all have in common (`base`), and those of one template.
+
+A file in `templates/YEAR/NAME` replaces that of `templates/NAME` in the season of that year, or is one more.
+"""
 
 from __future__ import annotations
 
@@ -26,11 +29,13 @@ class Template:
     :param description: one line for the list of templates
     :param packages: requirements of its code besides wpilib
     :param extras: the extras of robotpy that install these packages on the robot
+    :param opmodes: whether its robot has opmodes, which not every season's robots can have
     """
 
     description: str
     packages: tuple[str, ...] = ()
     extras: tuple[str, ...] = ()
+    opmodes: bool = False
 
     @property
     def missing(self) -> list[str]:
@@ -38,7 +43,7 @@ class Template:
         return [package for package in self.packages if not _is_installed(package)]
 
 
-TEMPLATES = {
+_TEMPLATES = {
     "tank": Template("tank drive: four motors, two joysticks, encoders"),
     "timed": Template("the smallest robot that drives; the rest is yours"),
     "mecanum": Template("mecanum drive: moves sideways, steered as seen from the field"),
@@ -53,7 +58,10 @@ TEMPLATES = {
         packages=(CURRENT.packages.utilities,),
     ),
     "elevator-arm": Template("an elevator with an arm on it, driven to heights and angles"),
+    "opmode": Template("opmodes: one class for each thing that the robot can do in a match", opmodes=True),
 }
+#: The templates of the installed season, by name.
+TEMPLATES = {name: each for name, each in _TEMPLATES.items() if CURRENT.opmodes or not each.opmodes}
 DEFAULT = "tank"
 
 #: The directory of the files that every project has.
@@ -129,7 +137,7 @@ def _texts(templates: Path, name: str, team: int | None) -> dict[PurePosixPath, 
 
     values = _values(TEMPLATES[name], team)
     texts = {PurePosixPath("sim/config.schema.json"): sim_config_schema() + "\n"}
-    for source in (templates / _BASE, templates / name):
+    for source in (templates / _BASE, templates / name, templates / str(CURRENT.year) / name):
         for file in sorted(source.rglob("*")):
             if file.is_file() and not _LEFT_OUT.intersection(file.parts):
                 target = PurePosixPath(*(_RENAMED.get(part, part) for part in file.relative_to(source).parts))

@@ -264,11 +264,19 @@ def test_no_two_templates_share_a_file_and_none_replaces_one_of_the_base() -> No
 
 def test_every_directory_of_templates_is_one() -> None:
     names = {path.name for path in SOURCES.iterdir() if path.is_dir()}
-    assert names == {"base", *TEMPLATES}
+    assert names - {"2027"} == {"base", *TEMPLATES} - {"opmode"}
+    assert {path.name for path in (SOURCES / "2027").iterdir()} == {*TEMPLATES, "opmode"}
+
+
+def test_a_season_has_only_the_files_that_differ() -> None:
+    for template in TEMPLATES:
+        others, own = overlay(template), overlay(f"2027/{template}")
+        assert [file for file, text in own.items() if others.get(file) == text] == []
+        assert own.keys() <= others.keys()
 
 
 def test_the_texts_are_as_python_on_every_computer_reads_them() -> None:
-    for template in ("base", *TEMPLATES):
+    for template in ("base", *TEMPLATES, "2027"):
         for file, text in overlay(template).items():
             assert "\r" not in text, file
             assert text.endswith("\n"), file

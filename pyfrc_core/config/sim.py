@@ -87,7 +87,7 @@ RELAY_CHANNELS = _from_to(0, 3)
 SOLENOID_CHANNELS = _from_to(0, 15)  # of a Pneumatic Hub; a Pneumatics Control Module has 8
 CAN_DEVICES = _from_to(0, 62)
 JOYSTICKS = _from_to(0, 5)
-BUTTONS = _from_to(1, 32)
+BUTTONS = _from_to(CURRENT.first_button, CURRENT.first_button + 31)
 
 #: The axes that `wpilib.Joystick` has names for: x, y, z (or twist), throttle.
 AXIS_LETTERS = {"x": 0, "y": 1, "z": 2, "t": 3}
@@ -232,7 +232,9 @@ class Joystick(_Part):
         default={}, description="Labels of the axes: by index from 0, or by letter: x, y, z, t (throttle)."
     )
     buttons: Annotated[dict[int, str], BUTTONS] = Field(
-        default={}, description="Labels of the buttons, from 1. 1 is 'Trigger' and 2 is 'Top' unless named otherwise."
+        default={},
+        description="Labels of the buttons, by the number that robot code gives them. The first two are 'Trigger' and "
+        "'Top' unless named otherwise.",
     )
 
 

@@ -76,6 +76,7 @@ class Season:
     :param kickoff:      when it begins; robot code's `time.time()` starts there
     :param cli_plugins:  group of the entry points by which the command `robotpy` finds commands
     :param opmodes:      whether robots can have opmodes
+    :param first_button: the number that robot code gives the first button of a joystick
     """
 
     year: int
@@ -86,6 +87,7 @@ class Season:
     packages: Packages
     cli_plugins: str
     opmodes: bool = False
+    first_button: int = 1
 
     @property
     def requirement(self) -> str:

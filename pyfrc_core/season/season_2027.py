@@ -26,4 +26,5 @@ SEASON_2027 = Season(
     ),
     cli_plugins="robotpy_cli.2027",
     opmodes=True,
+    first_button=0,
 )

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from ...hal import HalData, counters, device_table, format_path
 from ...hal.modules import Modules
 from ...hal.sim_device_list import Signature
+from ...season import CURRENT
 from ...wpi import devices, joysticks, names, station
 from .values import UNKNOWN, Input, InputKind, RobotConstants
 
@@ -32,7 +33,7 @@ def _controls(number: int, axes: int, buttons: int, povs: int, triggers: tuple[i
         *(Input(f"{name}.axes[{axis}]", "trigger" if axis in triggers else "axis", name) for axis in range(axes)),
         *(
             Input(f"{name}.buttons[{button}]", "button", name)
-            for button in range(station.FIRST_BUTTON, station.FIRST_BUTTON + buttons)
+            for button in range(CURRENT.first_button, CURRENT.first_button + buttons)
         ),
         *(Input(f"{name}.povs[{pov}]", "pov", name) for pov in range(povs)),
     )

@@ -47,8 +47,6 @@ EVENT_NAME = "sim-event"
 AXES, BUTTONS, POVS = 12, 12, 1
 #: The key in `hal_data` of what the driver station says of a gamepad.
 GAMEPAD_FLAG = "is_gamepad"
-#: The number that robot code gives the first button of a joystick.
-FIRST_BUTTON = 0
 #: The value of a POV that is not pressed; when pressed, it is an angle in degrees clockwise from up.
 NOT_PRESSED = -1
 #: The most buttons that a joystick can have.

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ....season import CURRENT
 from .devices import Values
 
 if TYPE_CHECKING:
@@ -90,7 +91,7 @@ def _axis_name(axis: int) -> str:
 def button_labels(config: SimConfig, stick: int) -> dict[int, str]:
     """Return the labels of the buttons that have one."""
     named = dict(config.joysticks[stick].buttons) if stick in config.joysticks else {}
-    return {1: "Trigger", 2: "Top"} | named
+    return {CURRENT.first_button: "Trigger", CURRENT.first_button + 1: "Top"} | named
 
 
 def direction(x: float, y: float) -> int:

@@ -1,0 +1,1 @@
+"""The opmodes: what the robot can do in a match. WPILib looks for them here; the driver station lists them by name."""

@@ -1,0 +1,48 @@
+"""Each template of 2027 is a project that passes its own tests, and a match with random inputs."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from conftest import MakeProject
+
+from pyfrc_core.scaffold import TEMPLATES
+
+SOURCES = Path(__file__).parents[2] / "templates"
+
+
+def test_there_is_one_for_robots_with_opmodes(make_project: MakeProject) -> None:
+    shown = make_project({}).run("init", "--list")
+    assert shown.code == 0, shown.output
+    listed = re.findall(r"^(\S+)  +\S", shown.stdout, re.MULTILINE)
+    assert listed == list(TEMPLATES)
+    assert "opmode" in listed
+
+
+@pytest.mark.parametrize("template", TEMPLATES)
+def test_it_passes_its_tests_and_a_match_with_random_inputs(make_project: MakeProject, template: str) -> None:
+    project = make_project({})
+    made = project.run("init", "--template", template)
+    assert made.code == 0, made.output
+    for command in (
+        ("config", "check", "--strict"),
+        ("test", "--coverage", "--fail-under", "80"),
+        ("fuzz", "--runs", "1", "--seed", "7", "--jobs", "1"),
+    ):
+        result = project.run(*command)
+        assert result.code == 0, result.output
+    assert "Nothing was found." in result.stdout
+
+
+def test_what_the_seasons_share_is_there_once(make_project: MakeProject) -> None:
+    """A 2027 project has the season's own files, and the others of the template."""
+    project = make_project({})
+    assert project.run("init", "--template", "command").code == 0
+    for file in ("README.md", "subsystems/__init__.py"):
+        assert not (SOURCES / "2027/command" / file).exists()
+        assert (project.path / file).read_text("utf-8") == (SOURCES / "command" / file).read_text("utf-8")
+    labels = json.loads((project.path / "sim/config.json").read_text("utf-8"))["pyfrc"]["joysticks"]["0"]
+    assert labels["buttons"]["0"] == "take in"  # buttons count from 0
