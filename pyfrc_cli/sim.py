@@ -30,6 +30,13 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
     type=click.Choice(["practice", "auto", "teleop", "test", "disabled"]),
     help="Without a page or a window: the mode that the robot is put through.",
 )
+@click.option(
+    "--opmode",
+    "opmodes",
+    multiple=True,
+    metavar="NAME",
+    help="Choose this opmode of a 2027 robot for its mode; may be repeated. Default: the first of each mode.",
+)
 @click.option("--seconds", type=click.FloatRange(min=0.02), metavar="S", help="End, or pause, at this robot time.")
 @click.option("--script", type=_FILE, metavar="FILE", help="Replay the inputs of this script.")
 @click.option(

@@ -77,6 +77,7 @@ class Season:
     :param cli_plugins:  group of the entry points by which the command `robotpy` finds commands
     :param opmodes:      whether robots can have opmodes
     :param first_button: the number that robot code gives the first button of a joystick
+    :param test_mode:    what drivers read for the mode ``test``
     """
 
     year: int
@@ -88,6 +89,7 @@ class Season:
     cli_plugins: str
     opmodes: bool = False
     first_button: int = 1
+    test_mode: str = "Test"
 
     @property
     def requirement(self) -> str:

@@ -27,4 +27,5 @@ SEASON_2027 = Season(
     cli_plugins="robotpy_cli.2027",
     opmodes=True,
     first_button=0,
+    test_mode="Utility",
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from functools import partial
@@ -33,6 +34,8 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     kind = FRONT_ENDS[ui]
     if request.mode is not None and kind.interactive:
         raise UsageError("--mode is for simulations without a window", remedy="Add --ui none.")
+    if request.opmodes and request.mode is None and not kind.interactive:
+        raise UsageError("without a window, --opmode needs --mode", remedy="Add --mode auto, --mode teleop, ...")
     if not kind.is_served and request.is_for_page:
         raise UsageError("--share, --port and --allow-host are for the simulator in a browser", remedy="Add --ui web.")
     front_end = make_front_end(ui, request, say)
@@ -56,6 +59,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         wpilog=request.wpilog,
         extensions=(*request.extensions, *kind.extensions),
         start_position=request.start_position,
+        opmodes=request.opmodes,
         network_values=kind.shows_network or request.page is not None,
     )
     simulation = Simulation(project, options)
@@ -101,6 +105,7 @@ def _what(project: Project, request: SimRequest) -> str:
     parts = ["pyfrc sim"]
     if request.mode is not None:
         parts.append(f"--mode {request.mode}")
+    parts += [f"--opmode {shlex.quote(name)}" for name in request.opmodes]
     if request.script is not None:
         parts.append(f"--script {place_in(project, request.script)}")
     if request.start_position is not None:

@@ -8,11 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 from ...runtime.robot_time import PACKET_US
 
+#: What a robot does when it is enabled.
 ChosenMode = Literal["autonomous", "teleop", "test"]
+
+
+def chosen_mode(mode: str) -> ChosenMode:
+    """Return what the robot does in one of the modes of input scripts, or when it is enabled in it."""
+    return cast(ChosenMode, mode.removeprefix("disabled").strip() or "teleop")
 
 
 @dataclass(frozen=True)
@@ -47,6 +53,17 @@ class ChooseMode:
 
 
 @dataclass(frozen=True)
+class ChooseOpmode:
+    """Choose an opmode for its mode, which may be another one than the chosen mode. It disables a robot in this mode.
+
+    :param name: empty: none
+    """
+
+    name: str
+    mode: ChosenMode
+
+
+@dataclass(frozen=True)
 class Enable:
     """Enable the robot in the chosen mode, or disable it. Disabling ends a practice match."""
 
@@ -75,7 +92,7 @@ class Quit:
     """End; for a robot's process and for its host."""
 
 
-Command = Resume | Pause | Speed | ChooseMode | Enable | EmergencyStop | Practice | Write
+Command = Resume | Pause | Speed | ChooseMode | ChooseOpmode | Enable | EmergencyStop | Practice | Write
 
 #: The target that moves the robot on the field: x, y and angle as WPILib has them, in metres and degrees.
 ROBOT_ON_FIELD = "nt:/SmartDashboard/Field/Robot"

@@ -13,6 +13,7 @@ from ...runtime.robot_time import PACKET_US, to_us
 from ...runtime.scripts.joysticks import releases
 from .commands import (
     ChooseMode,
+    ChooseOpmode,
     ChosenMode,
     Command,
     EmergencyStop,
@@ -37,6 +38,10 @@ class Controls(ABC):
     def choose_mode(self, mode: ChosenMode) -> None:
         """Disable the robot, and choose the mode for when it is enabled."""
         self._send(ChooseMode(mode))
+
+    def choose_opmode(self, name: str, mode: ChosenMode) -> None:
+        """Choose the opmode of a mode, by its name; empty: none. It disables a robot in this mode."""
+        self._send(ChooseOpmode(name, mode))
 
     def enable(self) -> None:
         """Enable the robot in the chosen mode."""

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any, cast
+from typing import Any
 
 from ...runtime.scripts.joysticks import releases
 from ...runtime.scripts.script import InputScript, Step
-from .commands import ChooseMode, ChosenMode, Command, Write
+from .commands import ChooseMode, ChooseOpmode, Command, Write
 from .field import robot_at, start_named
 from .options import SimOptions
 from .recording import Recording
@@ -68,11 +68,13 @@ def choices_of(
         if _is_choice(target) and not (target in by_itself and by_itself[target] == value)
     }
     commands: list[Command] = [Write(chosen)] if chosen else []
+    commands += [ChooseOpmode(name, mode) for mode, name in recording.station.opmodes.items()]
+    commands += [command for command in pending if isinstance(command, ChooseOpmode)]
     # A match chooses modes by itself, as a script does.
     if modes:
         commands.append(modes[-1])
     elif snapshot is not None and snapshot.practice_since is None and "mode" not in by_itself:
-        commands.append(ChooseMode(cast(ChosenMode, snapshot.chosen_mode)))
+        commands.append(ChooseMode(snapshot.chosen_mode))
     return tuple(commands)
 
 

@@ -11,10 +11,10 @@ from typing import Any
 
 from ...project import Project
 from ...runtime.scripts.script import InputScript, Step
-from .commands import Command, TimeState
+from .commands import ChosenMode, Command, TimeState
 from .options import SimOptions
 from .scene import Line, Point, Pose, Tag, Target, Text
-from .snapshot import Chooser, Failure
+from .snapshot import Chooser, Failure, Opmode
 
 #: What the path of a value of NetworkTables begins with, as in input scripts; and that of a topic's type.
 VALUE, TYPE = "nt:", "type:"
@@ -28,12 +28,14 @@ class StationState:
 
     :param practice_since_us: when the current practice match began
     :param sticks: the state of the joysticks' controls, by target, whether or not the robot receives it
+    :param opmodes: the names of the opmodes that were chosen, by mode; an empty one: none is to run
     :param taps: the controls that were released before a packet had shown the robot that they were pressed, with the
         number of packets until they are released for the robot
     """
 
     practice_since_us: int | None = None
     sticks: Mapping[str, Any] = field(default_factory=dict)
+    opmodes: Mapping[ChosenMode, str] = field(default_factory=dict)
     taps: Mapping[str, int] = field(default_factory=dict)
 
 
@@ -105,7 +107,7 @@ class Update:
     :param distance: the whole distance that it has driven, in feet
     :param mode_seconds: the time that it has been in each mode
     :param steps: recorded steps; the first has the number `steps_from`
-    :param drawings: the user's drawings, if they have changed; `targets` and `choosers` likewise
+    :param drawings: the user's drawings, if they have changed; `targets`, `choosers` and `opmodes` likewise
     """
 
     time_us: int
@@ -134,6 +136,7 @@ class Update:
     drawings: tuple[Line | Text, ...] | None
     targets: tuple[Target, ...] | None
     choosers: tuple[Chooser, ...] | None
+    opmodes: tuple[Opmode, ...] | None
     notes: tuple[str, ...]
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ...errors import UsageError
 from ...runtime.scripts.script import InputScript
+from ...season import CURRENT
 from .extensions import check_installed
 
 #: The port where dashboards look for a robot's NetworkTables.
@@ -28,6 +29,7 @@ class SimOptions:
     :param wpilog: where to write WPILib's data log
     :param extensions: WPILib's simulation extensions to load, by name
     :param start_position: where the robot starts, one of the field's `starts`
+    :param opmodes: the names of opmodes to choose, each for its mode; the robot is put into the mode of the first
     :param fork: False starts each robot in a new interpreter, as on systems where processes cannot be forked
     :param network_values: whether to report the values of NetworkTables, for `Simulation.network_cursor`
     """
@@ -43,6 +45,7 @@ class SimOptions:
     wpilog: Path | None = None
     extensions: tuple[str, ...] = ()
     start_position: str | None = None
+    opmodes: tuple[str, ...] = ()
     fork: bool | None = None
     network_values: bool = False
 
@@ -53,6 +56,13 @@ class SimOptions:
         """
         check_speed(self.speed)
         check_installed(self.extensions)
+        if self.opmodes and not CURRENT.opmodes:
+            raise UsageError(f"the WPILib of {CURRENT.year} has no opmodes", remedy="Leave out --opmode.")
+        if self.opmodes and self.script is not None:
+            raise UsageError(
+                "--opmode and --script are mutually exclusive",
+                remedy='A script selects opmodes by "control.opmode", beside "mode".',
+            )
         if self.run_until is not None and self.run_until < self.start_at:
             raise UsageError(
                 f"--seconds {self.run_until:g} is before --from {self.start_at:g}",

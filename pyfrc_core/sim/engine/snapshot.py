@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from ...processes.standstill import Standstill
+from .commands import ChosenMode, chosen_mode
 from .scene import Point, Scene
 
 #: The state of a simulation. ``starting``: robot code is imported, or replayed to a moment of the past.
@@ -27,6 +28,19 @@ class Chooser:
     options: tuple[str, ...]
     default: str
     active: str
+
+
+@dataclass(frozen=True)
+class Opmode:
+    """An opmode that the robot has published. WPILib has opmodes from 2027 on.
+
+    :param mode: what it is for
+    """
+
+    name: str
+    mode: ChosenMode
+    group: str = ""
+    description: str = ""
 
 
 @dataclass(frozen=True)
@@ -51,6 +65,7 @@ class Snapshot:
     scene: Scene
     values: MappingProxyType[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     choosers: tuple[Chooser, ...] = ()
+    opmodes: tuple[Opmode, ...] = ()
     emergency_stopped: bool = False
     station_attached: bool = True
     practice_since: float | None = None
@@ -65,11 +80,14 @@ class Snapshot:
         return not self.mode.startswith("disabled") and not stopped
 
     @property
-    def chosen_mode(self) -> str:
-        """``autonomous``, ``teleop`` or ``test``: what the robot does when it is enabled."""
-        if self.mode == "disabled":
-            return "teleop"
-        return self.mode.removeprefix("disabled ")
+    def chosen_mode(self) -> ChosenMode:
+        """What the robot does when it is enabled."""
+        return chosen_mode(self.mode)
+
+    @property
+    def opmode(self) -> str:
+        """The name of the opmode that is selected; empty for none."""
+        return str(self.values.get("control.opmode") or "")
 
 
 @dataclass(frozen=True)

@@ -65,6 +65,7 @@ class SnapshotBuilder:
             mode=update.mode,
             values=MappingProxyType(values),
             choosers=before.choosers if update.choosers is None else update.choosers,
+            opmodes=before.opmodes if update.opmodes is None else update.opmodes,
             emergency_stopped=bool(values.get("control.eStop")),
             station_attached=bool(values.get("control.dsAttached", True)),
             practice_since=None if since is None else since / 1_000_000,

@@ -30,6 +30,7 @@ class SimRequest:
 
     :param ui: the name of the front end; None: the one that the other options need, or that this machine allows
     :param mode: what a headless simulation puts the robot through
+    :param opmodes: the names of opmodes to choose, each for its mode
     :param seconds: the end, in robot time; `start_at` likewise
     :param speed: robot seconds per second; None: real time, or as fast as possible when unattended
     :param nt_port: None: the usual port, or none when unattended; 0: none
@@ -47,6 +48,7 @@ class SimRequest:
     speed: float | None = None
     paused: bool = False
     start_position: str | None = None
+    opmodes: tuple[str, ...] = ()
     watch: bool = False
     record: Path | None = None
     wpilog: Path | None = None

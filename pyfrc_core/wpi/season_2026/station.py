@@ -218,6 +218,11 @@ def opmode_of_tests(opmode: Opmode) -> OpmodeOfTests:
     return opmode
 
 
+def opmode_name() -> str:
+    """Return the name of the opmode that was last selected: there are none before 2027."""
+    return ""
+
+
 def select_opmode(opmode: Opmode) -> None:
     """Select an opmode with the next packet, and its mode."""
 

@@ -23,6 +23,7 @@ from ....wpi import station
 from .. import commands
 from ..messages import Job, Ready, Replayed, Update
 from ..scene import Pose, Target
+from ..snapshot import Opmode
 from .driven_path import DrivenPath
 from .network import Choosers, Served
 from .network_trace import NetworkTrace
@@ -60,6 +61,7 @@ class Session:
         self._run, self._job, self._connection = run, job, connection
         self._targets = Targets(run.hal_data, run.connection.packet)
         self._choosers = Choosers()
+        self._opmodes: tuple[Opmode, ...] = ()
         self._served: Served | None = None
         self._time = job.time_state
         self._carried_out = self._recorded = 0
@@ -130,9 +132,9 @@ class Session:
         """Begin to carry out commands: the replay is over."""
         run, job = self._run, self._job
         self._taken_over, self._replaying = True, False
-        self._station.take_over()
         if job.options.recording:
             self._traces.skip_hal(run.clock.now)
+        self._station.connect(job.script, job.options.opmodes)
         for command in job.commands:
             self._carry_out(command)
         if job.options.nt_port is not None:
@@ -271,18 +273,12 @@ class Session:
         match command:
             case commands.Resume() | commands.Pause() | commands.Speed():
                 self._set_time(self._time.after(command, self._run.clock.next_packet_us))
-            case commands.ChooseMode():
-                self._station.choose(command)
-            case commands.Enable():
-                if note := self._station.enable(command):
-                    self._notes.append(note)
-            case commands.EmergencyStop():
-                self._station.emergency_stop(command)
-            case commands.Practice():
-                self._station.practise(command)
             case commands.Write():
                 for target, value in command.writes.items():
                     self._put(target, value)
+            case _:
+                if note := self._station.carry_out(command):
+                    self._notes.append(note)
 
     def _put(self, target: str, value: object) -> None:
         try:
@@ -312,7 +308,7 @@ class Session:
         steps_from = max(self._own_steps_from, self._steps_sent - 2)
         steps = () if self._recorder is None else self._recorder.steps_from(steps_from)
         overruns, worst_us = run.overruns_until_now()
-        drawings, vision = self._renderer.drawings(), self._targets_seen()
+        drawings, vision, opmodes = self._renderer.drawings(), self._targets_seen(), self._station.opmodes()
         network_base, network_lines = self._traces.take_network(run.clock.now, base is not None)
         update = Update(
             time_us=run.clock.now_us - self._beyond_us,
@@ -341,11 +337,12 @@ class Session:
             drawings=None if drawings == self._drawings else drawings,
             targets=None if vision == self._vision else vision,
             choosers=self._choosers.changed(),
+            opmodes=None if opmodes == self._opmodes else opmodes,
             notes=tuple(self._notes),
         )
         self._connection.send(update)
         self._sent_at = wall()
-        self._drawings, self._vision = drawings, vision
+        self._drawings, self._vision, self._opmodes = drawings, vision, opmodes
         self._steps_sent = update.steps_from + len(steps)
         if self._recorder is not None:
             self._recorder.forget_before(update.steps_from)

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import cast
 
 from ....config.settings import MatchSettings
 from ....config.sim import FieldConfig
+from ....errors import UsageError
 from ....runtime.match import MatchPeriods
 from ....runtime.robot import RobotRun
 from ....runtime.scripts.joysticks import CONTROL, NEUTRAL
+from ....runtime.scripts.script import InputScript
+from ....runtime.scripts.targets import MODE
 from ....wpi import station
-from ..commands import ChooseMode, EmergencyStop, Enable, Practice
+from ..commands import ChooseMode, ChooseOpmode, ChosenMode, EmergencyStop, Enable, Practice, chosen_mode
 from ..messages import StationState
+from ..snapshot import Opmode
 
-E_STOP = "control.eStop"
+E_STOP, OPMODE = "control.eStop", "control.opmode"
 
 
 class Station:
@@ -42,35 +47,82 @@ class Station:
         #: The buttons and POVs that were pressed since the last packet.
         self._pressed: set[str] = set()
 
-    def take_over(self) -> None:
-        """Control the match from the next packet on; until now, the replayed script has done so."""
-        self._run.clock.before_packet.append(self._on_packet)
+    def carry_out(self, command: object) -> str:
+        """Carry out a command for the driver station, and return information for the user, or an empty text."""
+        match command:
+            case ChooseMode():
+                self._choose(command.mode)
+            case ChooseOpmode():
+                return self._choose_opmode(command)
+            case Enable():
+                return self._enable(command)
+            case EmergencyStop():
+                self._disable()
+                self._write(E_STOP, True)
+            case Practice():
+                self.state = replace(self.state, practice_since_us=self._run.clock.next_packet_us)
+        return ""
 
-    def choose(self, command: ChooseMode) -> None:
+    def _choose(self, mode: ChosenMode) -> None:
         """Disable the robot, and choose a mode."""
         self._end_practice()
-        self._enter({"teleop": "disabled"}.get(command.mode, f"disabled {command.mode}"))
+        self._enter({"teleop": "disabled"}.get(mode, f"disabled {mode}"))
 
-    def enable(self, command: Enable) -> str:
-        """Enable or disable the robot, and return information for the user, or an empty text."""
+    def _choose_opmode(self, command: ChooseOpmode) -> str:
+        mode, name = command.mode, command.name
+        published = self._published(mode)
+        if name and name not in published:
+            there = ", ".join(map(repr, published)) or "none"
+            return f"There is no opmode {name!r} for {mode}: the robot has published {there}."
+        self.state = replace(self.state, opmodes={**self.state.opmodes, mode: name})
+        if mode == chosen_mode(station.mode_name()):
+            self._disable()
+            self._select_opmode(mode)
+        return ""
+
+    def opmodes(self) -> tuple[Opmode, ...]:
+        """Return the opmodes that the robot has published: in each mode by group and name."""
+        found = [
+            Opmode(each.name, cast(ChosenMode, each.mode), each.group, each.description)
+            for each in station.published_opmodes()
+        ]
+        return tuple(sorted(found, key=lambda each: (each.mode, each.group, each.name)))
+
+    def connect(self, script: InputScript, opmodes: Iterable[str]) -> None:
+        """Control the match from the next packet on. If nothing has been selected yet, select an opmode.
+
+        :param script: what has controlled the match until now
+        :param opmodes: the names of opmodes to choose, each for its mode; the mode of the first one becomes the robot's
+        :raises UsageError: when the robot has published no such opmode
+        """
+        self._run.clock.before_packet.append(self._on_packet)
+        if any({MODE, OPMODE} & step.writes.keys() for step in script.steps):
+            return
+        published, found = self.opmodes(), []
+        for name in opmodes:
+            modes = [each.mode for each in published if each.name == name]
+            if not modes:
+                there = ", ".join(repr(each.name) for each in published) or "none"
+                raise UsageError(
+                    f"there is no opmode {name!r}: the robot has published {there}", remedy="--opmode names one."
+                )
+            found += [ChooseOpmode(name, mode) for mode in modes]
+        for choice in found:
+            self._choose_opmode(choice)
+        if found:
+            self._choose(found[0].mode)
+        else:
+            self._select_opmode(chosen_mode(station.mode_name()))
+
+    def _enable(self, command: Enable) -> str:
         if not command.enabled:
             self._disable()
         elif self._run.hal_data.read(E_STOP):
             return "The robot has been stopped in an emergency: restart it to enable it again."
         elif station.get_mode() == "disabled":
             self._end_practice()
-            chosen = station.mode_name().removeprefix("disabled").strip()
-            self._enter(chosen or "teleop")
+            self._enter(chosen_mode(station.mode_name()))
         return ""
-
-    def emergency_stop(self, command: EmergencyStop) -> None:
-        """Stop the robot until it is restarted."""
-        self._disable()
-        self._write(E_STOP, True)
-
-    def practise(self, command: Practice) -> None:
-        """Begin a practice match with the next packet."""
-        self.state = replace(self.state, practice_since_us=self._run.clock.next_packet_us)
 
     def put(self, target: str, value: object) -> None:
         """Write an input. A joystick's control is written when the robot receives its data.
@@ -101,12 +153,24 @@ class Station:
 
     def _enter(self, mode: str) -> None:
         before, after = self._delivers(station.mode_name()), self._delivers(mode)
-        self._write("mode", mode)
+        self._write(MODE, mode)
+        self._select_opmode(chosen_mode(mode))
         if before != after:
             for target, value in self.state.sticks.items():
                 control = CONTROL.fullmatch(target)
                 if control is not None:
                     self._write(target, value if after else NEUTRAL[control[2]])
+
+    def _select_opmode(self, mode: ChosenMode) -> None:
+        """Select the opmode that is chosen for this mode, which is the robot's; by default the first one."""
+        published, chosen = self._published(mode), self.state.opmodes.get(mode)
+        if chosen is None or chosen not in {"", *published}:  # a script has selected one, or none was
+            chosen = station.opmode_name() or next(iter(published), "")
+        if chosen != station.opmode_name():
+            self._write(OPMODE, chosen)
+
+    def _published(self, mode: ChosenMode) -> list[str]:
+        return [each.name for each in self.opmodes() if each.mode == mode]
 
     def _delivers(self, mode: str) -> bool:
         if mode.startswith("disabled"):

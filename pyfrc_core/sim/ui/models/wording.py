@@ -7,12 +7,17 @@ import re
 
 from ....physics.pose import Pose
 from ....processes.standstill import REPORTED_AFTER
+from ....season import CURRENT
+from ...engine.commands import ChosenMode
 from ...engine.snapshot import Snapshot, Status
 
 #: The alliance stations: as they are shown, in the order of their numbers, and as they are commanded.
 STATIONS = {f"{color.title()} {number}": f"{color}{number}" for color in ("red", "blue") for number in (1, 2, 3)}
 
-_MODES = {"autonomous": "Autonomous", "teleop": "Teleoperated", "test": "Test"}
+#: The modes that a driver can choose, as they are shown, in the order of their buttons.
+MODES: dict[ChosenMode, str] = {"teleop": "Teleoperated", "autonomous": "Autonomous", "test": CURRENT.test_mode}
+#: What is shown instead of an opmode's name when none is chosen.
+NO_OPMODE = "No opmode"
 
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?", re.ASCII)
 _NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
@@ -50,7 +55,7 @@ def mode_text(snapshot: Snapshot | None, status: Status) -> tuple[str, str]:
         return "Emergency stopped", "error"
     if not snapshot.station_attached:
         return "Driver station lost (F8)", "disabled"
-    mode = _MODES.get(snapshot.chosen_mode, snapshot.chosen_mode)
+    mode = MODES[snapshot.chosen_mode]
     left = "" if snapshot.practice_since is None else f", {snapshot.match_left:.0f} s"
     if snapshot.enabled:
         return f"{mode} enabled{left}", "enabled"

@@ -90,7 +90,7 @@ class Window:
         root.minsize(min(px(_LEAST_WIDTH), width), min(px(_LEAST_HEIGHT), height))
         self._tooltip = tooltip = Tooltip(root, theme)
         gap = px(8)
-        self.station = StationBar(root, theme, tooltip, simulation)
+        self.station = StationBar(root, theme, tooltip, simulation, self.focus_field)
         self.station.frame.pack(side="top", fill="x", padx=gap, pady=gap)
         line = ttk.Frame(root)
         line.pack(side="bottom", fill="x", padx=px(12), pady=(0, px(5)))

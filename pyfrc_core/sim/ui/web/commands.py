@@ -43,6 +43,7 @@ class PageCommands:
             "disable": lambda m: d.disable(),
             "e_stop": lambda m: d.emergency_stop(),
             "choose_mode": lambda m: d.choose_mode(m.one_of("mode", get_args(ChosenMode))),
+            "choose_opmode": lambda m: d.choose_opmode(m.text("opmode"), m.one_of("mode", get_args(ChosenMode))),
             "practice": lambda m: d.practice(),
             "attach": lambda m: d.attach_driver_station(m.boolean("attached")),
             "alliance": lambda m: d.set_alliance(m.one_of("station", tuple(STATIONS.values()))),

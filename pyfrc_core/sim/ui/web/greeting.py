@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 from ...._version import __version__
 from ....text_files import keep_out_of_version_control, write_whole
-from ...engine.commands import ChosenMode
 from ..models.joysticks import JOYSTICKS, axis_labels, button_labels
 from ..models.keyboard import BUTTON_KEYS, ENABLE_CHORD, GENTLE, LAYOUTS, layout_for
 from ..models.time_controls import FASTEST, SLOWEST
-from ..models.wording import STATIONS
+from ..models.wording import MODES, NO_OPMODE, STATIONS
 
 if TYPE_CHECKING:
     from ...engine.simulation import Simulation
@@ -46,7 +45,8 @@ def greeting(simulation: Simulation, client: int, read_only: bool, watching: boo
             "watch": watching,
             "alliances": STATIONS,
             "game_messages": list(project.game_specific_messages),
-            "modes": list(get_args(ChosenMode)),
+            "modes": MODES,
+            "no_opmode": NO_OPMODE,
             "speeds": {"slowest": SLOWEST, "fastest": FASTEST},
             "joysticks": [
                 {"axes": axis_labels(config, stick), "buttons": button_labels(config, stick)}

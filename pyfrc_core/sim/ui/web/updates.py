@@ -110,6 +110,8 @@ class UpdateBuilder:
             found["targets"] = [{"x": each.x, "y": each.y, "in_view": each.in_view} for each in scene.targets]
         if former is None or snapshot.choosers is not former.choosers:
             found["choosers"] = [vars(each) for each in snapshot.choosers]
+        if former is None or snapshot.opmodes is not former.opmodes:
+            found["opmodes"] = [vars(each) for each in snapshot.opmodes]
 
     def _add_values(self, found: dict[str, Any]) -> None:
         changed, self._place, is_all = self._collector.runs.changed_since(self._place)
@@ -182,6 +184,7 @@ def _station(snapshot: Snapshot | None, status: Status) -> dict[str, Any]:
         found |= {
             "mode": snapshot.mode,
             "chosen_mode": snapshot.chosen_mode,
+            "opmode": snapshot.opmode,
             "enabled": snapshot.enabled,
             "emergency_stopped": snapshot.emergency_stopped,
             "attached": snapshot.station_attached,

@@ -23,6 +23,7 @@ class Model {
   drawings = [];
   targets = [];
   choosers = [];
+  opmodes = [];
   console = [];
   dropped = 0;
   marks = [];
@@ -129,7 +130,7 @@ class Model {
     if (message.console) this.console = lastLines(this.console.concat(message.console));
     if (message.console_dropped) this.dropped += message.console_dropped;
     if (message.marks) this.marks = limited(this.marks.concat(message.marks));
-    for (const part of ["panels", "robot", "drawings", "targets", "choosers", "branches", "clients"]) {
+    for (const part of ["panels", "robot", "drawings", "targets", "choosers", "opmodes", "branches", "clients"]) {
       if (part in message) this[part] = message[part];
     }
     if (message.known_from !== undefined) this.knownFrom = message.known_from;

@@ -62,9 +62,8 @@ function show(t, values) {
 }
 
 function modeText(mode) {
-  const names = { autonomous: "Autonomous", teleop: "Teleoperated", test: "Test" };
   const chosen = mode === "disabled" ? "teleop" : mode.replace("disabled ", "");
-  return `${names[chosen] ?? chosen} ${mode.startsWith("disabled") ? "disabled" : "enabled"}`;
+  return `${model.hello.options.modes[chosen] ?? chosen} ${mode.startsWith("disabled") ? "disabled" : "enabled"}`;
 }
 
 // Show the present again.

@@ -12,10 +12,10 @@ import { applyTheme, isDark, settings } from "#js/settings.js";
 import { Icon, Live, classes, html } from "#js/view.js";
 
 const ICON = /** @type {HTMLLinkElement} */ (document.querySelector("link[rel=icon]")).href;
-const MODES = [["teleop", "Teleop"], ["autonomous", "Auto"], ["test", "Test"]];
+const SHORT = { teleop: "Teleop", autonomous: "Auto" };
 
 export class StationBar extends Live {
-  parts = ["station", "shown", "hello", "connection", "settings", "clients", "hint"];
+  parts = ["station", "opmodes", "shown", "hello", "connection", "settings", "clients", "hint"];
 
   render() {
     const { station } = model.shown;
@@ -54,10 +54,11 @@ export class StationBar extends Live {
     const connected = model.connection === "open";
     return html`
       <div class="segments" role="radiogroup" aria-label="Mode">
-        ${MODES.map(([mode, text]) => html`<button key=${mode} role="radio" aria-checked=${present.chosen_mode === mode}
+        ${Object.entries(model.hello.options.modes).map(([mode, text]) => html`<button key=${mode} role="radio" aria-checked=${present.chosen_mode === mode}
           class=${classes({ chosen: present.chosen_mode === mode })} disabled=${model.readonly || !connected}
-          onClick=${() => command("choose_mode", { mode })}>${text}</button>`)}
+          onClick=${() => command("choose_mode", { mode })}>${SHORT[mode] ?? text}</button>`)}
       </div>
+      ${model.opmodes.length > 0 && html`<${OpmodeChooser} disabled=${model.readonly || !connected} />`}
       <div class="pair">
         <button class="go" disabled=${!this.ready || present.enabled} title="Enable the robot: Ctrl+E, or [ ] \\ together"
           onClick=${() => command("enable")}>Enable</button>
@@ -72,6 +73,23 @@ export class StationBar extends Live {
     return html`<button class="estop" disabled=${!this.ready && !this.stuck} title="Emergency stop: the space bar. Only a restart enables the robot again."
         onClick=${() => stop("e_stop")}>E-STOP</button>`;
   }
+}
+
+// The opmodes of the chosen mode; only robots of 2027 have some.
+function OpmodeChooser({ disabled }) {
+  const { chosen_mode: mode, opmode } = model.station;
+  const offered = model.opmodes.filter((each) => each.mode === mode);
+  const option = ({ name, description }) => html`<option key=${name} value=${name} title=${description} selected=${name === opmode}>${name}</option>`;
+  const groups = [...new Set(offered.map((each) => each.group))];
+  return html`<select class="opmode" aria-label="Opmode" value=${opmode} disabled=${disabled || !offered.length}
+    title=${offered.find((each) => each.name === opmode)?.description || "The opmode that runs in this mode. Choosing another one disables the robot."}
+    onChange=${(event) => command("choose_opmode", { opmode: event.target.value, mode })}>
+    <option value="" selected=${!opmode}>${model.hello.options.no_opmode}</option>
+    ${groups.map((group) => {
+      const options = offered.filter((each) => each.group === group).map(option);
+      return group ? html`<optgroup key=${group} label=${group}>${options}</optgroup>` : options;
+    })}
+  </select>`;
 }
 
 // Stop the robot where the person sees it, also after a look at the past.
