@@ -109,7 +109,7 @@ class Page:
             self.samples.setdefault(path, []).extend(flat)
         if trail := message.get("trail"):
             self.trail = self.trail[: trail["from"]] + trail["points"]
-        kept = ("t", "panels", "robot", "choosers", "branches", "drawings", "field", "clients", "run")
+        kept = ("t", "panels", "robot", "choosers", "opmodes", "branches", "drawings", "field", "clients", "run")
         self.parts |= {key: message[key] for key in kept if key in message}
 
     def until(self, condition: Callable[[], object]) -> None:

@@ -29,7 +29,7 @@ let timeline;
 
 beforeEach(() => {
   model.show(null);
-  model.take({ type: "hello", t: 100, status: { length: 100 }, values: {}, marks: [], branches: [], known_from: 0 });
+  model.take({ type: "hello", options: { modes: {} }, t: 100, status: { length: 100 }, values: {}, marks: [], branches: [], known_from: 0 });
   model.set("problem", "");
   timeline = new Timeline();
   timeline.size = { width: 1016 };

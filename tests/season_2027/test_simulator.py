@@ -1,0 +1,185 @@
+"""`pyfrc sim` with an `OpModeRobot`: opmodes are chosen, kept by recordings and going back, and shown on the page."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import MakeProject
+from web_pages import Page, served
+
+ROBOT = {
+    "robot.py": """
+        import wpilib
+        import wpilib_drivers
+
+
+        class MyRobot(wpilib.OpModeRobot):
+            def __init__(self):
+                super().__init__()
+                self.motor = wpilib_drivers.PWMSparkMax(1)
+
+
+        class Turning(wpilib.PeriodicOpMode):
+            speed = 0.0
+
+            def __init__(self, robot: MyRobot):
+                super().__init__()
+                self.robot = robot
+
+            def periodic(self):
+                self.robot.motor.set_throttle(self.speed)
+
+
+        @wpilib.autonomous(name="Left", group="Turns", description="Turn to the left")
+        class Left(Turning):
+            speed = -0.5
+
+
+        @wpilib.autonomous
+        class Forward(Turning):
+            speed = 0.25
+
+
+        @wpilib.teleop
+        class Drive(Turning):
+            speed = 1.0
+
+
+        @wpilib.utility
+        class Check(Turning):
+            speed = 0.125
+    """
+}
+MOTOR = "pwm[1].value"
+
+
+def changes_of(script: Path, path: str) -> list[tuple[float, Any]]:
+    """Return the moments and values of what a recorded robot wrote."""
+    trace = script.with_suffix(".trace.jsonl").read_text("utf-8").splitlines()[1:-1]
+    lines = [json.loads(line) for line in trace]
+    return [(line["t"], line["set"][path]) for line in lines if path in line["set"]]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "motor"),
+    [
+        (("--mode", "auto"), 0.25),  # the first one: those without a group come first
+        (("--mode", "auto", "--opmode", "Left", "--opmode", "Drive"), -0.5),
+        (("--mode", "teleop", "--opmode", "Left", "--opmode", "Drive"), 1.0),
+        (("--mode", "test"), 0.125),
+    ],
+)
+def test_a_mode_without_a_window_runs_its_opmode(
+    arguments: tuple[str, ...], motor: float, make_project: MakeProject
+) -> None:
+    project = make_project(ROBOT)
+    result = project.run("sim", *arguments, "--seconds", "1", "--record", "run.jsonl")
+    assert result.code == 0, result.output
+    assert changes_of(project.path / "run.jsonl", MOTOR)[-1][1] == motor
+    assert "The trace equals the recorded one." in project.run("replay", "run.jsonl").stdout
+
+
+def test_a_practice_match_runs_the_opmode_of_each_mode(make_project: MakeProject) -> None:
+    project = make_project(ROBOT)
+    result = project.run("sim", "--mode", "practice", "--opmode", "Left", "--record", "run.jsonl")
+    assert result.code == 0, result.output
+    chosen = [name for _, name in changes_of(project.path / "run.jsonl", "control.opmode")]
+    assert chosen == ["Drive", "Left", "Drive"]  # disabled before the match, as later: about to be teleoperated
+    assert "The trace equals the recorded one." in project.run("replay", "run.jsonl").stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--mode", "auto", "--opmode", "Right"), "no opmode 'Right': the robot has published 'Forward', 'Left'"),
+        (("--ui", "none", "--opmode", "Left"), "without a window, --opmode needs --mode"),
+        (("--mode", "auto", "--opmode", "Left", "--script", "run.jsonl"), "--script are mutually exclusive"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_chosen(arguments: tuple[str, ...], said: str, make_project: MakeProject) -> None:
+    project = make_project({**ROBOT, "run.jsonl": '{"format": "pyfrc-input 1", "robot": "robot.py", "end": 1}\n'})
+    result = project.run("sim", *arguments)
+    assert result.code == 2
+    assert said in result.output
+
+
+def test_the_guides_example_works(make_project: MakeProject) -> None:
+    guide = (
+        (Path(__file__).parents[2] / "docs" / "simulation.md")
+        .read_text("utf-8")
+        .partition("\n## Opmodes\n")[2]
+        .partition("\n## ")[0]
+    )
+    (robot,) = re.findall(r"```python\n(.*?)```", guide, re.DOTALL)
+    project = make_project({"robot.py": robot})
+    commands = re.findall(r"^\$ pyfrc (.*)", guide, re.MULTILINE)
+    assert len(commands) == 2
+    for command in commands:
+        result = project.run(*shlex.split(command), "--record", "run.jsonl")
+        assert result.code == 0, result.output
+        assert "Leave the line" in dict(map(reversed, changes_of(project.path / "run.jsonl", "control.opmode")))
+
+
+def runs(page: Page, mode: str, opmode: str, motor: float) -> None:
+    page.command("enable")
+    page.run_for(0.1)
+    page.until(lambda: (page.station["mode"], page.station["opmode"]) == (mode, opmode))
+    assert page.values[MOTOR] == motor
+
+
+def test_the_page_offers_opmodes_and_chooses_them(make_project: MakeProject) -> None:
+    with served(make_project(ROBOT)) as server, server.page() as page:
+        assert page.hello["options"]["modes"]["test"] == "Utility"
+        page.until(lambda: page.parts.get("opmodes"))
+        offered = [(each["mode"], each["group"], each["name"]) for each in page.parts["opmodes"]]
+        assert offered == [
+            ("autonomous", "", "Forward"),
+            ("autonomous", "Turns", "Left"),
+            ("teleop", "", "Drive"),
+            ("test", "", "Check"),
+        ]
+        page.until(lambda: page.station["opmode"] == "Drive")  # as soon as the robot runs
+        runs(page, "teleop", "Drive", 1.0)
+        page.command("choose_mode", mode="autonomous")
+        page.command("choose_opmode", mode="autonomous", opmode="Left")
+        runs(page, "autonomous", "Left", -0.5)
+        page.command("choose_opmode", mode="autonomous", opmode="Forward")
+        page.until(lambda: (page.station["mode"], page.station["opmode"]) == ("disabled autonomous", "Forward"))
+        page.command("choose_opmode", mode="teleop", opmode="")  # for later: the robot's mode is another one
+        runs(page, "autonomous", "Forward", 0.25)
+        page.command("choose_mode", mode="teleop")
+        runs(page, "teleop", "", 0.25)  # no opmode sets the motor
+        page.command("choose_opmode", mode="teleop", opmode="Left")
+        page.until(lambda: "no opmode 'Left' for teleop" in page.status["note"])
+
+
+def test_a_choice_is_kept_by_a_restart_and_by_going_back(make_project: MakeProject) -> None:
+    with served(make_project(ROBOT)) as server, server.page() as page:
+        page.until(lambda: page.station.get("opmode") == "Drive")
+        page.command("choose_mode", mode="autonomous")
+        page.command("choose_opmode", mode="autonomous", opmode="Left")
+        runs(page, "autonomous", "Left", -0.5)
+        page.command("choose_opmode", mode="autonomous", opmode="Forward")
+        runs(page, "autonomous", "Forward", 0.25)
+        page.command("rewind", t=0.1)
+        page.until(lambda: page.parts["run"]["number"] == 2 and page.station["opmode"] == "Left")
+        page.run_for(0.1)  # the robot is enabled, as it was at that moment
+        assert page.values[MOTOR] == -0.5
+        page.command("choose_mode", mode="test")
+        page.command("restart")
+        page.until(lambda: page.parts["run"]["number"] == 3 and page.station["opmode"] == "Check")
+        page.command("choose_mode", mode="autonomous")
+        page.until(lambda: page.station["opmode"] == "Left")
+
+
+def test_a_robot_without_opmodes_offers_none(make_project: MakeProject) -> None:
+    robot = {"robot.py": "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"}
+    with served(make_project(robot)) as server, server.page() as page:
+        page.command("enable")
+        page.run_for(0.1)
+        assert (page.parts["opmodes"], page.station["opmode"]) == ([], "")
