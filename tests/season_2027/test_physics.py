@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from conftest import MakeProject
+from test_physics_numbers import test_numbers
+
+__all__ = ["test_numbers"]
 
 ROBOT = """
     import wpilib

@@ -46,3 +46,15 @@ def test_what_the_seasons_share_is_there_once(make_project: MakeProject) -> None
         assert (project.path / file).read_text("utf-8") == (SOURCES / "command" / file).read_text("utf-8")
     labels = json.loads((project.path / "sim/config.json").read_text("utf-8"))["pyfrc"]["joysticks"]["0"]
     assert labels["buttons"]["0"] == "take in"  # buttons count from 0
+
+
+@pytest.mark.parametrize("template", ["mecanum", "opmode"])
+def test_create_physics_finds_its_drivetrain(make_project: MakeProject, template: str) -> None:
+    """What it writes passes the template's tests; a robot with opmodes is driven in one."""
+    project = make_project({})
+    assert project.run("init", "--template", template).code == 0
+    (project.path / "physics.py").unlink()
+    result = project.run("create-physics")
+    assert result.code == 0, result.output
+    assert "The project's tests pass." in result.stdout
+    assert "No stick moved" not in result.stdout

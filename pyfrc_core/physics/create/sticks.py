@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from ...hal import HalData
 from ...runtime.robot import RobotRun
-from ...wpi import station
+from ...wpi import joysticks, station
 
 #: A joystick's port and the index of one of its axes.
 Axis = tuple[int, int]
@@ -21,7 +21,7 @@ Output = Callable[[HalData], float]
 _Seen = TypeVar("_Seen")
 
 #: The axes for forward and backward: of a joystick or a gamepad's left stick, and of its right stick.
-FORWARD_AXES = (1, 5)
+FORWARD_AXES = (1, *joysticks.RIGHT_STICK_FORWARD)
 
 _PORTS, _AXES = 6, 6
 _PUSHED_US, _STEADY_US, _DRIVING_US = 200_000, 100_000, 1_000_000
@@ -55,6 +55,13 @@ def _axes() -> Iterator[Axis]:
     return ((port, axis) for port in range(_PORTS) for axis in range(_AXES))
 
 
+def _enable() -> None:
+    """Enable the robot in teleop; one with opmodes in the first that it publishes for that."""
+    if (opmode := next((each for each in station.published_opmodes() if each.mode == "teleop"), None)) is not None:
+        station.select_opmode(opmode)
+    station.set_mode(enabled=True)
+
+
 class _Trial:
     """Drives the enabled robot with joystick inputs."""
 
@@ -65,7 +72,7 @@ class _Trial:
         self._at_rest: dict[str, float] = {}
 
     def begin(self) -> None:
-        station.set_mode(enabled=True)
+        _enable()
         self._wait(5 * _STEADY_US)
         self._at_rest = self._read()
 
@@ -128,7 +135,7 @@ def while_driving_forward(run: RobotRun, is_driving: Callable[[], bool], look: C
     """
     # Robots that drive relative to the field drive the other way in the red alliance.
     run.hal_data["alliance_station"] = "blue1"
-    station.set_mode(enabled=True)
+    _enable()
     try:
         for port in range(_PORTS):
             for index in FORWARD_AXES:

@@ -10,7 +10,10 @@ from typing import Any, TypeGuard
 import wpilib
 from wpilib.interfaces import GenericHID
 
-__all__ = ["TRIGGERS", "GenericHID", "class_of", "is_joystick", "port_of", "replacements"]
+__all__ = ["RIGHT_STICK_FORWARD", "TRIGGERS", "GenericHID", "class_of", "is_joystick", "port_of", "replacements"]
+
+#: The axes of gamepads for their right stick forward and backward.
+RIGHT_STICK_FORWARD = (5,)
 
 #: The trigger axes of gamepads, by class: their values go from 0 to 1, not from -1.
 TRIGGERS: dict[str, tuple[int, ...]] = {"XboxController": (2, 3), "PS4Controller": (3, 4), "PS5Controller": (3, 4)}

@@ -10,7 +10,7 @@ from typing import Any, TypeGuard
 import wpilib
 from wpilib import GenericHID
 
-__all__ = ["TRIGGERS", "GenericHID", "class_of", "is_joystick", "port_of", "replacements"]
+__all__ = ["RIGHT_STICK_FORWARD", "TRIGGERS", "GenericHID", "class_of", "is_joystick", "port_of", "replacements"]
 
 #: Called with a port, a key of the joystick in `hal_data`, and the number of a control that robot code asks for.
 OnAsk = Callable[[int, str, int], object]
@@ -56,6 +56,9 @@ def _triggers(owner: Any) -> tuple[int, ...]:
     axes = _numbers(owner.Axis)
     return tuple(axes[name] for name in axes if re.search(r"trigger|^[lr]2$", name))
 
+
+#: The axes of gamepads for their right stick forward and backward: the driver station's own, and those of 2026.
+RIGHT_STICK_FORWARD = (3, 5)
 
 #: The trigger axes of gamepads, by class: their values go from 0 to 1, not from -1.
 TRIGGERS: dict[str, tuple[int, ...]] = {each.__name__: _triggers(each) for each in _GAMEPADS}

@@ -36,7 +36,7 @@ def test_the_sticks_drive_and_turn(control, robot, physics_controller):
     with control.run_robot():
         gamepad.set_left_y(-1)
         run(control, "Drive", 1)
-        assert physics_controller.get_pose().relative_to(start).x > 3
+        assert physics_controller.get_pose().relative_to(start).x > 2
         gamepad.set_left_y(0)
         gamepad.set_right_x(-0.5)  # to the left
         run(control, "Drive", 0.5)
