@@ -61,7 +61,7 @@ FUZZ_TEST = """
         run = fake_time.run
         rng = random.Random(seed)
         plan = without_restarts(plan_match(rng, 20, MatchSettings(), ("LRL", "RLR")))
-        generator = InputGenerator(rng, run, plan=plan, seconds=20, physics_inputs=frozenset(PHYSICS))
+        generator = InputGenerator(rng, run, plan=plan, seconds=20)
         targets, written, steps = Targets(hal_data), [], []
 
         def on_step(now):
@@ -91,9 +91,9 @@ FUZZ_TEST = """
 Written = list[tuple[int, str, object]]
 
 
-def fuzz(make_project, seeds: int, physics: tuple[str, ...] = (), robot: str = EVERYTHING, **env: str) -> list[Written]:
+def fuzz(make_project, seeds: int, robot: str = EVERYTHING, **env: str) -> list[Written]:
     """Return what the generator wrote in matches from the seeds 0, 1, ..."""
-    test = FUZZ_TEST.replace("SEEDS", str(seeds)).replace("PHYSICS", repr(physics))
+    test = FUZZ_TEST.replace("SEEDS", str(seeds))
     project = make_project({"robot.py": robot, "tests/test_fuzz_matches.py": test})
     result = project.run("test", env=env)
     assert result.code == 0, result.output

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from ..errors import nearest, text_of
 from ..project.robot_files import RobotFiles
+from ..season import CURRENT
 from .explanation import Explanation
 from .places import class_named, frames_of, line_of_class, users_class
 
@@ -18,6 +19,11 @@ _STACK_LINE = re.compile(r'File "([^"]+)", line (\d+)')
 _FILE_AND_LINE = re.compile(r"(?P<file>[^\s()]+\.py):(?P<line>\d+)")
 
 _OWN_CHANNEL = "Each device needs a channel of its own: change one of the two to the number that it is wired to."
+#: Instead, if it was this line that made the device before.
+_MADE_AGAIN = (
+    "This line runs more than once, and makes the device each time. Make it once, in the __init__ of the robot, and "
+    "use it here."
+)
 _FIRST_STATE = "Write @state(first=True) above the state with which it begins, and @state above the others."
 
 
@@ -55,6 +61,12 @@ ROWS = (
         "{kind} {channel} is used already{since}",
         _OWN_CHANNEL,
     ),
+    KnownError(  # as WPILib 2027 says it
+        r"RuntimeError: (?P<kind>PWM|DIO|Analog|AddressableLED|Duty Cycle) \d+ previously allocated.*"
+        r": Channel (?P<channel>-?\d+)",
+        "{kind} channel {channel} is used already{since}",
+        _OWN_CHANNEL,
+    ),
     KnownError(
         r"RuntimeError: Attempted to reuse an allocated resource: Channel (?P<channel>\d+)",
         "channel {channel} of this pneumatics module has a solenoid already",
@@ -68,8 +80,13 @@ ROWS = (
     KnownError(
         r"RuntimeError: Allocating channel that is out of range: \w+ (?P<channel>-?\d+)",
         "there is no channel {channel} for such a device",
-        "The roboRIO has PWM 0 to 9, DIO 0 to 9, analog inputs 0 to 3, and relays 0 to 3. Its expansion port (MXP) has "
-        "PWM 10 to 19, DIO 10 to 25, and analog inputs 4 to 7. Solenoids: 0 to 7 (CTRE), 0 to 15 (REV).",
+        CURRENT.controller.channels,
+    ),
+    KnownError(  # of WPILib 2027, where the maximum is a channel
+        r"RuntimeError: Invalid Index for (?P<kind>[\w ]+?)\s*Status.*Minimum: (?P<low>\d+) Maximum: (?P<end>\d+) "
+        r"Requested: (?P<channel>-?\d+): Channel",
+        "there is no channel {channel} for {kind}: they are {low} to {end}",
+        "Change it to the number of the channel that it is wired to.",
     ),
     KnownError(
         r"RuntimeError: Invalid Index for (?P<kind>[\w ]+?)\s*Status.*Minimum: (?P<low>\d+) Maximum: (?P<end>\d+) "
@@ -79,9 +96,8 @@ ROWS = (
     ),
     KnownError(
         r"RuntimeError: HAL: No available resources to allocate",
-        "the roboRIO has no more devices of this kind",
-        "It has 8 encoders, 8 counters, 8 interrupts and 1 AddressableLED: create each once, and not in a method that "
-        "is called again.",
+        f"the {CURRENT.controller.name} has no more devices of this kind",
+        f"It has {CURRENT.controller.few}: create each once, and not in a method that is called again.",
     ),
     KnownError(
         r"RuntimeError: A (?P<kind>\w+) instance has already been created with this device ID: (?P<id>\d+)",
@@ -280,17 +296,18 @@ def _explained(row: KnownError, found: re.Match[str], error: BaseException, file
         words["expected"] = getattr(vars(cls).get(words["name"]), "__name__", "TheClass") if cls else "TheClass"
     cls = cls or users_class(error, files)
     words["cls"] = cls.__name__ if cls is not None else words.get("name", "")
-    words["since"] = _since(str(error), files)
+    before, here = _since(str(error), files), files.innermost_line(error.__traceback__, tests=False)
+    words["since"] = f", since {before}" if before else ""
     for name in ("type", "got"):
         words[name] = words.get(name, "").replace("._wpilib.", ".").rpartition(".")[2]
     if place := _FILE_AND_LINE.fullmatch(words.get("place", "")):
         words["place"] = f"{files.relative(place['file'])}:{place['line']}"
-    in_traceback = files.innermost_line(error.__traceback__, tests=False) is not None
-    line = line_of_class(cls, files, row.at.format_map(words)) if cls is not None and not in_traceback else ""
-    return Explanation(row.text.format_map(words), row.remedy.format_map(words), line)
+    line = line_of_class(cls, files, row.at.format_map(words)) if cls is not None and here is None else ""
+    remedy = _MADE_AGAIN if before and before == here else row.remedy.format_map(words)
+    return Explanation(row.text.format_map(words), remedy, line)
 
 
 def _since(text: str, files: RobotFiles) -> str:
     """Return where a device was created before, from the stack that WPILib adds to its message."""
     ours = [(file, line) for file, line in _STACK_LINE.findall(text) if files.is_project_file(file)]
-    return f", since {files.relative(ours[-1][0])}:{ours[-1][1]}" if ours else ""
+    return f"{files.relative(ours[-1][0])}:{ours[-1][1]}" if ours else ""

@@ -46,12 +46,16 @@ class ControllerSoftware:
     :param images:         versions of its system image that the season's tools accept, the newest last
     :param python:         the version of Python that WPILib is built for there
     :param home:           home directory of the user that runs the robot program
+    :param channels:       which channels it has, in a sentence for who asks for another one
+    :param few:            what it has few of
     """
 
     name: str
     images: tuple[str, ...]
     python: tuple[int, int]
     home: str
+    channels: str
+    few: str
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,8 @@ SEASON_2027 = Season(
         images=(),
         python=(3, 14),
         home="/home/systemcore",
+        channels="Solenoids: 0 to 7 (CTRE), 0 to 15 (REV).",
+        few="8 encoders",
     ),
     packages=Packages(
         wpilib="2027.0.0a7",

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from ..errors import UsageError
+from ..errors import RobotCodeError, UsageError
 from ..processes.call import run_in_subprocess
+from ..runtime.checks.failures import as_robot_code_error
 from ..runtime.checks.hang_detector import HangDetector
+from ..runtime.exceptions import TestFroze, TestRanTooLong
 from ..runtime.loading import load_robot
 from ..runtime.patches.install import patches
 from ..runtime.robot import RobotRun
@@ -18,7 +20,7 @@ from ..wpi import station
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
     from ..project import Project
-    from ..wpi.opmodes import Opmode
+    from ..wpi.opmodes import Opmode, OpmodeOfTests
 
 
 #: Limits a test with the fixture `opmode` to the opmodes that it names: ``@pytest.mark.opmode("Drive")``.
@@ -42,7 +44,11 @@ def run_for_each(metafunc: pytest.Metafunc, published: Callable[[], tuple[Opmode
         return
     if any("opmode" in str(mark.args[:1]) for mark in metafunc.definition.iter_markers("parametrize")):
         return  # the test's own choice
-    opmodes = published()
+    try:
+        opmodes = published()
+    except RobotCodeError as error:  # for this test only: others may not need the robot
+        metafunc.parametrize("opmode", [pytest.param(error, id="?")], indirect=True)
+        return
     wrong = sorted(set(named) - {each.name for each in opmodes})
     if wrong:
         there = ", ".join(repr(each.name) for each in opmodes) or "none"
@@ -56,6 +62,14 @@ def run_for_each(metafunc: pytest.Metafunc, published: Callable[[], tuple[Opmode
         [pytest.param(station.opmode_of_tests(each), id=f"{each.mode}-{each.name}") for each in chosen],
         indirect=True,
     )
+
+
+def value_of(parameter: Any) -> OpmodeOfTests:
+    """Return what the fixture `opmode` gives, or raise the reason why it is not known."""
+    if isinstance(parameter, RobotCodeError):
+        raise parameter
+    opmode: OpmodeOfTests = parameter
+    return opmode
 
 
 def _place(metafunc: pytest.Metafunc) -> str:
@@ -77,5 +91,8 @@ def _publish(project: Project, log: CrashLog) -> tuple[Opmode, ...]:
     run = RobotRun()
     with HangDetector(project.files, project.settings.test.hang_seconds, log).watching():
         run.open()
-        run.construct(robot_class)
+        try:
+            run.construct(robot_class)
+        except (Exception, SystemExit, TestFroze, TestRanTooLong) as error:
+            raise as_robot_code_error(error, project.files) from error
         return tuple(sorted(station.published_opmodes(), key=lambda each: (each.mode, each.name)))

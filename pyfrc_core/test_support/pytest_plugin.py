@@ -154,8 +154,7 @@ class PyFrcPlugin(WatchedTests):
     @pytest.fixture
     def opmode(self, request: pytest.FixtureRequest) -> OpmodeOfTests:
         """One of the opmodes that your robot publishes: the test runs once for each of them."""
-        opmode: OpmodeOfTests = request.param
-        return opmode
+        return opmodes.value_of(request.param)
 
     @cached_property
     def opmodes(self) -> tuple[Opmode, ...]:

@@ -10,7 +10,7 @@ import math
 import random
 from dataclasses import dataclass
 
-from ...wpi import station
+from ...wpi import joysticks, station
 from .values import Value
 
 
@@ -78,13 +78,17 @@ _PORTS = 2
 
 @dataclass(frozen=True)
 class JoystickModel:
-    """A joystick: its controls, and how it describes itself."""
+    """A joystick: its controls, and how it describes itself.
+
+    :param type: the number of the gamepad's type; None where a driver station sends none
+    """
 
     name: str
     axes: int
     buttons: int
     povs: int
-    is_xbox: bool = False
+    is_gamepad: bool = False
+    type: int | None = None
 
     def writes(self, port: int) -> dict[str, Value]:
         """Return what plugs it in at a port that has a joystick."""
@@ -94,18 +98,12 @@ class JoystickModel:
             f"{stick}.button_count": self.buttons,
             f"{stick}.pov_count": self.povs,
             f"{stick}.name": self.name,
-            f"{stick}.{station.GAMEPAD_FLAG}": self.is_xbox,
+            f"{stick}.{station.GAMEPAD_FLAG}": self.is_gamepad,
+            **({} if self.type is None else {f"{stick}.type": self.type}),
         }
 
 
-MODELS = (
-    JoystickModel("Controller (XBOX 360 For Windows)", 6, 10, 1, is_xbox=True),
-    JoystickModel("Wireless Controller", 6, 14, 1),
-    JoystickModel("Logitech Extreme 3D", 4, 12, 1),
-    JoystickModel("Logitech Attack 3", 3, 11, 0),
-    JoystickModel("Generic USB Joystick", 2, 12, 0),
-    JoystickModel("Button box", 5, 32, 0),
-)
+MODELS = tuple(JoystickModel(*each) for each in joysticks.MODELS)
 
 
 def choose_models(rng: random.Random) -> dict[int, JoystickModel]:

@@ -52,7 +52,12 @@ _DEVICES: dict[str, tuple[tuple[str, InputKind], ...]] = {
 #: Those of devices of which there is only one.
 _GROUPS: dict[str, tuple[tuple[str, InputKind], ...]] = {
     "accelerometer": (("x", "acceleration"), ("y", "acceleration"), ("z", "acceleration")),
-    "onboard_imu": (("yaw", "turns"), ("gyro_rate_z", "turning")),
+    "onboard_imu": (
+        ("yaw", "radians"),
+        *((f"angle_{axis}", "radians") for axis in "xyz"),
+        *((f"gyro_rate_{axis}", "radians per second") for axis in "xyz"),
+        *((f"accel_{axis}", "m/s2") for axis in "xyz"),
+    ),
 }
 #: What a digital input measures that a `Counter` counts.
 _COUNTED: tuple[tuple[str, InputKind], ...] = (("value", "pulses"),)
@@ -122,11 +127,12 @@ class SensorFinder:
             self._there = tuple([exists() for exists in _modules()])
         self._searches += 1
         groups, sim_devices = tuple(_groups(hal_data)), hal_data["CAN"].signature()
-        return _Devices(_used(), self._there, groups, sim_devices, counters.counted_channels())
+        opmodes = tuple(each.name for each in station.published_opmodes())
+        return _Devices(_used(), self._there, groups, sim_devices, counters.counted_channels(), opmodes)
 
 
 class _Devices(NamedTuple):
-    """The devices that exist: those of the roboRIO that have a sensor, and all others.
+    """The devices that exist: those of the controller that have a sensor, and all others; and the opmodes.
 
     :param groups: devices of which there is only one
     :param counted: the digital inputs that counters count
@@ -137,6 +143,7 @@ class _Devices(NamedTuple):
     groups: tuple[str, ...]
     sim_devices: Signature
     counted: frozenset[int]
+    opmodes: tuple[str, ...]
 
 
 @cache

@@ -53,8 +53,6 @@ class InputGenerator:
     :param run: the robot's run, which is only read
     :param plan: the events of the match, in order
     :param seconds: the length of the match, with all its periods
-    :param physics_inputs: targets of sensors that the robot's physics drives, and that are never written; sensors that
-        turn out to be driven during the match are excluded from then on
     :param network_reads: the entries of NetworkTables that the robot reads; None if they are not watched
     :param constants: the constants of the robot's code
     :param base: the recorded match with which this one begins
@@ -70,7 +68,6 @@ class InputGenerator:
         *,
         plan: Sequence[MatchEvent],
         seconds: float,
-        physics_inputs: frozenset[str] = frozenset(),
         network_reads: NetworkReads | None = None,
         constants: RobotConstants = UNKNOWN,
         base: BaseMatch | None = None,
@@ -103,10 +100,11 @@ class InputGenerator:
         self.write_at_once: Callable[[Mapping[str, Value]], None] | None = None
         if network_reads is not None:
             network_reads.on_first = self._before_first_read
-        self._driven = set(physics_inputs)
+        #: Targets of sensors that the robot's physics drives.
+        self._driven: set[str] = set()
         #: Switches that are closed for the whole match.
         self._held: set[str] = set()
-        self._sensors.paused = not physics_inputs and _is_simulated(run)
+        self._sensors.paused = _is_simulated(run)
         self._enabled_since_us: int | None = None
         self._enabled_us = 0
         self._attached = True

@@ -20,8 +20,8 @@ _STEPS = (0.001, -0.001, 0.01, -0.01, 0.1, -0.1)
 #: The value of an input.
 Value: TypeAlias = bool | int | float | str | tuple[bool | int | float | str, ...]
 
-#: The kind of an input's values. Units: volts, counts, degrees, degrees per second, turns (0 to 1), g, amperes, degrees
-#: Celsius. An "entry" is one of NetworkTables, whose values `network_values` draws.
+#: The kind of an input's values. Units: volts, counts, degrees, degrees per second, turns (0 to 1), g, m/s², amperes,
+#: degrees Celsius. An "entry" is one of NetworkTables, whose values `network_values` draws.
 InputKind = Literal[
     "axis",
     "trigger",
@@ -39,9 +39,12 @@ InputKind = Literal[
     "heading",
     "turning",
     "turns",
+    "radians",
+    "radians per second",
     "rotations",
     "rpm",
     "acceleration",
+    "m/s2",
     "amperes",
     "celsius",
     "hertz",
@@ -147,10 +150,13 @@ SPANS: dict[InputKind, Span] = {
     "heading": Span(0, 360, (0.0, 90.0, 180.0, 270.0, 359.9)),
     "turning": Span(-720, 720, (0.0, 0.0, 1.0, -1.0)),
     "turns": Span(0, 1, (0.0, 0.0, 0.25, 0.5, 0.75, 0.999, 1.0)),
+    "radians": Span(-3.142, 3.142, (0.0, 0.0, 1.571, -1.571, 3.141, -3.141)),
+    "radians per second": Span(-12, 12, (0.0, 0.0, 0.01, -0.01)),
     "rotations": Span(-1000, 1000, (0.0, 0.0, 1.0, -1.0, 10.0, 100.0, -100.0)),
     "rpm": Span(-7000, 7000, (0.0, 0.0, 100.0, -100.0, 3000.0, 5676.0, -5676.0)),
     "rail": Span(0, 7, (0.0, 3.3, 5.0, 6.0, 4.5)),
     "acceleration": Span(-2, 2, (0.0, 1.0, -1.0, 2.0, -2.0)),
+    "m/s2": Span(-20, 20, (0.0, 0.0, 9.81, -9.81, 19.6, -19.6)),
     "amperes": Span(0, 120, (0.0, 2.0, 40.0, 120.0)),
     # Motor controllers and what protects motors act at 60 to 100 °C.
     "celsius": Span(0, 120, (25, 25, 60, 80, 100), whole=True),
@@ -172,11 +178,15 @@ _STICKS = ("axis", "trigger")
 #: travel of a potentiometer.
 _UNSCALED = (1.0,)
 _DEGREES = (1.0, 1.0, 180 / math.pi, 360.0)
+_RADIANS = (1.0, 1.0, math.pi / 180, 2 * math.pi)
 _SCALES: dict[InputKind, tuple[float, ...]] = {
     "angle": _DEGREES,
     "half turns": _DEGREES,
     "heading": _DEGREES,
     "turning": _DEGREES,
+    "radians": _RADIANS,
+    "radians per second": _RADIANS,
+    "m/s2": (1.0, 9.80665),
     "turns": (1.0, 1 / 360, 0.5 / math.pi),
     "volts": (1.0, 1.0, 5 / 360, 5 / 270, 0.5 / math.pi * 5),
 }

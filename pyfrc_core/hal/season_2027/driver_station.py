@@ -21,7 +21,7 @@ from ..kinds import BOOL, FLOAT, ValueKind, choice, number, text, whole
 from ..paths import join
 
 AXES, POVS = 12, 8  # the maximum of the HAL
-BUTTONS = 12  # the shortest list; a joystick with more buttons shows all
+BUTTONS = station.BUTTONS  # the shortest list; a joystick with more buttons shows all
 
 STATION = choice(
     {"unknown": 0, "red1": 1, "red2": 2, "red3": 3, "blue1": 4, "blue2": 5, "blue3": 6}, hal.AllianceStationID
@@ -254,7 +254,7 @@ class JoystickData(LiveDict):
         return self._buttons.buttons
 
     def _buttons_shown(self) -> int:
-        return max(BUTTONS + 1, self.counts()[1])
+        return max(BUTTONS, self.counts()[1])
 
     def _button(self, index: int) -> bool:
         return bool(self._bits() >> index & 1)

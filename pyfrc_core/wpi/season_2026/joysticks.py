@@ -45,6 +45,16 @@ _GAMEPADS = (wpilib.XboxController, wpilib.PS4Controller, wpilib.PS5Controller, 
 _AXIS = re.compile(r"get(X|Y|Z|Twist|Throttle)$")
 _NAME = re.compile(r"(?:get)?(\w+?)(?:Button)?(?:Pressed|Released)?$")
 
+#: Joysticks that teams have: name, numbers of axes, buttons and POVs, and whether the driver station says "XBox".
+MODELS = (
+    ("Controller (XBOX 360 For Windows)", 6, 10, 1, True),
+    ("Wireless Controller", 6, 14, 1, False),
+    ("Logitech Extreme 3D", 4, 12, 1, False),
+    ("Logitech Attack 3", 3, 11, 0, False),
+    ("Generic USB Joystick", 2, 12, 0, False),
+    ("Button box", 5, 32, 0, False),
+)
+
 
 def is_joystick(thing: object) -> TypeGuard[GenericHID]:
     """Return whether this is a joystick or a gamepad."""

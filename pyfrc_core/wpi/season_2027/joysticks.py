@@ -63,6 +63,19 @@ RIGHT_STICK_FORWARD = (3, 5)
 #: The trigger axes of gamepads, by class: their values go from 0 to 1, not from -1.
 TRIGGERS: dict[str, tuple[int, ...]] = {each.__name__: _triggers(each) for each in _GAMEPADS}
 
+_TYPES = GenericHID.HIDType
+#: Joysticks that teams have: name, numbers of axes, buttons and POVs, whether it is a gamepad, and of which type. The
+#: buttons and axes of a gamepad are those of `wpilib.Gamepad`, on every make; its POV is four of the buttons.
+MODELS = (
+    ("Xbox 360 Controller", 6, 15, 0, True, int(_TYPES.XBOX_360)),
+    ("Xbox One Controller", 6, 16, 0, True, int(_TYPES.XBOX_ONE)),
+    ("PS4 Controller", 6, 21, 0, True, int(_TYPES.PS4)),
+    ("Nintendo Switch Pro Controller", 6, 16, 0, True, int(_TYPES.SWITCH_PRO)),
+    ("Logitech Extreme 3D", 4, 12, 1, False, int(_TYPES.UNKNOWN)),
+    ("Logitech Attack 3", 3, 11, 0, False, int(_TYPES.UNKNOWN)),
+    ("Button box", 5, 32, 0, False, int(_TYPES.UNKNOWN)),
+)
+
 
 def is_joystick(thing: object) -> TypeGuard[wpilib.HIDDevice]:
     """Return whether this is a joystick or a gamepad."""

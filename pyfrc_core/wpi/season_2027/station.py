@@ -43,8 +43,8 @@ Mode: TypeAlias = Literal["disabled", "autonomous", "teleop", "test"]
 JOYSTICKS = DriverStationBackend.JOYSTICK_PORTS
 #: As in 2019.
 EVENT_NAME = "sim-event"
-#: The default controls of each joystick: a gamepad has more buttons than a joystick of 2026.
-AXES, BUTTONS, POVS = 12, 12, 1
+#: The default controls of each joystick: as many as a robot may read, of a joystick or a gamepad.
+AXES, BUTTONS, POVS = 12, len(wpilib.Gamepad.Button.__members__), 1
 #: The key in `hal_data` of what the driver station says of a gamepad.
 GAMEPAD_FLAG = "is_gamepad"
 #: The value of a POV that is not pressed; when pressed, it is an angle in degrees clockwise from up.
