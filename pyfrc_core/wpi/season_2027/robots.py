@@ -132,8 +132,11 @@ def when_initialized(robot: Any, call: Callable[[], object]) -> None:
 
 
 def report_start() -> None:
-    """Report that the robot program has started, as WPILib's loop does before its first turn."""
-    hal.observe_user_program_starting()
+    """Report that the robot program has started, as WPILib's loop does before its first turn.
+
+    Before that, `RobotState` returns no opmode.
+    """
+    wpilib.DriverStationBackend.observe_user_program_starting()
 
 
 def turn_of(robot: wpilib.TimedRobot) -> Callable[[], None]:
