@@ -45,11 +45,11 @@ COMMANDS = {
 }
 
 
-#: Names that other tools have for what pyfrc, or another tool, does.
+#: Names that other tools have for what pyfrc, or another tool, does; ``{robotpy}`` is how to install the season's.
 OTHER_NAMES = {
     "run": "To run the robot on this computer: pyfrc sim. To start it on the robot: pyfrc deploy",
-    "sync": "To download what the robot needs: python -m pip install robotpy, then: python -m robotpy sync",
-    "installer": "To install packages on the robot: python -m pip install robotpy, then: python -m robotpy installer",
+    "sync": "To download what the robot needs: {robotpy}, then: python -m robotpy sync",
+    "installer": "To install packages on the robot: {robotpy}, then: python -m robotpy installer",
     "rollback": "To go back to an earlier release: pyfrc deploy --rollback",
     "netconsole": "To see the robot program's output: pyfrc console",
     "logs": "To see the robot program's output: pyfrc console",
@@ -76,7 +76,9 @@ class Commands(click.Group):
             close = difflib.get_close_matches(args[0], COMMANDS, n=1)
             hint = f" Did you mean {close[0]!r}?" if close else ""
             if args[0] in OTHER_NAMES:
-                hint = f" {OTHER_NAMES[args[0]]}"
+                from pyfrc_core.config.packages import install_line
+
+                hint = f" {OTHER_NAMES[args[0]].format(robotpy=install_line('robotpy'))}"
             if args[0].endswith(".py"):
                 hint = " pyfrc finds the robot's file by itself, for example: pyfrc sim"
             raise click.UsageError(f"There is no command {args[0]!r}.{hint}", ctx)

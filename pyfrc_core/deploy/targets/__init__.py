@@ -30,20 +30,20 @@ MAX_TEAM = 25_599
 def controller_of(season: Season) -> ControllerKind:
     """Return the controller of a season's robots.
 
-    :raises UsageError: if a deploy to it is not possible yet
+    :raises UsageError: if pyfrc cannot deploy to it yet
     """
-    return controller_named(season.controller.name)
+    name = season.controller.name
+    if name not in {each.name for each in CONTROLLERS}:
+        raise UsageError(
+            f"pyfrc cannot deploy to a {name} yet",
+            remedy=f"To deploy: pip install {season.requirement_of('robotpy')}, then: python -m robotpy deploy",
+        )
+    return controller_named(name)
 
 
 def controller_named(name: str) -> ControllerKind:
-    """Return the controller with this name.
-
-    :raises UsageError: if a deploy to it is not possible yet
-    """
-    found = next((each for each in CONTROLLERS if each.name == name), None)
-    if found is None:
-        raise UsageError(f"pyfrc cannot deploy to a {name} yet", remedy="To deploy: python -m robotpy deploy")
-    return found
+    """Return the controller with this name."""
+    return next(each for each in CONTROLLERS if each.name == name)
 
 
 def team_of_host(host: str) -> int | None:
