@@ -1,6 +1,6 @@
-"""Tests of season 2027: collected where WPILib 2027 is installed, and its variable lets pyfrc try it.
+"""Tests of season 2027: collected where WPILib 2027 is installed.
 
-That is ``PYFRC_TRY_UNFINISHED_SEASONS=1 pytest tests/season_2027``, with Python 3.11 or later on glibc 2.39 or later.
+That is ``pytest tests/season_2027``, with Python 3.11 or later, on Linux with glibc 2.39 or later.
 """
 
 from __future__ import annotations
