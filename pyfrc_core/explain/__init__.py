@@ -24,10 +24,11 @@ Kind = Callable[[BaseException, RobotFiles], Explanation | None]
 
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     """Return what an error means, or None if it is not one of those that are known."""
-    from . import arguments, calls, commands, imports, libraries, names, syntax
+    from . import arguments, calls, commands, imports, libraries, names, other_season, syntax
 
     kinds: tuple[Kind, ...] = (
         syntax.explain,
+        other_season.explain,
         imports.explain,
         commands.explain,
         calls.explain,

@@ -16,7 +16,8 @@ from ..errors import nearest
 from ..project.hidden_libraries import LIBRARIES
 from ..project.robot_files import RobotFiles
 from .explanation import Explanation
-from .places import frames_of, users_frame
+from .other_season import in_2027
+from .places import frames_of, imported_name, users_frame
 
 _REMOVE_IMPORT = (
     "Move what both need into a third file. If the name is for a type annotation only: write from __future__ import "
@@ -68,12 +69,6 @@ def _relative(error: ImportError, files: RobotFiles) -> Explanation | None:
     return Explanation(text, f"Write: {f'from {found[2]} ' if found[2] else ''}{found[3]}")
 
 
-def imported_name(error: ImportError) -> str:
-    """Return the name that a module does not have: ``Arm`` of ``from arm import Arm``. Empty for other errors."""
-    found = re.match(r"cannot import name '(\w+)'", str(error))
-    return found[1] if found else ""
-
-
 def _missing(module: str, root: Path) -> Explanation:
     text = f"there is no module {module}"
     if meant := _in_other_case(module, root):
@@ -81,7 +76,7 @@ def _missing(module: str, root: Path) -> Explanation:
     top = module.partition(".")[0]
     for each in (module, top):
         if each in SUCCESSORS:
-            return Explanation(text, _use_instead(SUCCESSORS[each], root))
+            return Explanation(text, _use_instead(in_2027(SUCCESSORS[each]), root))
     parent, _, last = module.rpartition(".")
     beside = _modules_in(getattr(sys.modules.get(parent), "__path__", None) or ([str(root)] if not parent else []))
     if parent and beside:

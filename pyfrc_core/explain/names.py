@@ -11,8 +11,8 @@ from importlib.util import find_spec
 from ..project.hidden_libraries import LIBRARIES
 from ..project.robot_files import RobotFiles
 from .explanation import Explanation
-from .imports import imported_name
-from .places import place_of_assignment, users_frame
+from .other_season import in_2027
+from .places import imported_name, place_of_assignment, users_frame
 
 
 def _spark(setting: str) -> str:
@@ -142,7 +142,7 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
     )
     if is_library and name in GONE:
         what = module if owner.__module__ == "builtins" else owner.__name__
-        return Explanation(f"{what} has no {name} any more", f"Instead: {GONE[name]}.")
+        return Explanation(f"{what} has no {name} any more", f"Instead: {in_2027(GONE[name])}.")
     if module in _KNOWN and owner.__module__ == "builtins" and find_spec(f"{module}.{name}") is not None:
         return Explanation(remedy=f"Is this line missing at the top: import {module}.{name}")
     meant = _nearest(name, [each for each in dir(obj) if not each.startswith("__")])
@@ -162,7 +162,7 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
 
 def _import(name: str, module: str) -> Explanation:
     if module.partition(".")[0] in _KNOWN and name in GONE:
-        return Explanation(f"{module} has no {name} any more", f"Instead: {GONE[name]}.")
+        return Explanation(f"{module} has no {name} any more", f"Instead: {in_2027(GONE[name])}.")
     known = [each for each in dir(sys.modules.get(module)) if not each.startswith("_")]
     meant = _nearest(name, known)
     return Explanation(f"{module} has no {name}", f"Did you mean {meant}?" if meant else "Is the name right?")

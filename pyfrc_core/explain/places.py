@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import sys
 from collections.abc import Iterator
 from types import FrameType, TracebackType
@@ -150,3 +151,9 @@ def parsed(file: str) -> ast.Module:
             return ast.parse(source.read())
     except (OSError, SyntaxError, ValueError):  # has changed since
         return ast.Module([], [])
+
+
+def imported_name(error: ImportError) -> str:
+    """Return the name that a module does not have: ``Arm`` of ``from arm import Arm``. Empty for other errors."""
+    found = re.match(r"cannot import name '(\w+)'", str(error))
+    return found[1] if found else ""

@@ -228,6 +228,21 @@ def test_the_line_for_the_robot(tmp_path: Path) -> None:
     assert install_line("robotpy-rev") == "python -m pip install robotpy-rev"
 
 
+@pytest.mark.parametrize(
+    ("code", "text"),
+    [
+        ("import wpilib_drivers", "there is no module wpilib_drivers"),
+        ("import telemetry", "there is no module telemetry"),
+        ("wpilib.OpModeRobot()", "wpilib has no OpModeRobot"),
+        ("from wpilib import PeriodicOpMode", "wpilib has no PeriodicOpMode"),
+    ],
+)
+def test_a_name_of_2027(headline_of: Raise, code: str, text: str) -> None:
+    assert headline_of(code) == (
+        f'robot.py:2: {text} in WPILib 2026\n  If the robot is for WPILib 2027: pip install "wpilib>=2027.0.0a7,<2028"'
+    )
+
+
 def test_while_there_are_only_previews_pip_is_asked_for_one() -> None:
     assert SEASONS[2026].requirement_of("robotpy-rev") == "robotpy-rev"
     assert SEASONS[2027].requirement_of("robotpy-rev") == '"robotpy-rev>=2027.0.0a1,<2028"'

@@ -1,0 +1,83 @@
+"""A robot of 2026 beside WPILib 2027, in a project that does not say its season: names are explained."""
+
+from __future__ import annotations
+
+import re
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from pyfrc_core.explain import Explanation, explain
+from pyfrc_core.explain.other_season import _MODULES_OF_2026, _NAMES_OF_2026
+from pyfrc_core.project.robot_files import RobotFiles
+
+FOR_2026 = '\n  If the robot is for WPILib 2026: pip install "wpilib>=2026.2.2,<2027"'
+TELEMETRY = "the modules telemetry (to show values) and tunables (to set them)"
+
+
+@pytest.mark.parametrize(
+    ("code", "text", "instead"),
+    [
+        ("import wpilib.drive", "there is no module wpilib.drive", "wpilib"),
+        ("from wpimath.system.plant import DCMotor", "there is no module wpimath.system", "wpimath"),
+        ("import wpiutil.log", "there is no module wpiutil.log", "wpilog"),
+        ("from wpilib import SmartDashboard", "wpilib has no SmartDashboard", TELEMETRY),
+        ("from wpilib import PWMSparkMax", "wpilib has no PWMSparkMax", "wpilib_drivers.PWMSparkMax"),
+        ("import wpilib\nwpilib.SendableChooser()", "wpilib has no SendableChooser", TELEMETRY),
+        ("import wpilib\nwpilib.getDeployDirectory()", "wpilib has no getDeployDirectory", "get_deploy_directory"),
+        ("import wpilib\nwpilib.Joystick(0).getY()", "Joystick has no getY", "get_y"),
+        ("import wpimath\nwpimath.Pose2d().X()", "Pose2d has no X", "x"),
+        ("import wpiutil\nwpiutil.Color.kRed", "Color has no kRed", "RED"),
+        (
+            "import wpilib\nclass Stick(wpilib.Joystick): pass\nStick(0).getRawButton(1)",
+            "Stick has no getRawButton",
+            "get_raw_button",
+        ),
+        (
+            "import commands2\ncommands2.CommandScheduler.getInstance()",
+            "CommandScheduler has no getInstance",
+            "get_instance",
+        ),
+    ],
+)
+def test_a_name_of_2026(code: str, text: str, instead: str, tmp_path: Path) -> None:
+    found = explained(code, tmp_path)
+    assert found.text == f"{text} in WPILib 2027"
+    assert found.remedy == f"Instead: {instead}.{FOR_2026}"
+
+
+def explained(code: str, root: Path) -> Explanation:
+    try:
+        exec(code, {"__name__": "robot"})
+    except Exception as error:
+        found = explain(error, RobotFiles(root))
+        assert found is not None
+        return found
+    raise AssertionError("it raises nothing")
+
+
+def test_names_of_the_project_itself_are_not_wpilibs(tmp_path: Path) -> None:
+    found = explained("import wpilib\nclass Stick(wpilib.Joystick): left_y = 0\nStick(0).leftY", tmp_path)
+    assert (found.text, found.remedy) == ("", "Did you mean left_y?")
+
+
+def test_a_project_that_says_its_season_is_not_asked_for_another(tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_text('[tool.robotpy]\nrobotpy_version = "2027.0.0a7"\n')
+    assert explained("import wpilib.drive", tmp_path).remedy == "Instead: wpilib."
+
+
+def test_names_of_earlier_seasons_are_in_todays_spelling(tmp_path: Path) -> None:
+    found = explained("import wpilib\nwpilib.Timer().hasPeriodPassed(1)", tmp_path)
+    assert found.remedy == "Instead: has_elapsed(seconds), or advance_if_elapsed(seconds) for something that repeats."
+    assert explained("import wpilib.geometry", tmp_path).remedy.startswith("Instead: wpimath")
+
+
+def test_the_tables_are_right() -> None:
+    for module in _MODULES_OF_2026:
+        with pytest.raises(ModuleNotFoundError):
+            import_module(module)
+    for name, instead in _NAMES_OF_2026.items():
+        assert not hasattr(import_module("wpilib"), name)
+        for module, there in re.findall(r"(\w+)[.](\w+)", instead):
+            assert hasattr(import_module(module), there)
