@@ -26,6 +26,7 @@ from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import parse_script
 from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.sim.engine.scene import Pose
 from pyfrc_core.sim.engine.snapshot import Snapshot
 from pyfrc_core.sim.engine.watch import Watch
 
@@ -579,6 +580,26 @@ def test_the_alliance_is_that_of_the_wall_where_the_robot_starts(make_project, s
         run(simulation, 0.1)
         steps = simulation.script().steps
         assert sum("alliance_station" in step.writes for step in steps) == 1
+
+
+def test_the_robot_of_todays_physics_begins_at_the_start_that_is_chosen(make_project) -> None:
+    physics = """
+        class PhysicsEngine:
+            def __init__(self, controller, robot):
+                pass
+
+            def update_sim(self, now, tm_diff):
+                pass
+    """
+    positions = """{"pyfrc": {"robot": {"start_positions": [
+        {"name": "left", "x": 2, "y": 3}, {"name": "far", "x": 50, "y": 3, "angle": 180}]}}}"""
+    made = make_project({**FILES, "physics.py": physics, "sim/config.json": positions})
+    with Simulation(Project(made.path / "robot.py"), replace(STILL, start_position="far")) as simulation:
+        for _ in range(2):
+            run(simulation, 0.1)
+            assert simulation.snapshot.scene.robot == Pose(50, 3, pytest.approx(math.pi))
+            simulation.restart()
+            settle(simulation)
 
 
 FORWARD = {"starting_x": 50, "starting_y": 12, "starting_angle": 0, "w": 2, "l": 3}

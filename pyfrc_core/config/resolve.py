@@ -12,7 +12,7 @@ from .sim import FieldConfig, Joystick, RobotConfig, SimConfig, SimConfigFile
 #: Where each derived value comes from: the path of another key in the file, or a description.
 Origins = dict[Path, Path | str]
 
-_BUTTONS = {1: "Trigger", 2: "Top"}
+_BUTTONS = {CURRENT.first_button: "Trigger", CURRENT.first_button + 1: "Top"}
 #: A known season decides these keys of the field, whatever the file says.
 FROM_SEASON = ("w", "h", "px_per_ft")
 

@@ -106,6 +106,8 @@ class Physics:
         self.engine: Any = None
         #: The name of the field on dashboards.
         self.field_name = "Field"
+        #: Where the robot was placed on the field by an earlier run in this process.
+        self._placed_before = dashboards.placed("Field")
         self._module = module
         self._run = run
         self._updating = False
@@ -128,22 +130,24 @@ class Physics:
     def _make_engine(self) -> None:
         __tracebackhide__ = True
         module, run = self._module, self._run
-        self._show_field(_free_name())
+        if dashboards.WITHOUT_ROBOT or run.robot is not None:
+            self._show_field(_free_name())
         self.engine = module.engine_class(self.controller, *([run.robot] if module.takes_robot else []))
         initialize = getattr(self.engine, "initialize", None)
         if initialize is not None:
             initialize(run.hal_data)
 
     def _leave_name_to_robot(self) -> None:
-        """Show the field under another name, if robot code shows one of its own as "Field"."""
-        if (name := _free_name()) != "Field":
-            self._show_field(name)
+        """Show the field, if it is not shown, or under another name, if robot code shows one of its own as "Field"."""
+        if not isinstance(dashboards.shown("Field"), PhysicsField):
+            self._show_field(_free_name())
 
     def _show_field(self, name: str) -> None:
-        field, pose = self.controller.field, self.controller.get_pose()
+        field, pose, placed = self.controller.field, self.controller.get_pose(), dashboards.placed(name)
+        if name == "Field" and placed not in (None, self._placed_before):  # by the script that plays
+            pose = placed
         self.field_name = name
         dashboards.show_field(name, field)
-        # Otherwise, without isolation, the dashboard's pose of the last run would be used.
         dashboards.place_robot(field, pose)
 
     def _update(self) -> None:

@@ -73,6 +73,36 @@ class Packages:
 
 
 @dataclass(frozen=True)
+class Dashboards:
+    """Where dashboards find in NetworkTables what robots show.
+
+    :param tables:         the tables of what robot code shows
+    :param choice:         the entry of a chooser that a dashboard writes
+    :param robot_on_field: the target of input scripts that places the robot: x and y in metres, and an angle
+    :param publishing:     the functions with which robot code shows objects
+    :param in_radians:     whether this angle is in radians; otherwise in degrees
+    """
+
+    tables: tuple[str, ...]
+    choice: str
+    robot_on_field: str
+    publishing: str
+    in_radians: bool = False
+
+
+@dataclass(frozen=True)
+class GamepadOrder:
+    """The numbers that the driver station gives the controls of a gamepad.
+
+    :param axes:    the names of its axes, in their order
+    :param buttons: the names of its buttons, in their order
+    """
+
+    axes: tuple[str, ...]
+    buttons: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Season:
     """What one season fixes.
 
@@ -90,6 +120,8 @@ class Season:
     field: SeasonField
     controller: ControllerSoftware
     packages: Packages
+    dashboards: Dashboards
+    gamepad: GamepadOrder
     cli_plugins: str
     opmodes: bool = False
     first_button: int = 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from datetime import datetime, timezone
 
-from .record import ControllerSoftware, MatchLengths, Packages, Season, SeasonField
+from .record import ControllerSoftware, Dashboards, GamepadOrder, MatchLengths, Packages, Season, SeasonField
 
 SEASON_2026 = Season(
     year=2026,
@@ -24,6 +24,16 @@ SEASON_2026 = Season(
         wpilib="2026.2.2",
         commands="robotpy-commands-v2~=2026.2",
         utilities="robotpy-wpilib-utilities~=2026.1",
+    ),
+    dashboards=Dashboards(
+        tables=("/SmartDashboard",),
+        choice="selected",
+        robot_on_field="nt:/SmartDashboard/Field/Robot",
+        publishing="SmartDashboard.putData",
+    ),
+    gamepad=GamepadOrder(
+        axes=("left_x", "left_y", "left_trigger", "right_trigger", "right_x", "right_y"),
+        buttons=("a", "b", "x", "y", "left_bumper", "right_bumper", "back", "start", "left_stick", "right_stick"),
     ),
     cli_plugins="robotpy_cli.2026",
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from datetime import datetime, timezone
 
-from .record import ControllerSoftware, MatchLengths, Packages, Season, SeasonField
+from .record import ControllerSoftware, Dashboards, GamepadOrder, MatchLengths, Packages, Season, SeasonField
 from .season_2026 import SEASON_2026
 
 #: WPILib is an alpha; the match and the field are 2026's until the kickoff.
@@ -25,6 +25,20 @@ SEASON_2027 = Season(
         wpilib="2027.0.0a7",
         commands="robotpy-commands-v2~=2027.0.0a7",
         utilities="robotpy-wpilib-utilities~=2027.0.0a7",
+    ),
+    dashboards=Dashboards(
+        tables=("/Telemetry", "/Tunables"),
+        choice="selected/tune",
+        robot_on_field="nt:struct:Pose2d[]:/Tunables/Field/Robot",
+        publishing="tunables.publish or telemetry.log",
+        in_radians=True,
+    ),
+    gamepad=GamepadOrder(
+        axes=("left_x", "left_y", "right_x", "right_y", "left_trigger", "right_trigger"),
+        buttons=(
+            *("a", "b", "x", "y", "back", "guide", "start", "left_stick", "right_stick", "left_bumper", "right_bumper"),
+            *("up", "down", "left", "right"),
+        ),
     ),
     cli_plugins="robotpy_cli.2027",
     opmodes=True,

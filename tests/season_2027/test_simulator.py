@@ -183,3 +183,53 @@ def test_a_robot_without_opmodes_offers_none(make_project: MakeProject) -> None:
         page.command("enable")
         page.run_for(0.1)
         assert (page.parts["opmodes"], page.station["opmode"]) == ([], "")
+
+
+DEVICES = {
+    "robot.py": """
+        import telemetry
+        import wpilib
+
+
+        class MyRobot(wpilib.TimedRobot):
+            def __init__(self):
+                super().__init__()
+                self.stick = wpilib.Gamepad(0)
+                self.imu = wpilib.OnboardIMU(wpilib.OnboardIMU.MountOrientation.FLAT)
+
+            def robot_periodic(self):
+                telemetry.log("pressed", [self.stick.get_face_down_button(), self.stick.get_dpad_right_button()], element_type=bool)
+                telemetry.log("right", self.stick.get_right_x())
+                telemetry.log("yaw", self.imu.get_yaw())
+    """
+}  # fmt: skip
+
+
+def test_joysticks_have_the_numbers_of_2027(make_project: MakeProject) -> None:
+    with served(make_project(DEVICES)) as server, server.page() as page:
+        options = page.hello["options"]
+        assert options["buttons"] == {"first": 0, "most": 32}
+        assert options["joysticks"][0]["buttons"] == {"0": "Trigger", "1": "Top"}
+        assert (options["keyboard"]["button_keys"]["0"], options["keyboard"]["button_keys"]["9"]) == (0, 9)
+        order = options["gamepad"]
+        page.command("enable")
+        for name in ("a", "right"):
+            page.command("button", stick=0, button=order["buttons"].index(name), pressed=True)
+        page.command("axis", stick=0, axis=order["axes"].index("right_x"), value=0.75)
+        page.run_for(0.1)
+        assert page.values["nt:/Telemetry/pressed"] == [True, True]
+        assert page.values["nt:/Telemetry/right"] == 0.75
+        page.until(lambda: {"press"} <= {mark["kind"] for mark in page.marks})
+        assert "joystick 0, button 0" in [mark["text"] for mark in page.marks]
+
+
+def test_the_controllers_imu_is_among_the_gyros(make_project: MakeProject) -> None:
+    with served(make_project(DEVICES)) as server, server.page() as page:
+        page.run_for(0.1)
+        panels = {panel["title"]: [row["label"] for row in panel["rows"]] for panel in page.parts["panels"]}
+        assert panels["Gyros"][:2] == ["Yaw", "Angle x"]
+        assert len(panels["Gyros"]) == 10
+        assert "Relays" not in panels
+        page.command("write", values={"onboard_imu.yaw": 0.5})
+        page.run_for(0.1)
+        assert page.values["nt:/Telemetry/yaw"] == 0.5

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, cast
 
 from ...runtime.robot_time import PACKET_US
+from ...season import CURRENT
 
 #: What a robot does when it is enabled.
 ChosenMode = Literal["autonomous", "teleop", "test"]
@@ -94,13 +95,13 @@ class Quit:
 
 Command = Resume | Pause | Speed | ChooseMode | ChooseOpmode | Enable | EmergencyStop | Practice | Write
 
-#: The target that moves the robot on the field: x, y and angle as WPILib has them, in metres and degrees.
-ROBOT_ON_FIELD = "nt:/SmartDashboard/Field/Robot"
+#: The target that moves the robot on the field.
+ROBOT_ON_FIELD = CURRENT.dashboards.robot_on_field
 
 
 def chooser_target(chooser: str) -> str:
     """Return the target that selects a chooser's option."""
-    return f"nt:{chooser}/selected"
+    return f"nt:{chooser}/{CURRENT.dashboards.choice}"
 
 
 @dataclass(frozen=True)

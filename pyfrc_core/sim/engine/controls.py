@@ -113,7 +113,7 @@ class Controls(ABC):
         self.write({f"joysticks[{stick}].axes[{axis}]": value})
 
     def set_button(self, stick: int, button: int, pressed: bool) -> None:
-        """Press or release a joystick's button; buttons count from 1."""
+        """Press or release a joystick's button, by the number that robot code gives it."""
         self.write({f"joysticks[{stick}].buttons[{button}]": pressed})
 
     def set_pov(self, stick: int, pov: int, angle: int) -> None:

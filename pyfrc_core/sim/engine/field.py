@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ...config.pictures import field_picture
 from ...errors import UsageError, nearest
 from ...physics.pose import METRES_PER_FOOT
+from ...season import CURRENT
 from .commands import ROBOT_ON_FIELD
 from .scene import Field, Pose, Shape
 
@@ -62,6 +63,6 @@ def start_named(field: Field, name: str | None) -> Pose:
 
 
 def robot_at(field: Field, pose: Pose) -> dict[str, list[float]]:
-    """Return the write that puts the robot there: its place as WPILib has it, in metres and degrees."""
+    """Return the write that puts the robot there: its place as WPILib has it."""
     x, y = pose.x * METRES_PER_FOOT, (field.height - pose.y) * METRES_PER_FOOT
-    return {ROBOT_ON_FIELD: [x, y, -math.degrees(pose.angle)]}
+    return {ROBOT_ON_FIELD: [x, y, -pose.angle if CURRENT.dashboards.in_radians else -math.degrees(pose.angle)]}

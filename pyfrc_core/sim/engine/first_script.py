@@ -12,6 +12,7 @@ from typing import Any
 
 from ...runtime.scripts.joysticks import releases
 from ...runtime.scripts.script import InputScript, Step
+from ...season import CURRENT
 from .commands import ChooseMode, ChooseOpmode, Command, Write
 from .field import robot_at, start_named
 from .options import SimOptions
@@ -79,7 +80,7 @@ def choices_of(
 
 
 def _is_choice(target: str) -> bool:
-    chooser = target.startswith("nt:") and target.endswith("/selected")
+    chooser = target.startswith("nt:") and target.endswith(f"/{CURRENT.dashboards.choice}")
     return chooser or target in ("alliance_station", "event.game_specific_message")
 
 

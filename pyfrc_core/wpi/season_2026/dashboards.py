@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
 
 import wpilib
 from wpilib import Field2d
 from wpimath.geometry import Pose2d
 
+from ..widgets import Chooser, Widget
 from . import network
 
 __all__ = ["Field2d", "place_robot", "robot_pose", "show_field", "show_poses", "shown", "widget_of"]
@@ -22,6 +23,14 @@ def robot_pose(field: Field2d) -> Pose2d:
 def place_robot(field: Field2d, pose: Pose2d) -> None:
     """Place the robot on a field."""
     field.setRobotPose(pose)
+
+
+def placed(name: str) -> Pose2d | None:
+    """Return where dashboards or scripts have placed the robot on the field of this name; None if they have not."""
+    numbers = network.value_of(f"/SmartDashboard/{name}/Robot")
+    if not isinstance(numbers, list) or len(numbers) != 3:
+        return None
+    return Pose2d(numbers[0], numbers[1], math.radians(numbers[2]))
 
 
 def show_poses(field: Field2d, name: str, poses: Sequence[Pose2d]) -> None:
@@ -44,21 +53,23 @@ def shown(name: str) -> object | None:
 
 #: The tables whose entries dashboards show.
 _TABLES = ("/SmartDashboard/", "/Shuffleboard/")
+_CHOOSER = "String Chooser"
+
+#: Whether a field can be shown before there is a robot.
+WITHOUT_ROBOT = True
 
 
-class Widget(NamedTuple):
-    """What the user of a dashboard can change of an object that robot code shows.
+def chooser_at(table: str) -> Chooser | None:
+    """Return the chooser that has this table; None if there is none."""
+    if network.text_of(f"{table}/.type") != _CHOOSER:
+        return None
+    options = tuple(network.texts_of(f"{table}/options"))
+    return Chooser(table, options, network.text_of(f"{table}/default"), network.text_of(f"{table}/active"))
 
-    :param kind: a choice, the button of a command, a switch, or a number
-    :param entry: the entry that the dashboard writes
-    :param owner: what it belongs to: the table of the object, or the entry itself
-    :param options: what can be chosen
-    """
 
-    kind: Literal["choice", "command", "flag", "number"]
-    entry: str
-    owner: str
-    options: tuple[str, ...] = ()
+def written_entry(name: str) -> str:
+    """Return the entry that a dashboard writes to change this one: itself."""
+    return name
 
 
 def widget_of(name: str) -> Widget | None:
@@ -67,7 +78,7 @@ def widget_of(name: str) -> Widget | None:
     if not name.startswith(_TABLES) or entry.startswith("."):
         return None
     made_by = network.text_of(f"{table}/.type")
-    if made_by == "String Chooser":
+    if made_by == _CHOOSER:
         options = network.texts_of(name) if entry == "options" else []
         return Widget("choice", f"{table}/selected", table, tuple(options)) if options else None
     if made_by == "Command":

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
 
-import telemetry
+import tunables
 from wpilib import Field2d
 from wpimath import Pose2d
 
+from ...errors import UsageError
+from ..widgets import Chooser, Widget
 from . import network
 
 __all__ = ["Field2d", "place_robot", "robot_pose", "show_field", "show_poses", "shown", "widget_of"]
+
+
+#: The tables of what dashboards show only, and of what they can change.
+_TELEMETRY, _TUNABLES = "/Telemetry/", "/Tunables/"
+#: How NetworkTables have a pose.
+_POSE = struct.Struct("<3d")
 
 
 def robot_pose(field: Field2d) -> Pose2d:
@@ -21,7 +29,17 @@ def robot_pose(field: Field2d) -> Pose2d:
 
 def place_robot(field: Field2d, pose: Pose2d) -> None:
     """Place the robot on a field."""
-    field.set_robot_pose(pose)
+    if field.get_robot_pose() != pose:  # otherwise, what a dashboard has just written would be overwritten
+        field.set_robot_pose(pose)
+
+
+def placed(name: str) -> Pose2d | None:
+    """Return where dashboards or scripts have placed the robot on the field of this name; None if they have not."""
+    data = network.value_of(f"{_TUNABLES}{name}/Robot")
+    if not isinstance(data, bytes) or len(data) != _POSE.size:
+        return None
+    x, y, angle = _POSE.unpack(data)
+    return Pose2d(x, y, angle)
 
 
 def show_poses(field: Field2d, name: str, poses: Sequence[Pose2d]) -> None:
@@ -29,52 +47,66 @@ def show_poses(field: Field2d, name: str, poses: Sequence[Pose2d]) -> None:
     field.get_object(name).set_poses(list(poses))
 
 
-#: What was given to `show_field`, by its name: Telemetry returns no objects.
+#: What was given to `show_field`, by its name.
 _shown: dict[str, Field2d] = {}
 
 
 def show_field(name: str, field: Field2d) -> None:
-    """Show a field on dashboards."""
-    _shown[name] = field
-    telemetry.log(name, field)
+    """Show a field on dashboards, where it can be changed: Telemetry would show it once only."""
+    if name in _shown:  # by an earlier run in this process
+        tunables.remove(name)
+    if tunables.publish(name, field):
+        _shown[name] = field
 
 
 def shown(name: str) -> object | None:
     """Return the object that dashboards show under a name; None if there is none."""
-    return _shown.get(name)
+    if not network.exists(f"{_TUNABLES}{name}/.type"):
+        return None
+    return _shown.get(name, name)  # of what robot code has published, no more is known than the name
 
 
-#: The tables whose entries dashboards show.
-_TABLES = ("/Telemetry/", "/Tunables/")
+_CHOOSER = "Selectable"
+
+#: Whether a field can be shown before there is a robot, whose constructor connects tunables to NetworkTables.
+WITHOUT_ROBOT = False
 
 
-class Widget(NamedTuple):
-    """What the user of a dashboard can change of an object that robot code shows.
+def chooser_at(table: str) -> Chooser | None:
+    """Return the chooser that has this table; None if there is none."""
+    if network.text_of(f"{table}/.type") != _CHOOSER:
+        return None
+    options, default = tuple(network.texts_of(f"{table}/options")), network.text_of(f"{table}/default")
+    return Chooser(table, options, default, network.text_of(f"{table}/selected/value") or default)
 
-    :param kind: a choice, the button of a command, a switch, or a number
-    :param entry: the entry that the dashboard writes
-    :param owner: what it belongs to: the table of the object, or the entry itself
-    :param options: what can be chosen
+
+def written_entry(name: str) -> str:
+    """Return the entry that a dashboard writes to change this one; a robust tunable has another one for it.
+
+    :raises UsageError: when robot code does not let dashboards change it
     """
-
-    kind: Literal["choice", "command", "flag", "number"]
-    entry: str
-    owner: str
-    options: tuple[str, ...] = ()
+    if name.startswith(_TELEMETRY):
+        raise UsageError("robot code only shows this: what can be changed is in Tunables")
+    if not name.startswith(_TUNABLES):
+        return name
+    properties = network.properties_of(name)
+    if properties.get("mutable") is False:
+        raise UsageError("robot code has published this with mutable=False")
+    return f"{name.removesuffix('/value')}/tune" if properties.get("robust") else name
 
 
 def widget_of(name: str) -> Widget | None:
     """Return what the user of a dashboard can change by an entry of this name; None if that is nothing."""
     table, _, entry = name.rpartition("/")
-    if not name.startswith(_TABLES) or entry.startswith("."):
+    if not name.startswith(_TUNABLES) or entry.startswith("."):
         return None
     made_by = network.text_of(f"{table}/.type")
-    if made_by == "String Chooser":
+    if made_by == _CHOOSER:
         options = network.texts_of(name) if entry == "options" else []
-        return Widget("choice", f"{table}/selected", table, tuple(options)) if options else None
+        return Widget("choice", f"{table}/selected/tune", table, tuple(options)) if options else None
     if made_by == "Command":
         return Widget("command", name, table) if entry == "running" else None
-    type_name = network.type_of(name) if made_by else ""
+    type_name = network.type_of(name) if network.properties_of(name).get("mutable") is True else ""
     if type_name == "boolean":
         return Widget("flag", name, name)
     return Widget("number", name, name) if type_name == "double" else None

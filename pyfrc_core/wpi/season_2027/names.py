@@ -46,8 +46,8 @@ REFRESH = "wpilib.DriverStationBackend.refresh_data()"
 OVERRIDDEN = _OF_ALL_ROBOTS | OF_A_COMMAND | OF_AN_OPMODE | {"runs_when_disabled", "get_interruption_behavior"}
 
 #: The tables of NetworkTables whose entries are settings, and those that only WPILib itself writes.
-SETTINGS = ("/SmartDashboard/", "/Shuffleboard/", "/Preferences/")
-WRITTEN_BY_WPILIB = ("/FMSInfo/", "/LiveWindow/")
+SETTINGS = ("/Tunables/", "/Preferences/")
+WRITTEN_BY_WPILIB = ("/DriverStation/", "/Robot/", "/Telemetry/")
 #: The file of a library that reads entries on behalf of robot code: magicbot's tunables.
 TUNABLES_FILE = "magic_tunable.py"
 

@@ -147,6 +147,12 @@ def type_of(name: str) -> str:
     return _tables().get_topic(name).get_type_string()
 
 
+def properties_of(name: str) -> dict[str, Any]:
+    """Return the properties of an entry; none if it is not published."""
+    properties = _tables().get_topic(name).get_properties()
+    return properties if isinstance(properties, dict) else {}
+
+
 def value_of(name: str) -> Any:
     """Return the value of an entry; None if it has none."""
     entry = _tables().get_entry(name)

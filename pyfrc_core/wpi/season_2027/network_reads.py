@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
 
 import ntcore
+import tunables
 import wpilib
 from wpiutil import wpistruct
 
 from ..entry_reads import Reads, of_entry, of_table, of_topic, static, struct_type
+from . import network
 
 __all__ = ["Reads", "replacements"]
 
@@ -65,6 +68,7 @@ def replacements(reads: Reads, structs: Mapping[str, int]) -> Iterator[tuple[Any
     for owner, type_name in _TOPICS.items():
         for verb in ("subscribe", "get_entry"):
             yield owner, verb, topic_method(vars(owner)[verb], type_of=lambda *_, known=type_name: known)
+    yield from _tunables(reads, structs)
     for struct_owner, ending in ((ntcore.StructTopic, ""), (ntcore.StructArrayTopic, "[]")):
 
         def type_of(default: object, ending: str = ending) -> str:
@@ -72,6 +76,47 @@ def replacements(reads: Reads, structs: Mapping[str, int]) -> Iterator[tuple[Any
 
         for verb in ("subscribe", "get_entry"):
             yield struct_owner, verb, topic_method(vars(struct_owner)[verb], type_of=type_of)
+
+
+#: The functions that publish a tunable value. Robot code reads it from an object, which does not know its name.
+_PUBLISHING = re.compile("add|add_(boolean|double|float|int|long)|publish_.+")
+
+
+def _tunables(reads: Reads, structs: Mapping[str, int]) -> Iterator[tuple[Any, str, Any]]:
+    for name in filter(_PUBLISHING.fullmatch, dir(tunables.TunableTable)):
+        yield tunables.TunableTable, name, _publishing(vars(tunables.TunableTable)[name], _table_path, reads, structs)
+    for name in filter(_PUBLISHING.fullmatch, dir(tunables)):
+        yield tunables, name, _publishing(vars(tunables)[name], None, reads, structs)
+
+
+def _publishing(
+    real: Any, path_of: Callable[[Any], str] | None, reads: Reads, structs: Mapping[str, int]
+) -> Callable[..., Any]:
+    """Return a function that publishes a tunable value and reports it.
+
+    :param path_of: returns the path of a table, for its methods
+    """
+    call = getattr(real, "__func__", real)
+
+    def publish(*args: Any, **kwargs: Any) -> Any:
+        result = call(*args, **kwargs)
+        given = args if path_of is None else args[1:]
+        path = "" if path_of is None else path_of(args[0])
+        entry = f"/Tunables/{path}{given[0] if given else kwargs['name']}"
+        name = entry if network.exists(entry) else f"{entry}/value"
+        type_name, properties = network.type_of(name), network.properties_of(name)
+        written = f"{entry}/tune" if properties.get("robust") else entry
+        known = type_name.removesuffix("[]").removeprefix("struct:") in structs or type_name in network.TYPES
+        if known and properties.get("mutable") and written not in reads.found:
+            reads.note(written, type_name, (network.value_of(name),), {})
+        return result
+
+    return publish
+
+
+def _table_path(table: Any) -> str:
+    path: str = table.get_path()
+    return path.removeprefix("/")
 
 
 def _name_of(entry: Any) -> str:

@@ -13,10 +13,18 @@ from collections.abc import Callable
 from typing import Any
 
 from ....runtime.scripts.network_entries import NETWORK
-from ....wpi import network
+from ....wpi import dashboards, network
 from ..snapshot import Chooser
 
-_CHOOSER, _TYPE = "String Chooser", "/.type"
+_TYPE = "/.type"
+
+
+def written_target(target: str) -> str:
+    """Return the target that changes what another one shows.
+
+    :raises UsageError: when a dashboard cannot change it
+    """
+    return NETWORK + dashboards.written_entry(target.removeprefix(NETWORK)) if target.startswith(NETWORK) else target
 
 
 class Choosers:
@@ -32,16 +40,12 @@ class Choosers:
         for published in self._news.read():
             if published.name.endswith(_TYPE):
                 self._names.add(published.name.removesuffix(_TYPE))
-        choosers = tuple(_chooser(name) for name in sorted(self._names) if network.text_of(name + _TYPE) == _CHOOSER)
+        found = (dashboards.chooser_at(name) for name in sorted(self._names))
+        choosers = tuple(Chooser(*each) for each in found if each is not None)
         if choosers == self._sent:
             return None
         self._sent = choosers
         return choosers
-
-
-def _chooser(name: str) -> Chooser:
-    default, active = network.text_of(f"{name}/default"), network.text_of(f"{name}/active")
-    return Chooser(name, tuple(network.texts_of(f"{name}/options")), default, active)
 
 
 class Served:

@@ -25,7 +25,7 @@ from ..messages import Job, Ready, Replayed, Update
 from ..scene import Pose, Target
 from ..snapshot import Opmode
 from .driven_path import DrivenPath
-from .network import Choosers, Served
+from .network import Choosers, Served, written_target
 from .network_trace import NetworkTrace
 from .pace import Pace, wall
 from .station import Station
@@ -282,7 +282,7 @@ class Session:
 
     def _put(self, target: str, value: object) -> None:
         try:
-            self._station.put(target, value)
+            self._station.put(written_target(target), value)
         except (PyfrcError, TypeError, ValueError, LookupError) as wrong:
             self._notes.append(f"{target} = {value!r}: {wrong}")
 

@@ -13,6 +13,7 @@ from typing import Any
 
 from ....disk_space import check_disk_space
 from ....errors import UsageError
+from ....season import CURRENT
 from ....wpi import geometry, logs
 
 _DRIVER_STATION = {
@@ -81,7 +82,7 @@ class WpiLog:
             if stick[2] == "povs":
                 return log.entry(name, "whole numbers")
             buttons = log.entry(name, "booleans")
-            return lambda pressed, stamp: buttons(pressed[1:], stamp)  # WPILib's first button is its first
+            return lambda pressed, stamp: buttons(pressed[CURRENT.first_button :], stamp)  # WPILib's first is the first
         if isinstance(value, bool):
             return _converting(log.entry(name, "boolean"), bool)
         if isinstance(value, (int, float)):

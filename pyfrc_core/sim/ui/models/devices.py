@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from ....hal.paths import parse_path
+from ....season import CURRENT
 
 if TYPE_CHECKING:
     from ....config.sim import SimConfig
@@ -107,7 +108,7 @@ def panels_of(values: Values, config: SimConfig) -> Iterator[Panel]:
         "Gyros": _gyros,
         "CAN and SimDevices": _sim_devices,
         "Power": _power,
-        "roboRIO": _roborio,
+        CURRENT.controller.name: _controller,
         "Other values": _robot,
         "Custom": _custom,
     }
@@ -224,11 +225,19 @@ def _is_gyro(device: object) -> bool:
     return str(device).startswith(("Gyro:", "CANGyro:")) or "navx" in str(device).lower()
 
 
+#: The units of the values of the controller's IMU, by their names without the axis.
+_IMU_UNITS = {"yaw": "rad", "angle_": "rad", "gyro_rate_": "rad/s", "accel_": "m/s²"}
+
+
 def _gyros(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
     for channel, fields in _channels(tree, "analog_gyro"):
         if "angle" in fields:
             what = f"The gyro at analog input {channel}: degrees clockwise"
             yield Row("slider", (fields["angle"][0],), f"Analog {channel}", -360.0, 360.0, 1, "°", what)
+    for name, (path, _) in tree.get("onboard_imu", {}).items():
+        if unit := _IMU_UNITS.get(name.rstrip("xyz")):
+            what = f"The IMU in the {CURRENT.controller.name}"
+            yield Row("number", (path,), name.replace("_", " ").capitalize(), unit=unit, tooltip=what)
     for device, fields in tree.get("CAN", {}).items():
         if _is_gyro(device):
             name = device_name(str(device))
@@ -268,7 +277,7 @@ def _device_rows(device: str, fields: Mapping[Any, Any], title: str, setting: Se
 def _power(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
     power = tree.get("power", {})
     if "vin_voltage" in power:
-        what = "The voltage that the roboRIO gets from the battery"
+        what = f"The voltage that the {CURRENT.controller.name} gets from the battery"
         yield Row("slider", (power["vin_voltage"][0],), "Battery", 0.0, 14.0, 2, "V", what)
     for module, fields in _channels(tree, "pdp"):
         if "voltage" in fields:
@@ -279,7 +288,7 @@ def _power(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
             yield Row("bars", (fields["current"][0],), "   Currents", 0.0, 40.0, 1, "A", what)
 
 
-def _roborio(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+def _controller(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
     if "fpga_button" in tree:
         yield Row("switch", (tree["fpga_button"][0],), "User button", tooltip="The button on the roboRIO")
     accelerometer = tree.get("accelerometer", {})

@@ -1,7 +1,7 @@
 """Real gamepads, by way of pygame-ce: the extra ``gamepads``.
 
-SDL, on which pygame is built, knows the layouts of most gamepads. Their axes and buttons get the Driver Station's order
-(that of XInput), so that robot code finds them; those of other gamepads have the device's own order.
+SDL, on which pygame is built, knows the layouts of most gamepads. Their axes and buttons get the order of the Driver
+Station, so that robot code finds them; those of other gamepads have the order of the device.
 """
 
 from __future__ import annotations
@@ -14,11 +14,22 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ...._version import requirement
-from .joysticks import JOYSTICKS, RELEASED, Sticks
+from ....season import CURRENT
+from .joysticks import FIRST_BUTTON, JOYSTICKS, MOST_BUTTONS, RELEASED, Sticks
 
 HINT = f'For real gamepads: pip install "{requirement("gamepads")}"'
 
 _HATS = {(0, 1): 0, (1, 1): 45, (1, 0): 90, (1, -1): 135, (0, -1): 180, (-1, -1): 225, (-1, 0): 270, (-1, 1): 315}
+
+#: SDL's names, in the Driver Station's order.
+_SDL_AXES = tuple(
+    {"left_trigger": "TRIGGERLEFT", "right_trigger": "TRIGGERRIGHT"}.get(name, name.replace("_", "").upper())
+    for name in CURRENT.gamepad.axes
+)
+_SDL_BUTTONS = tuple(
+    f"DPAD_{name.upper()}" if name in ("up", "down", "left", "right") else name.replace("_", "").upper()
+    for name in (each.replace("bumper", "shoulder") for each in CURRENT.gamepad.buttons)
+)
 
 #: The smallest movement that is passed on.
 _STEP = 0.01
@@ -94,9 +105,9 @@ class GamepadRouter:
                 self._sticks.move(stick, axis, value)
             else:
                 axes[axis] = old
-        for index, pressed in enumerate(now.buttons[:32]):
+        for index, pressed in enumerate(now.buttons[:MOST_BUTTONS]):
             if pressed != (index < len(before.buttons) and before.buttons[index]):
-                self._sticks.press(stick, index + 1, pressed)
+                self._sticks.press(stick, FIRST_BUTTON + index, pressed)
         if now.pov != before.pov:
             self._sticks.turn(stick, now.pov)
         return Reading(tuple(axes), now.buttons, now.pov)
@@ -142,15 +153,13 @@ class PygameBackend:
 
     def _read_known(self, pad: Any) -> Reading:
         pg = self._pygame
-        axes = ("LEFTX", "LEFTY", "TRIGGERLEFT", "TRIGGERRIGHT", "RIGHTX", "RIGHTY")
-        buttons = ("A", "B", "X", "Y", "LEFTSHOULDER", "RIGHTSHOULDER", "BACK", "START", "LEFTSTICK", "RIGHTSTICK")
         up, right, down, left = (
             bool(pad.get_button(getattr(pg, f"CONTROLLER_BUTTON_DPAD_{way}")))
             for way in ("UP", "RIGHT", "DOWN", "LEFT")
         )
         return Reading(
-            tuple(max(pad.get_axis(getattr(pg, f"CONTROLLER_AXIS_{name}")) / 32767, -1.0) for name in axes),
-            tuple(bool(pad.get_button(getattr(pg, f"CONTROLLER_BUTTON_{name}"))) for name in buttons),
+            tuple(max(pad.get_axis(getattr(pg, f"CONTROLLER_AXIS_{name}")) / 32767, -1.0) for name in _SDL_AXES),
+            tuple(bool(pad.get_button(getattr(pg, f"CONTROLLER_BUTTON_{name}"))) for name in _SDL_BUTTONS),
             hat_angle(right - left, up - down),
         )
 

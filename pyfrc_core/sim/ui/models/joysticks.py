@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 JOYSTICKS = 6
 #: The number of axes and buttons that are shown; labelled axes are shown, too.
 _AXES, BUTTONS = 6, 12
+#: The number of the first button, and of how many buttons a person can press.
+FIRST_BUTTON, MOST_BUTTONS = CURRENT.first_button, 32
 
 _AXIS_NAMES = ("X", "Y", "Z", "Throttle")
 
@@ -25,10 +27,10 @@ RELEASED = -1
 
 @dataclass
 class Stick:
-    """One joystick's controls. Buttons count from 1: the first entry of the list is unused."""
+    """One joystick's controls. Where buttons count from 1, the first entry of their list is unused."""
 
     axes: list[float] = field(default_factory=lambda: [0.0] * 12)
-    buttons: list[bool] = field(default_factory=lambda: [False] * 33)
+    buttons: list[bool] = field(default_factory=lambda: [False] * (FIRST_BUTTON + MOST_BUTTONS))
     pov: int = RELEASED
     plugged: bool = True
 
@@ -91,7 +93,7 @@ def _axis_name(axis: int) -> str:
 def button_labels(config: SimConfig, stick: int) -> dict[int, str]:
     """Return the labels of the buttons that have one."""
     named = dict(config.joysticks[stick].buttons) if stick in config.joysticks else {}
-    return {CURRENT.first_button: "Trigger", CURRENT.first_button + 1: "Top"} | named
+    return {FIRST_BUTTON: "Trigger", FIRST_BUTTON + 1: "Top"} | named
 
 
 def direction(x: float, y: float) -> int:

@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ....season import CURRENT
+
 if TYPE_CHECKING:
     from ....config.sim import SimConfig
 
@@ -46,6 +48,10 @@ def _pair(left: str, right: str, control: Control) -> dict[str, dict[Control, fl
     return {left: {control: -1.0}, right: {control: 1.0}}
 
 
+def _of_gamepad(axis: str) -> Control:
+    return 0, CURRENT.gamepad.axes.index(axis)
+
+
 # On a joystick, forwards and to the left are negative.
 _LEFT, _RIGHT = (0, 1), (1, 1)
 
@@ -78,10 +84,10 @@ LAYOUTS = (
         {
             **_pair("a", "d", (0, 0)),
             **_pair("w", "s", (0, 1)),
-            "q": {(0, 2): 1.0},
-            "e": {(0, 3): 1.0},
-            **_pair("left", "right", (0, 4)),
-            **_pair("up", "down", (0, 5)),
+            "q": {_of_gamepad("left_trigger"): 1.0},
+            "e": {_of_gamepad("right_trigger"): 1.0},
+            **_pair("left", "right", _of_gamepad("right_x")),
+            **_pair("up", "down", _of_gamepad("right_y")),
         },
     ),
 )
@@ -96,8 +102,9 @@ def layout_for(config: SimConfig) -> KeyLayout:
     return joysticks if named & {0, 2} else tank
 
 
-#: The keys of the first joystick's buttons.
-BUTTON_KEYS = {**{str(number): number for number in range(1, 10)}, "0": 10}
+#: The keys of the first joystick's buttons, and the same as a text. Where buttons count from 1, the key 0 is button 10.
+BUTTON_KEYS = {str(number % 10): number for number in range(CURRENT.first_button, CURRENT.first_button + 10)}
+BUTTON_KEYS_TEXT = "0 to 9" if CURRENT.first_button == 0 else "1 to 9, 0"
 
 
 def canonical(keysym: str) -> str:
@@ -137,5 +144,5 @@ class KeyDriver:
         return {control: min(max(value, -1.0), 1.0) for control, value in moved.items()}
 
     def buttons(self) -> dict[Control, bool]:
-        """Return which buttons are pressed; buttons count from 1."""
+        """Return which buttons are pressed."""
         return {(0, button): key in self.held for key, button in BUTTON_KEYS.items()}

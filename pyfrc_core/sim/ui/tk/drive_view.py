@@ -7,12 +7,12 @@ from collections.abc import Callable
 from tkinter import ttk
 
 from ..models.driver_station_keys import DriverStationKeys
-from ..models.keyboard import LAYOUTS
+from ..models.keyboard import BUTTON_KEYS_TEXT, LAYOUTS
 from . import theme as colors
 from .boxes import tame
 from .theme import Theme
 
-_OTHERS = ". Shift: gently. 1 to 9, 0: buttons of joystick 0"
+_OTHERS = f". Shift: gently. {BUTTON_KEYS_TEXT}: buttons of joystick 0"
 
 
 class DriveView:

@@ -8,7 +8,7 @@ from tkinter import ttk
 from typing import TYPE_CHECKING
 
 from ..models.gamepads import HINT, GamepadRouter
-from ..models.joysticks import BUTTONS, JOYSTICKS, RELEASED, Sticks, axis_labels, button_labels, direction
+from ..models.joysticks import BUTTONS, FIRST_BUTTON, JOYSTICKS, RELEASED, Sticks, axis_labels, button_labels, direction
 from . import theme as colors
 from .boxes import tame
 from .theme import Theme, fitting
@@ -183,8 +183,9 @@ class JoystickView:
         self._lamps = {}
         half = px(WIDTH - 24) // 2
         rows = BUTTONS // 2
-        for button in range(1, BUTTONS + 1):
-            column, row = divmod(button - 1, rows)
+        for index in range(BUTTONS):
+            button = FIRST_BUTTON + index
+            column, row = divmod(index, rows)
             x, top = left + column * half, y + row * px(_BUTTON)
             self._add(("button", button), x, top, x + half, top + px(_BUTTON))
             size = px(_BUTTON - 4)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, get_args
 from ....errors import PyfrcError
 from ....runtime.scripts.script import trace_beside
 from ...engine.commands import ChosenMode
+from ..models.joysticks import FIRST_BUTTON, MOST_BUTTONS
 from ..models.time_controls import rewind, toggle
 from ..models.wording import STATIONS
 from .messages import CommandError, Message, read_value
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 Answer = dict[str, Any]
 
 _MOST_STEPS = 3000
+#: The numbers of the first and the last button.
+_BUTTONS = FIRST_BUTTON, FIRST_BUTTON + MOST_BUTTONS - 1
 #: The largest place that a page may name, in feet and degrees.
 _FARTHEST = 1e6
 
@@ -61,7 +64,7 @@ class PageCommands:
             "reset_position": lambda m: s.reset_position(m.text("start") if "start" in m else None),
             "write": self._write,
             "axis": lambda m: d.set_axis(_stick(m), m.integer("axis", 0, 11), m.number("value", -1, 1)),
-            "button": lambda m: d.set_button(_stick(m), m.integer("button", 1, 32), m.boolean("pressed")),
+            "button": lambda m: d.set_button(_stick(m), m.integer("button", *_BUTTONS), m.boolean("pressed")),
             "pov": lambda m: d.set_pov(_stick(m), m.integer("pov", 0, 11, 0), m.integer("angle", -1, 360)),
             "plug": lambda m: d.plug(_stick(m), m.boolean("plugged")),
             "mark": lambda m: collector.marks.add(m.time("t"), "own", m.text("text")),

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import re
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...._version import __version__
+from ....season import CURRENT
 from ....text_files import keep_out_of_version_control, write_whole
-from ..models.joysticks import JOYSTICKS, axis_labels, button_labels
-from ..models.keyboard import BUTTON_KEYS, ENABLE_CHORD, GENTLE, LAYOUTS, layout_for
+from ..models.joysticks import FIRST_BUTTON, JOYSTICKS, MOST_BUTTONS, axis_labels, button_labels
+from ..models.keyboard import BUTTON_KEYS, BUTTON_KEYS_TEXT, ENABLE_CHORD, GENTLE, LAYOUTS, layout_for
 from ..models.time_controls import FASTEST, SLOWEST
 from ..models.wording import MODES, NO_OPMODE, STATIONS
 
@@ -28,7 +31,7 @@ def greeting(simulation: Simulation, client: int, read_only: bool, watching: boo
     :param watching: whether saved files bring new code
     """
     project = simulation.project
-    config = project.sim_config
+    config, dashboards = project.sim_config, CURRENT.dashboards
     return {
         "type": "hello",
         "protocol": PROTOCOL,
@@ -47,11 +50,18 @@ def greeting(simulation: Simulation, client: int, read_only: bool, watching: boo
             "game_messages": list(project.game_specific_messages),
             "modes": MODES,
             "no_opmode": NO_OPMODE,
+            "dashboard": {
+                "tables": [f"nt:{table}" for table in dashboards.tables],
+                "robot": re.sub(r"^nt:.*:/", "nt:/", dashboards.robot_on_field),
+                "publishing": dashboards.publishing,
+            },
             "speeds": {"slowest": SLOWEST, "fastest": FASTEST},
             "joysticks": [
                 {"axes": axis_labels(config, stick), "buttons": button_labels(config, stick)}
                 for stick in range(JOYSTICKS)
             ],
+            "buttons": {"first": FIRST_BUTTON, "most": MOST_BUTTONS},
+            "gamepad": asdict(CURRENT.gamepad),
             "keyboard": {
                 "layouts": [
                     {
@@ -66,6 +76,7 @@ def greeting(simulation: Simulation, client: int, read_only: bool, watching: boo
                 "chosen": layout_for(config).name,
                 "gentle": GENTLE,
                 "button_keys": BUTTON_KEYS,
+                "button_keys_text": BUTTON_KEYS_TEXT,
                 "enable_chord": sorted(ENABLE_CHORD),
             },
         },

@@ -9,7 +9,13 @@ export function nameOf(path) {
     namesOf = model.panels;
     names = namesOfRows(model.panels);
   }
-  return names.get(path) ?? OWN[path] ?? elementName(path) ?? path.replace(/^nt:\/(SmartDashboard\/)?/, "");
+  return names.get(path) ?? OWN[path] ?? elementName(path) ?? withoutTable(path);
+}
+
+// Without the table of what robot code shows.
+function withoutTable(path) {
+  const table = model.hello?.options?.dashboard.tables.find((each) => path.startsWith(`${each}/`)) ?? "nt:";
+  return path.startsWith(`${table}/`) ? path.slice(table.length + 1) : path;
 }
 
 const OWN = { "sim.mode": "Mode", "sim.pose[0]": "Robot x, ft", "sim.pose[1]": "Robot y, ft", "sim.pose[2]": "Robot angle, rad" };

@@ -26,6 +26,10 @@ function posesOf(value, field) {
   return poses;
 }
 
+function isCorner([x, y, angle], field) {
+  return x === 0 && y === field.height && angle === 0;
+}
+
 function angleOf(rotation) {
   return rotation?.value ?? rotation?.radians ?? 0;
 }
@@ -39,31 +43,35 @@ function isTrajectory(poses) {
 
 // The pose of the robot that the physics publishes. Its field has the other name if robot code shows a "Field" of its own.
 function physicsRobot(values) {
-  const others = "nt:/SmartDashboard/Field (physics)";
-  return `${values.has(`${others}/.type`) ? others : "nt:/SmartDashboard/Field"}/Robot`;
+  const { robot } = model.hello.options.dashboard;
+  const other = robot.replace("/Field/", "/Field (physics)/");
+  return values.has(other) ? other : robot;
 }
 
 // The objects of every Field2d: { name, path, poses, isPath }.
 export function fieldObjects(values, field) {
   const objects = [];
+  const folders = [];
   const simulated = physicsRobot(values);
   for (const [path, type] of values) {
     if (!path.startsWith("nt:/") || !path.endsWith("/.type") || type !== "Field2d") continue;
     const folder = path.slice(0, -"/.type".length);
+    folders.push(`${folder}/`);
     for (const [each, value] of values) {
       if (!each.startsWith(`${folder}/`)) continue;
       const name = each.slice(folder.length + 1);
       if (name.startsWith(".")) continue;
       if (each === simulated && model.shown.robot) continue; // the page draws it anyway
       // Nothing has moved this one yet: a Field2d begins with its robot in the corner.
-      if (name === "Robot" && Array.isArray(value) && value.every((number) => number === 0)) continue;
       const poses = posesOf(value, field);
+      if (name === "Robot" && poses.length === 1 && isCorner(poses[0], field)) continue;
       if (poses.length) objects.push({ name, path: each, poses, isPath: isTrajectory(poses) });
     }
   }
   for (const [path, value] of values) {
     // Poses that robot code publishes as structs, beside any Field2d.
     if (!path.startsWith("nt:/") || !/^(struct:)?Pose2d/.test(model.types[path] ?? "")) continue;
+    if (folders.some((folder) => path.startsWith(folder))) continue;
     const poses = posesOf(value, field);
     if (poses.length) objects.push({ name: path.split("/").pop(), path, poses, isPath: isTrajectory(poses) });
   }

@@ -3,8 +3,12 @@ import { atRest, write } from "#js/connection.js";
 import { model } from "#js/model.js";
 import { settings } from "#js/settings.js";
 
-// A gamepad with the browser's "standard" mapping, in the order of the Driver Station.
-const STANDARD_BUTTONS = [0, 1, 2, 3, 4, 5, 8, 9, 10, 11]; // A B X Y LB RB Back Start, left and right stick
+// The controls of a gamepad with the browser's "standard" mapping: numbers of axes, and of buttons.
+const STANDARD_AXES = { left_x: 0, left_y: 1, right_x: 2, right_y: 3 };
+const STANDARD_BUTTONS = {
+  a: 0, b: 1, x: 2, y: 3, left_bumper: 4, right_bumper: 5, left_trigger: 6, right_trigger: 7, back: 8, start: 9, left_stick: 10,
+  right_stick: 11, up: 12, down: 13, left: 14, right: 15, guide: 16,
+};
 const HATS = { "0,-1": 0, "1,-1": 45, "1,0": 90, "1,1": 135, "0,1": 180, "-1,1": 225, "-1,0": 270, "-1,-1": 315 };
 const STEP = 0.01; // the smallest movement that is passed on
 const STICKS = 6;
@@ -42,13 +46,13 @@ export function read(pad) {
   if (pad.mapping !== "standard") {
     return { axes: [...pad.axes], buttons: pad.buttons.map((button) => button.pressed), pov: -1 };
   }
-  const [leftX, leftY, rightX, rightY] = pad.axes;
-  const value = (index) => pad.buttons[index]?.value ?? 0;
+  const order = model.hello.options.gamepad;
+  const axis = (name) => (name in STANDARD_AXES ? pad.axes[STANDARD_AXES[name]] : (pad.buttons[STANDARD_BUTTONS[name]]?.value ?? 0));
   const pressed = (index) => Number(Boolean(pad.buttons[index]?.pressed));
   const hat = `${pressed(15) - pressed(14)},${pressed(13) - pressed(12)}`;
   return {
-    axes: [leftX, leftY, value(6), value(7), rightX, rightY],
-    buttons: STANDARD_BUTTONS.map(pressed),
+    axes: order.axes.map(axis),
+    buttons: order.buttons.map((name) => pressed(STANDARD_BUTTONS[name])),
     pov: HATS[hat] ?? -1,
   };
 }
@@ -58,8 +62,9 @@ function targetsOf(stick, reading) {
   reading.axes.slice(0, 12).forEach((value, axis) => {
     targets[`joysticks[${stick}].axes[${axis}]`] = Math.min(Math.max(value ?? 0, -1), 1);
   });
-  reading.buttons.slice(0, 32).forEach((pressed, index) => {
-    targets[`joysticks[${stick}].buttons[${index + 1}]`] = pressed;
+  const { first, most } = model.hello.options.buttons;
+  reading.buttons.slice(0, most).forEach((pressed, index) => {
+    targets[`joysticks[${stick}].buttons[${first + index}]`] = pressed;
   });
   targets[`joysticks[${stick}].povs[0]`] = reading.pov;
   return targets;

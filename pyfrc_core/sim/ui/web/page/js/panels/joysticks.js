@@ -20,7 +20,8 @@ export class JoysticksPanel extends Live {
     const { axes, buttons } = model.hello.options.joysticks[stick];
     const plugged = model.shown.values.has(`joysticks[${stick}].axes`);
     const axisNumbers = Object.keys(axes).map(Number);
-    const buttonNumbers = [...new Set([...Array.from({ length: BUTTONS }, (_, index) => index + 1), ...Object.keys(buttons).map(Number)])].sort((one, other) => one - other);
+    const { first } = model.hello.options.buttons;
+    const buttonNumbers = [...new Set([...Array.from({ length: BUTTONS }, (_, index) => first + index), ...Object.keys(buttons).map(Number)])].sort((one, other) => one - other);
     return html`<div class="joysticks">
       <div class="segments small" role="tablist" aria-label="Joystick">
         ${[0, 1, 2, 3, 4, 5].map((number) => html`<button key=${number} role="tab" aria-selected=${number === stick}

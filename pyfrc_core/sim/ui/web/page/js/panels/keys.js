@@ -22,7 +22,7 @@ export class KeysPanel extends Live {
   fields = createRef();
 
   render(_, state) {
-    const { keyboard } = model.hello.options;
+    const { keyboard, buttons: { first, most } } = model.hello.options;
     const { layout, axes, buttons, added } = bindings();
     const own = new Set(added.map((each) => each.key));
     return html`<div class="keys scroll form">
@@ -42,16 +42,16 @@ export class KeysPanel extends Live {
       <fieldset ref=${this.fields} disabled=${model.readonly}><legend>Add a key</legend>
         <div class="binding">
           <input type="text" readonly value=${state.key ? (NAMES[state.key] ?? state.key.toUpperCase()) : ""} placeholder="Press a key" aria-label="Key" onKeyDown=${this.takeKey} />
-          <select aria-label="Kind" value=${state.kind} onChange=${(event) => this.setState({ kind: event.target.value, control: event.target.value === "button" ? 1 : 0 })}>
+          <select aria-label="Kind" value=${state.kind} onChange=${(event) => this.setState({ kind: event.target.value, control: event.target.value === "button" ? first : 0 })}>
             <option value="axis">axis</option><option value="button">button</option></select>
           <label>joystick <input type="number" required min="0" max="5" value=${state.stick} onInput=${(event) => this.setState({ stick: event.target.value })} /></label>
-          <label>number <input type="number" required min=${state.kind === "axis" ? 0 : 1} max=${state.kind === "axis" ? 11 : 32} value=${state.control} onInput=${(event) => this.setState({ control: event.target.value })} /></label>
+          <label>number <input type="number" required min=${state.kind === "axis" ? 0 : first} max=${state.kind === "axis" ? 11 : first + most - 1} value=${state.control} onInput=${(event) => this.setState({ control: event.target.value })} /></label>
           ${state.kind === "axis" && html`<label>by <input type="number" required min="-1" max="1" step="any" value=${state.by} onInput=${(event) => this.setState({ by: event.target.value })} /></label>`}
           <button disabled=${!state.key} onClick=${this.add}>Add</button>
         </div></fieldset>
       <h4>The driver station</h4>
       <table><tbody>${STATION_KEYS.map(([key, what]) => html`<tr key=${key}><td><kbd>${key}</kbd></td><td>${what}</td></tr>`)}
-        <tr><td><kbd>1</kbd> to <kbd>9</kbd>, <kbd>0</kbd></td><td>buttons 1 to 10 of joystick 0</td></tr></tbody></table>
+        <tr><td><kbd>${keyboard.button_keys_text}</kbd></td><td>buttons ${first} to ${first + 9} of joystick 0</td></tr></tbody></table>
     </div>`;
   }
 

@@ -27,7 +27,7 @@ export class MechanismPanel extends Live {
   render() {
     this.found = mechanisms(model.shown.values);
     return html`<div class="mechanism"><canvas ref=${this.canvas} role="img" aria-label=${this.found.map((each) => each.name).join(", ")}></canvas>
-      ${!this.found.length && html`<p class="empty">A Mechanism2d that the robot publishes appears here: SmartDashboard.putData("Arm", mechanism).</p>`}</div>`;
+      ${!this.found.length && html`<p class="empty">A Mechanism2d that the robot publishes with ${model.hello.options.dashboard.publishing} appears here.</p>`}</div>`;
   }
 
   draw() {
@@ -92,8 +92,9 @@ function drawMechanism(context, { name, tree }, box) {
   context.save();
   context.clip();
   for (const root of Object.values(tree.children)) {
+    const [x, y] = root.values.position ?? [root.values.x ?? 0, root.values.y ?? 0]; // from 2027 on in one value
     /** @type {[number, number]} */
-    const at = [left + (root.values.x ?? 0) * scale, bottom - (root.values.y ?? 0) * scale];
+    const at = [left + x * scale, bottom - y * scale];
     for (const child of Object.values(root.children)) drawLigament(context, child, at, 0, scale);
     context.beginPath();
     context.arc(...at, 4, 0, 2 * Math.PI);

@@ -10,7 +10,7 @@ const START = "nt:/";
 
 export class NetworkTablesPanel extends Live {
   parts = ["paths", "types", "hello", "shown"];
-  state = { search: "", open: { "nt:/SmartDashboard": true } };
+  state = { search: "", open: Object.fromEntries(model.hello.options.dashboard.tables.map((table) => [table, true])) };
 
   render(_, { search, open }) {
     const words = search.toLowerCase().split(/\s+/).filter(Boolean);

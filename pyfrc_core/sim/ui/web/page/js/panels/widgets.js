@@ -8,7 +8,7 @@ import { Icon, Live, html } from "#js/view.js";
 import { Chooser } from "#js/panels/match.js";
 
 // Shown elsewhere: on the field, or as a drawing.
-const ELSEWHERE = new Set(["Field2d", "Mechanism2d", "String Chooser", "Alerts", "FMSInfo"]);
+const ELSEWHERE = new Set(["Field2d", "Mechanism2d", "String Chooser", "Selectable", "Alerts", "FMSInfo", "DriverStation"]);
 const ALERTS = [["errors", "red"], ["warnings", "amber"], ["infos", "accent"]];
 
 export class WidgetsPanel extends Live {
@@ -27,7 +27,7 @@ export class WidgetsPanel extends Live {
         const Card = each.type === "Command" ? CommandCard : ValuesCard;
         return html`<${Card} key=${each.path} folder=${each} values=${values} />`;
       })}
-      ${!cards.length && !alerts.length && !model.choosers.length && html`<p class="empty">Choosers, PID controllers, commands and alerts that the robot publishes with SmartDashboard.putData appear here.</p>`}
+      ${!cards.length && !alerts.length && !model.choosers.length && html`<p class="empty">Choosers, PID controllers, commands and alerts that the robot publishes with ${model.hello.options.dashboard.publishing} appear here.</p>`}
     </div>`;
   }
 }
