@@ -198,11 +198,12 @@ DEVICES = {
                 self.imu = wpilib.OnboardIMU(wpilib.OnboardIMU.MountOrientation.FLAT)
 
             def robot_periodic(self):
-                telemetry.log("pressed", [self.stick.get_face_down_button(), self.stick.get_dpad_right_button()], element_type=bool)
+                telemetry.log("down", self.stick.get_face_down_button())
+                telemetry.log("dpad", self.stick.get_dpad_right_button())
                 telemetry.log("right", self.stick.get_right_x())
                 telemetry.log("yaw", self.imu.get_yaw())
     """
-}  # fmt: skip
+}
 
 
 def test_joysticks_have_the_numbers_of_2027(make_project: MakeProject) -> None:
@@ -215,10 +216,11 @@ def test_joysticks_have_the_numbers_of_2027(make_project: MakeProject) -> None:
         page.command("enable")
         for name in ("a", "right"):
             page.command("button", stick=0, button=order["buttons"].index(name), pressed=True)
-        page.command("axis", stick=0, axis=order["axes"].index("right_x"), value=0.75)
+        page.command("axis", stick=0, axis=order["axes"].index("right_x"), value=-1)
         page.run_for(0.1)
-        assert page.values["nt:/Telemetry/pressed"] == [True, True]
-        assert page.values["nt:/Telemetry/right"] == 0.75
+        assert page.values["nt:/Telemetry/down"]
+        assert page.values["nt:/Telemetry/dpad"]
+        assert page.values["nt:/Telemetry/right"] == -1
         page.until(lambda: {"press"} <= {mark["kind"] for mark in page.marks})
         assert "joystick 0, button 0" in [mark["text"] for mark in page.marks]
 
