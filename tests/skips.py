@@ -59,6 +59,8 @@ _PACKAGES = {
 #: What no package brings.
 _OTHERWISE = {
     "Dask": 'pip install "distributed>=2024.12"',
+    "robotpy-rev": 'pip install "robotpy-rev>=2027.0.0a7.post1"',
+    "phoenix6": 'pip install "phoenix6>=26.70.0a2"',
     "Python 3.11": "make test PYTHON=python3.11 VENV=.venv-3.11",
     "Linux": "run them on Linux (on Windows: in WSL)",
     "a Python with tkinter": "make test PYTHON=/usr/bin/python3 VENV=.venv-system",

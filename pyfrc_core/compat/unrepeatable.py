@@ -23,7 +23,7 @@ _REAL_TIME = ("phoenix6",)
 #: ``CANMotor:Talon FX (v6)[11]`` and ``CANEncoder:Talon FX (v6)[11]/Rotor Sensor``.
 _DEVICES = {
     "phoenix6": re.compile(r"CAN\w*:([^/\[\]]+?) \(v6\)\[(\d+)\]"),
-    "rev": re.compile(r"(SPARK (?:MAX|Flex)) \[(\d+)\]"),
+    "rev": re.compile(r"(SPARK (?:MAX|Flex)) \[(?:\d+,)?(\d+)\]"),
 }
 
 #: For each library, why its devices do not repeat, and what to do.

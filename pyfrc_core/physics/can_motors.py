@@ -14,7 +14,7 @@ import math
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from ..wpi import devices, motors
+from ..wpi import devices, motors, sparks
 
 #: REV's control modes that need no sensor: duty cycle and voltage.
 _OPEN_LOOP = (0, 2)
@@ -57,25 +57,18 @@ class Spark:
     """
 
     def __init__(self, spark: Any, motor: motors.DCMotor, gearing: float = 1.0, *, zero: float = 0.0) -> None:
-        import rev
-
         self.motor, self.gearing, self.zero = motor, gearing, zero
-        sensor = spark.configAccessor.closedLoop.getFeedbackSensor()
-        on_shaft = (rev.FeedbackSensor.kAbsoluteEncoder, rev.FeedbackSensor.kAlternateOrExternalEncoder)
+        closes_on = sparks.closes_on(spark)
         # REV's simulation takes the speed of the sensor that closes the loop for that of the motor: with a sensor
         # behind the gears, it needs a motor with gears. It refers to the motor without keeping it.
-        self._model = motors.with_gears(motor, gearing) if sensor in on_shaft else motor
-        is_flex = isinstance(spark, rev.SparkFlex)
-        make: Any = rev.SparkFlexSim if is_flex else rev.SparkMaxSim
-        self._sim = make(spark, self._model)
-        self._relative = self._sim.getRelativeEncoderSim()
-        self._absolute = self._sim.getAbsoluteEncoderSim()
-        self._second = self._sim.getExternalEncoderSim() if is_flex else self._sim.getAlternateEncoderSim()
+        self._model = motor if closes_on == "relative" else motors.with_gears(motor, gearing)
+        self._sim = sparks.SparkSim(spark, self._model)
+        encoders = self._sim.encoders
+        self._relative, self._absolute = encoders["relative"], encoders["absolute"]
         #: The sensor that `iterate` moves, and the turns of each sensor for one turn of the shaft.
-        self._feedback = {on_shaft[0]: self._absolute, on_shaft[1]: self._second}.get(sensor, self._relative)
-        self._sensors = ((self._relative, gearing), (self._second, 1.0))
-        device = f"SPARK {'Flex' if is_flex else 'MAX'} [{spark.getDeviceId()}]"
-        self._mode = devices.sim_integer(device, "Control Mode")
+        self._feedback = encoders[closes_on]
+        self._sensors = ((self._relative, gearing), (encoders["second"], 1.0))
+        self._mode = devices.sim_integer(sparks.device_of(spark), "Control Mode")
         self._set_absolute(0.0, 0.0)
 
     def steps(self) -> int:
@@ -84,26 +77,26 @@ class Spark:
 
     def output(self) -> float:
         """Return the applied output, from -1 to 1."""
-        return float(self._sim.getAppliedOutput())
+        return float(self._sim.output())
 
     def measure(self, turns: float, speed: float, tm_diff: float) -> None:
         """Set the sensors, and let REV's simulation compute the next output."""
         sensor_speed = speed * self.gearing if self._feedback is self._relative else speed
         volts = devices.battery_voltage()
         # REV's loop has a position of its own, which follows neither what is set below nor the robot's setPosition().
-        self._sim.setPosition(self._feedback.getPosition())
-        self._sim.iterate(sensor_speed * 60 * self._feedback.getVelocityConversionFactor(), volts, tm_diff)
+        self._sim.set_position(self._feedback.position())
+        self._sim.iterate(sensor_speed * 60 * self._feedback.velocity_factor(), volts, tm_diff)
         for sensor, ratio in self._sensors:
             if sensor is not self._feedback:
                 # This adds to the position, so that it stays relative to what the robot's code has set.
-                converted = speed * ratio * 60 * sensor.getVelocityConversionFactor()
+                converted = speed * ratio * 60 * sensor.velocity_factor()
                 sensor.iterate(converted, tm_diff)
-                sensor.setVelocity(converted)
+                sensor.set_velocity(converted)
         self._set_absolute(turns, speed)
 
     def _set_absolute(self, turns: float, speed: float) -> None:
-        self._absolute.setPosition((turns + self.zero) % 1 * self._absolute.getPositionConversionFactor())
-        self._absolute.setVelocity(speed * 60 * self._absolute.getVelocityConversionFactor())
+        self._absolute.set_position((turns + self.zero) % 1 * self._absolute.position_factor())
+        self._absolute.set_velocity(speed * 60 * self._absolute.velocity_factor())
 
 
 class Talon:

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from .season_2026 import robots as robots
     from .season_2026 import sim_devices as sim_devices
     from .season_2026 import source as source
+    from .season_2026 import sparks as sparks
     from .season_2026 import station as station
     from .season_2026 import timing as timing
     from .season_2026 import watchdogs as watchdogs

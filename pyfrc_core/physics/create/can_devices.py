@@ -14,7 +14,7 @@ from typing import Any
 
 from ...hal import HalData
 from ...runtime.clock import PACKET_US
-from ...wpi import motors
+from ...wpi import motors, sparks
 from ..can_motors import Controller, Mechanism, Spark, Talon, read_settings
 from .motors import Motor
 from .names import Name, Reached
@@ -90,15 +90,15 @@ def find_can_devices(objects: Iterable[Reached]) -> CanDevices:
     controllers = [entry for entry in things if _kind(entry[1]) != "CANcoder"]
     followers = Counter(_place_of_leader(thing) for _, thing, _ in controllers)
     for name, thing, expression in controllers:
-        kind, number = _kind(thing), _number(thing)
+        kind = _kind(thing)
         vendor, (model, make) = _CONTROLLERS[kind], motors.usual_motor(kind)
-        found.devices += _parts(kind, number)
+        found.devices += _parts(thing)
         if _place_of_leader(thing) is None:
             value = "Applied Output" if vendor == "Spark" else "motorVoltage"
-            count = 1 + followers[vendor, number]
-            motor = CanMotor(name, None, _device(kind, number), value, False, vendor, expression, model, count)
+            count = 1 + followers[_place(thing)]
+            motor = CanMotor(name, None, _device(thing), value, False, vendor, expression, model, count)
             found.motors.append(_completed(motor, thing, make(count), cancoders))
-    found.devices += [f"CANEncoder:CANcoder (v6)[{_number(thing)}]" for _, thing, _ in cancoders]
+    found.devices += [f"CANEncoder:CANcoder (v6)[{thing.device_id}]" for _, thing, _ in cancoders]
     return found
 
 
@@ -112,33 +112,38 @@ def _kind(thing: object) -> str:
     return ""
 
 
-def _number(thing: Any) -> int:
-    return int(thing.device_id if hasattr(thing, "device_id") else thing.getDeviceId())
+def _is_spark(thing: object) -> bool:
+    return _CONTROLLERS.get(_kind(thing)) == "Spark"
 
 
-def _place_of_leader(thing: Any) -> tuple[str, int] | None:
+def _place(thing: Any) -> tuple[str, object]:
+    """Return the vendor and number of a motor controller."""
+    return ("Spark", sparks.key_of(thing)) if _is_spark(thing) else ("Talon", int(thing.device_id))
+
+
+def _place_of_leader(thing: Any) -> tuple[str, object] | None:
     """Return the vendor and number of the motor controller that this one follows; None if it does not follow."""
-    if hasattr(thing, "configAccessor"):
-        leader = thing.configAccessor.getFollowerModeLeaderId()
-        return ("Spark", int(leader)) if leader else None
+    if _is_spark(thing):
+        key = sparks.leader_of(thing)
+        return None if key is None else ("Spark", key)
     leader = getattr(thing.control_request, "leader_id", None)
-    return None if leader is None else ("Talon", int(leader))
+    return None if leader is None else ("Talon", leader)
 
 
-def _device(kind: str, number: int) -> str:
-    known = {"SparkMax": "SPARK MAX [{}]", "SparkFlex": "SPARK Flex [{}]", "TalonFX": "CANMotor:Talon FX (v6)[{}]"}
-    return known[kind].format(number)
+def _device(thing: Any) -> str:
+    """Return the name of the SimDevice of a motor controller."""
+    return sparks.device_of(thing) if _is_spark(thing) else f"CANMotor:Talon FX (v6)[{thing.device_id}]"
 
 
-def _parts(kind: str, number: int) -> list[str]:
-    own = _device(kind, number)
-    return [own, *(own.replace("CANMotor", other) for other in ("CANEncoder", "CANDIO") if kind == "TalonFX")]
+def _parts(thing: Any) -> list[str]:
+    own = _device(thing)
+    return [own, *(own.replace("CANMotor", other) for other in ("CANEncoder", "CANDIO") if not _is_spark(thing))]
 
 
 def _completed(motor: CanMotor, thing: Any, model: motors.DCMotor, cancoders: list[tuple[Name, Any, str]]) -> CanMotor:
     """Return the motor with what the robot has configured, and with what moves while the joysticks are tested."""
     if motor.vendor == "Spark":
-        factor = float(thing.configAccessor.encoder.getPositionConversionFactor())
+        factor = sparks.factor_of(thing)
         controller: Controller = Spark(thing, model, _TRIAL_GEARING)
         encoder = ""
     else:
@@ -148,7 +153,7 @@ def _completed(motor: CanMotor, thing: Any, model: motors.DCMotor, cancoders: li
         ratio = feedback.sensor_to_mechanism_ratio * feedback.rotor_to_sensor_ratio
         factor = 1 / ratio if ratio else 1.0
         chosen = next(
-            (each for each in cancoders if _number(each[1]) == feedback.feedback_remote_sensor_id), None
+            (each for each in cancoders if each[1].device_id == feedback.feedback_remote_sensor_id), None
         ) or _beside(motor.name, cancoders)
         controller = Talon(thing, model, 1 / factor if chosen else _TRIAL_GEARING, chosen[1] if chosen else None)
         encoder = chosen[2] if chosen else ""

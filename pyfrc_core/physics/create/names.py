@@ -267,7 +267,7 @@ def _can_number(thing: object) -> int | None:
     """Return the CAN number of a vendor's motor controller or sensor, from the methods of the vendors' classes."""
     if isinstance(thing, type):
         return None
-    for name in ("getDeviceId", "getDeviceID", "device_id"):
+    for name in ("getDeviceId", "getDeviceID", "get_device_id", "device_id"):
         getter = getattr(type(thing), name, None)
         if getter is None:
             continue

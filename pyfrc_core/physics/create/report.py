@@ -38,7 +38,7 @@ def _advice_for_driving(layout: DrivetrainLayout) -> list[str]:
 
 
 #: A sensor of a vendor's motor controller, such as ``SPARK MAX [11] RELATIVE ENCODER``.
-_PART = re.compile(r".+ \[\d+\] [A-Z]")
+_PART = re.compile(r".+ \[[\d,]+\] [A-Z]")
 
 
 def _not_simulated(found: Survey, layout: DrivetrainLayout) -> list[str]:

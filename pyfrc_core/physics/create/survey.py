@@ -230,7 +230,7 @@ def _add_sim_device(found: Survey, device: str, named: Mapping[Place, NamedDevic
     # WPILib's own devices have a kind before a colon; those that are not on the CAN bus are identified by their
     # channels. The number of a navX is that of its SPI port.
     elsewhere = (":" in device and not device.startswith("CAN")) or device.startswith("navX")
-    number = None if elsewhere else re.search(r"\[(\d+)\]$", device)
+    number = None if elsewhere else re.search(r"\[(?:\d+,)?(\d+)\]$", device)
     known = named.get(("CAN", int(number[1]))) if number else None
     name = known.name if known else Name()
     values = {value.name: value for value in devices.sim_values(device)}

@@ -11,6 +11,7 @@ import wpilib
 from wpilib.simulation import RoboRioSim, SimDeviceSim
 
 from ..device_values import Sensor, SimValue, SimValueKind, find_sensor
+from . import sparks
 
 #: Reset all devices of the simulated HAL to their initial values.
 reset_all = hal.simulation.resetAllSimData
@@ -77,8 +78,8 @@ _SENSORS: dict[str, Callable[[Any], Sensor]] = {
     "ADXRS450_Gyro": lambda each: Sensor(("CAN", f"Gyro:ADXRS450[{each.getPort()}]")),
     "ADIS16470_IMU": lambda each: Sensor(("CAN", f"Gyro:ADIS16470[{each.getPort()}]")),
     "ADIS16448_IMU": lambda each: Sensor(("CAN", f"Gyro:ADIS16448[{each.getPort()}]")),
-    "SparkMax": lambda each: Sensor(("CAN", f"SPARK MAX [{each.getDeviceId()}]")),
-    "SparkFlex": lambda each: Sensor(("CAN", f"SPARK Flex [{each.getDeviceId()}]")),
+    "SparkMax": lambda each: Sensor(("CAN", sparks.device_of(each))),
+    "SparkFlex": lambda each: Sensor(("CAN", sparks.device_of(each))),
 }
 
 

@@ -11,6 +11,7 @@ import wpilib
 from wpilib.simulation import RoboRioSim, SimDeviceSim
 
 from ..device_values import Sensor, SimValue, SimValueKind, find_sensor
+from . import sparks
 
 #: Reset all devices of the simulated HAL to their initial values.
 reset_all = hal.simulation.reset_all_sim_data
@@ -66,8 +67,8 @@ _SENSORS: dict[str, Callable[[Any], Sensor]] = {
         ("CAN", f"DutyCycle:DutyCycleEncoder[{each.get_source_channel()}]"), f" on DIO {each.get_source_channel()}"
     ),
     "OnboardIMU": lambda each: Sensor(("onboard_imu",)),
-    "SparkMax": lambda each: Sensor(("CAN", f"SPARK MAX [{each.get_device_id()}]")),
-    "SparkFlex": lambda each: Sensor(("CAN", f"SPARK Flex [{each.get_device_id()}]")),
+    "SparkMax": lambda each: Sensor(("CAN", sparks.device_of(each))),
+    "SparkFlex": lambda each: Sensor(("CAN", sparks.device_of(each))),
 }
 
 

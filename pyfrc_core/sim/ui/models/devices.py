@@ -319,7 +319,7 @@ def _custom(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
             yield Row("text", (entry[0],), str(name), tooltip=f"hal_data['custom']['{name}']")
 
 
-_SPARK = re.compile(r"SPARK (MAX|Flex) \[\d+\]")
+_SPARK = re.compile(r"SPARK (MAX|Flex) \[[\d,]+\]")
 _PHOENIX = re.compile(r"CAN\w*:(?P<kind>[^/\[\]]+?) \(v6\)\[(?P<number>\d+)\](?:/(?P<part>.+))?")
 
 #: REV's control modes by the number in ``Control Mode``, each with the unit of its set-point.
