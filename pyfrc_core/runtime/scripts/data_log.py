@@ -15,6 +15,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from ...season import CURRENT
 from ...wpi import logs, station
 from ..robot_time import PACKET_US
 from .network_entries import entry_target
@@ -64,7 +65,7 @@ def script_from_log(file: Path) -> InputScript:
         raise ScriptError(
             "this data log has no data of a driver station",
             where=file.name,
-            remedy="In robotInit, wpilib.DriverStation.startDataLog(wpilib.DataLogManager.getLog()) logs it.",
+            remedy=logs.HOW_TO_LOG_STATION,
         )
     # A robot's clock starts before its program; that of a simulation starts with it.
     first_us = sent[0].at_us
@@ -143,6 +144,7 @@ class _State:
         yield "event.match_type", _named(_MATCH_TYPES, match_type), "none"
         message = fms.get("GameSpecificMessage", ours.get("event.game_specific_message", ""))
         yield "event.game_specific_message", message, ""
+        yield "control.opmode", self.values.get(f"{_HAL}control.opmode", ""), ""  # of the mode that follows
         yield MODE, self._mode(), "disabled"
 
     def _mode(self) -> str:
@@ -163,7 +165,7 @@ class _State:
         if is_plugged:
             for sort, values in controls.items():
                 most, initially = _CONTROLS[sort]
-                for number, value in enumerate((values or [])[:most], 1 if sort == "buttons" else 0):
+                for number, value in enumerate((values or [])[:most], CURRENT.first_button if sort == "buttons" else 0):
                     yield from self._changed(f"joysticks[{stick}].{sort}[{number}]", value, initially)
 
 

@@ -23,6 +23,7 @@ from wpiutil.log import (
 )
 
 __all__ = [
+    "HOW_TO_LOG_STATION",
     "MALFORMED",
     "DataLog",
     "IntegerLogEntry",
@@ -32,6 +33,7 @@ __all__ = [
     "Record",
     "StringLogEntry",
     "log_network",
+    "povs",
     "records",
 ]
 
@@ -64,6 +66,15 @@ _ENTRIES: dict[Kind, Any] = {
     "numbers": DoubleArrayLogEntry,
     "whole numbers": IntegerArrayLogEntry,
 }
+
+
+#: What has a robot log the data of a driver station.
+HOW_TO_LOG_STATION = "In robotInit, wpilib.DriverStation.startDataLog(wpilib.DataLogManager.getLog()) logs it."
+
+
+def povs(angles: list[int]) -> list[int]:
+    """Return the values of POVs as a log has them, from angles in degrees."""
+    return angles
 
 
 class Record(NamedTuple):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
+import hal
 import ntcore
 from wpilog import (
     BooleanArrayLogEntry,
@@ -23,7 +25,10 @@ from wpilog import (
 from wpimath import Pose2d
 from wpiutil import wpistruct
 
+from .station import angle_of, pov_of
+
 __all__ = [
+    "HOW_TO_LOG_STATION",
     "MALFORMED",
     "DataLog",
     "IntegerLogEntry",
@@ -33,11 +38,14 @@ __all__ = [
     "Record",
     "StringLogEntry",
     "log_network",
+    "povs",
     "records",
 ]
 
 #: WPILib's own writer, whose name is replaced for robot code.
 RealWriter = DataLogWriter
+
+_CONTROL_WORD = "struct:ControlWord"
 
 _READ: dict[str, Callable[[DataLogRecord], Any]] = {
     "boolean": DataLogRecord.get_boolean,
@@ -50,7 +58,34 @@ _READ: dict[str, Callable[[DataLogRecord], Any]] = {
     "double[]": DataLogRecord.get_double_array,
     "float[]": DataLogRecord.get_float_array,
     "int64[]": DataLogRecord.get_integer_array,
+    _CONTROL_WORD: lambda record: wpistruct.unpack(hal.ControlWord, bytes(record.get_raw())),
 }
+
+#: What the word of the driver station is in a log of 2026, which has no such word, and in one of ours.
+_OF_CONTROL_WORD: dict[str, Callable[[hal.ControlWord], bool]] = {
+    "DS:enabled": hal.ControlWord.is_enabled,
+    "DS:autonomous": hal.ControlWord.is_autonomous,
+    "DS:test": hal.ControlWord.is_utility,
+    "DS:estop": hal.ControlWord.is_e_stopped,
+    "/hal_data/control.dsAttached": hal.ControlWord.is_ds_attached,
+    "/hal_data/control.fmsAttached": hal.ControlWord.is_fms_attached,
+}
+_TABLE = "NT:/DriverStation/"
+#: The names of 2027's entries, and those of 2026 for the same, or the ones of a log of ours.
+_AS_IN_2026 = {
+    "DS:opMode": "/hal_data/control.opmode",
+    f"{_TABLE}GameData": "NT:/FMSInfo/GameSpecificMessage",
+    **{
+        f"{_TABLE}{name}": f"NT:/FMSInfo/{name}"
+        for name in ("EventName", "MatchNumber", "MatchType", "ReplayNumber", "IsRedAlliance", "StationNumber")
+    },
+}
+_POVS = re.compile(r"DS:joystick\d/povs")
+
+#: What has a robot log the data of a driver station.
+HOW_TO_LOG_STATION = (
+    "In the robot's __init__, wpilib.DriverStation.start_data_log(wpilib.DataLogManager.get_log()) logs it."
+)
 
 #: What `records` raises if a log is malformed.
 MALFORMED = (RuntimeError, ValueError, TypeError, IndexError, OSError)
@@ -65,6 +100,11 @@ _ENTRIES: dict[Kind, Any] = {
     "numbers": DoubleArrayLogEntry,
     "whole numbers": IntegerArrayLogEntry,
 }
+
+
+def povs(angles: list[int]) -> list[int]:
+    """Return the values of POVs as a log has them, from angles in degrees."""
+    return [int(pov_of(angle)) for angle in angles]
 
 
 class Record(NamedTuple):
@@ -96,10 +136,14 @@ def _records(reader: DataLogReader, beginnings: tuple[str, ...]) -> Iterator[Rec
         if record.is_start():
             start = record.get_start_data()
             if start.type in _READ and start.name.startswith(beginnings):
-                entries[start.entry] = start.name, start.type
+                entries[start.entry] = _AS_IN_2026.get(start.name, start.name), start.type
         elif not record.is_control() and record.get_entry() in entries:
             name, type_name = entries[record.get_entry()]
-            yield Record(record.get_timestamp() // 1_000, name, type_name, _READ[type_name](record))
+            at_us, value = record.get_timestamp() // 1_000, _READ[type_name](record)
+            if name == "DS:controlWord":
+                yield from (Record(at_us, part, "boolean", get(value)) for part, get in _OF_CONTROL_WORD.items())
+            else:
+                yield Record(at_us, name, type_name, list(map(angle_of, value)) if _POVS.fullmatch(name) else value)
 
 
 #: Logs that could not be written, kept alive: WPILib aborts the process when it closes such a log.

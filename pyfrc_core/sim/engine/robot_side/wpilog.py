@@ -21,6 +21,7 @@ _DRIVER_STATION = {
     "control.autonomous": "DS:autonomous",
     "control.test": "DS:test",
     "control.eStop": "DS:estop",
+    "control.opmode": "DS:opMode",
 }
 #: The interval of flushing WPILib's buffer, in microseconds of robot time: the robot's process may be killed.
 _FLUSH_US = 100_000
@@ -80,7 +81,8 @@ class WpiLog:
             if stick[2] == "axes":
                 return log.entry(name, "numbers")
             if stick[2] == "povs":
-                return log.entry(name, "whole numbers")
+                povs = log.entry(name, "whole numbers")
+                return lambda angles, stamp: povs(logs.povs(angles), stamp)
             buttons = log.entry(name, "booleans")
             return lambda pressed, stamp: buttons(pressed[CURRENT.first_button :], stamp)  # WPILib's first is the first
         if isinstance(value, bool):
