@@ -34,8 +34,13 @@ class _Inactive:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    if config.pluginmanager.hasplugin("pyfrc.robot") or _is_run_by_wpilib(config):
-        return  # `pyfrc test` has registered its own; so has `robotpy test` of WPILib 2027, with the same fixtures
+    if config.pluginmanager.hasplugin("pyfrc.robot"):
+        return  # `pyfrc test` has registered its own
+    if _is_run_by_wpilib(config):  # by `robotpy test` of WPILib 2027, which has fixtures of the same names
+        from .beside_robotpy import FixturesOfPyfrc
+
+        config.pluginmanager.register(FixturesOfPyfrc(), "pyfrc.beside_robotpy")
+        return
     for start in _start_directories(config):
         directory = _robot_project_of(start)
         if directory is not None:

@@ -184,6 +184,26 @@ def test_beside_pyfrc_it_is_as_without(make_project: MakeProject) -> None:
     assert "pyfrc: " not in runs[0].output
 
 
+def test_a_test_with_our_fixtures_says_which_tool_runs_it(make_project: MakeProject) -> None:
+    """Unless the project has a fixture of that name."""
+    test = "def test_{0}(control, robot, {0}):\n    pass\n"
+    names = ("fake_time", "gamedata", "hal_data", "physics_controller")
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "conftest.py": "import pytest\n\n\n@pytest.fixture\ndef gamedata():\n    return 'mine'\n",
+            "tests/test_own.py": "\n\n".join(test.format(name) for name in names),
+        }
+    )
+    result = project.run("test", program="robotpy")
+    assert result.code == 1
+    assert "1 passed" in result.stdout
+    for name in sorted({*names} - {"gamedata"}):
+        text = f"{name} is a fixture of pyfrc, which robotpy test does not have. Run: pyfrc test."
+        assert text in " ".join(result.stdout.split()), result.stdout
+    assert "available fixtures" not in result.stdout
+
+
 def test_the_names_of_the_commands_are_ours_or_theirs() -> None:
     names: dict[str, list[str]] = {}
     for point in entry_points(group="robotpy_cli.2027"):

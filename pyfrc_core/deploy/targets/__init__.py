@@ -36,7 +36,8 @@ def controller_of(season: Season) -> ControllerKind:
     if name not in {each.name for each in CONTROLLERS}:
         raise UsageError(
             f"pyfrc cannot deploy to a {name} yet",
-            remedy=f"To deploy: pip install {season.requirement_of('robotpy')}, then: python -m robotpy deploy",
+            remedy=f"To deploy: pip install {season.requirement_of('robotpy')}, then: pyfrc test, and: "
+            "python -m robotpy deploy --skip-tests",
         )
     return controller_named(name)
 
