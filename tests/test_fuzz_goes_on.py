@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from pyfrc_core.fuzz.guidance.seed_schedule import SeedScheduler
-from pyfrc_core.fuzz.inputs.left_out import without
+from pyfrc_core.fuzz.inputs.left_out import needed_inputs, without
 from pyfrc_core.fuzz.oracle.failure import FuzzFailure
 from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
 
@@ -154,3 +154,11 @@ def test_what_a_match_leaves_out_is_not_written_but_may_be_let_go() -> None:
     assert without(left_out, {button: False, pov: -1, switch: False}) == {button: False, pov: -1}
     assert without(left_out, {"mode": "teleop", "match_time": 9.0}) == {"mode": "disabled", "match_time": 9.0}
     assert without(left_out, {"mode": "autonomous"}) == {"mode": "autonomous"}
+
+
+def test_of_opmodes_only_the_one_that_fails_is_left_out() -> None:
+    chosen = Step(20_000, {"mode": "teleop", "control.opmode": "Drive"})
+    assert needed_inputs(InputScript((chosen,), 40_000)) == ("control.opmode=Drive",)
+    left_out = frozenset({"control.opmode=Drive"})
+    assert without(left_out, {"control.opmode": "Drive"}) == {"control.opmode": ""}
+    assert without(left_out, {"control.opmode": "Forward"}) == {"control.opmode": "Forward"}

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from ...hal import HalData, counters, device_table, format_path
 from ...hal.modules import Modules
 from ...hal.sim_device_list import Signature
+from ...runtime.scripts.targets import OPMODE
 from ...season import CURRENT
 from ...wpi import devices, joysticks, names, station
 from .values import UNKNOWN, Input, InputKind, RobotConstants
@@ -193,7 +194,7 @@ def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN, has_mod
             yield Input(target, kind, target)
     channels = _used()
     if opmodes := station.published_opmodes():
-        yield Input("control.opmode", "option", "opmode", tuple(sorted({each.name for each in opmodes})))
+        yield Input(OPMODE, "option", "opmode", tuple(sorted({each.name for each in opmodes})))
     yield Input("power.vin_voltage", "battery", "power")
     for key in device_table.BUTTONS:
         yield Input(key, "switch", key)

@@ -8,14 +8,15 @@ from collections.abc import Callable, Container, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ...runtime.clock import PACKET_US, to_us
-from ...runtime.scripts.targets import MODE, PLUGGED, RESTART
-from ...wpi import names, robots
+from ...runtime.scripts.targets import MODE, OPMODE, PLUGGED, RESTART
+from ...wpi import names, robots, station
+from ...wpi.opmodes import Opmode
 from .dashboard_generator import DashboardFinder, DashboardGenerator
 from .drivers import choose_models
 from .finders import SensorFinder, find_controls
 from .gamepads import find_gamepads
 from .joystick_generator import JoystickGenerator
-from .left_out import LeftOut, without
+from .left_out import LeftOut, one_of, without
 from .match_plan import BaseMatch, MatchEvent
 from .network_reads import NetworkReads
 from .network_values import NetworkRead
@@ -41,6 +42,9 @@ _DRIVEN_US = 5 * _SECOND_US
 
 #: How often switches are closed before the program starts, and stay so; the roboRIO's own digital inputs.
 _HELD, _CHANNELS = 0.2, 10
+
+#: How often the drivers choose an opmode before a period, and how often one of WPILib's utility mode before teleop.
+_CHOSEN, _UTILITY = 0.9, 0.15
 
 #: What tells a team's robots from each other, and its maximum length.
 _DESCRIBED = {"roborio.comments": 64, "roborio.serial_number": 8}
@@ -105,6 +109,9 @@ class InputGenerator:
         #: Switches that are closed for the whole match.
         self._held: set[str] = set()
         self._sensors.paused = _is_simulated(run)
+        self._opmodes: list[Opmode] = []
+        #: What the driver station was set to last.
+        self._mode = ""
         self._enabled_since_us: int | None = None
         self._enabled_us = 0
         self._attached = True
@@ -183,6 +190,8 @@ class InputGenerator:
         found |= event
         for target, value in event.items():
             if target == MODE:
+                self._mode = str(value)
+                self._choose_opmode(found)
                 self._enter(str(value), now_us)
             elif target == "control.dsAttached":
                 self._attached = bool(value)
@@ -191,6 +200,19 @@ class InputGenerator:
                 (self._sticks.plug_in if value else self._sticks.unplug)(port)
                 if value and port in self._models:
                     found |= without(self.left_out, self._models[port].writes(port))
+
+    def _choose_opmode(self, found: dict[str, Value]) -> None:
+        """Choose an opmode for the mode, as drivers do before they enable the robot."""
+        mode = "teleop" if self._mode == "disabled" else self._mode.removeprefix("disabled ")
+        offered = [each for each in self._opmodes if one_of(OPMODE, each.name) not in self.left_out]
+        names_in = {each: [opmode.name for opmode in offered if opmode.mode == each] for each in ("test", mode)}
+        if not self._opmodes or self._rng.random() >= _CHOSEN:
+            return
+        if mode == "teleop" and names_in["test"] and self._rng.random() < _UTILITY:
+            mode = "test"
+            found[MODE] = "disabled test" if self._mode == "disabled" else "test"
+        if names_in[mode]:
+            found[OPMODE] = self._rng.choice(names_in[mode])
 
     def _enter(self, mode: str, now_us: int) -> None:
         if self._enabled_since_us is not None:
@@ -210,6 +232,9 @@ class InputGenerator:
                 self._controls = controls, gamepads
                 self._sticks.set_controls(controls, gamepads)
                 self._remember(controls)
+        opmodes, self._opmodes = self._opmodes, station.published_opmodes()
+        if self._opmodes and not opmodes:
+            self._choose_opmode(found)
         sensors = self._sensor_finder.find()
         self._remember(sensors)
         self._sensors.set_inputs(sensors)

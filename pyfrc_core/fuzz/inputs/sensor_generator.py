@@ -19,7 +19,7 @@ _STEP_US = 3 * PACKET_US
 _PAUSE, _SHORTEST_PAUSE = 1.0, 0.1
 
 #: Devices that change a quarter as often as the others.
-_SELDOM = ("power", "fpga_button", "pdp")
+_SELDOM = ("power", "fpga_button", "pdp", "opmode")
 
 #: How often an input that a counter counts switches many times, and not once or twice.
 _PULSED = 0.5

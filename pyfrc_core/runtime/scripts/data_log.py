@@ -20,7 +20,7 @@ from ...wpi import logs, station
 from ..robot_time import PACKET_US
 from .network_entries import entry_target
 from .script import InputScript, ScriptError, Step
-from .targets import MATCH_TIME, MODE, REMAINING, plugged
+from .targets import MATCH_TIME, MODE, OPMODE, REMAINING, plugged
 
 #: The types of NetworkTables that a target has to name, by their names in a log.
 _NAMED_TYPES = {
@@ -144,7 +144,7 @@ class _State:
         yield "event.match_type", _named(_MATCH_TYPES, match_type), "none"
         message = fms.get("GameSpecificMessage", ours.get("event.game_specific_message", ""))
         yield "event.game_specific_message", message, ""
-        yield "control.opmode", self.values.get(f"{_HAL}control.opmode", ""), ""  # of the mode that follows
+        yield OPMODE, self.values.get(f"{_HAL}control.opmode", ""), ""  # of the mode that follows
         yield MODE, self._mode(), "disabled"
 
     def _mode(self) -> str:

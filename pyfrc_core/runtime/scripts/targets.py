@@ -23,6 +23,8 @@ from ..clock import to_us
 from .network_entries import NETWORK, NetworkEntries
 
 MODE, MATCH_TIME, PACKET, RESTART = "mode", "match_time", "packet", "restart"
+#: The path of the name of the chosen opmode.
+OPMODE = "control.opmode"
 
 #: The path of the seconds left: written, they stand still.
 REMAINING = "time.remaining"
