@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
+from conftest import MakeProject
 
 from pyfrc.physics import drivetrains, motion, motor_cfgs, tankmodel
 from pyfrc.physics.can_motors import Mechanism, SwerveDrive, SwerveModule
@@ -136,3 +137,35 @@ def test_numbers(computed: Callable[[], list[float]]) -> None:
         assert computed() == pytest.approx(NUMBERS[computed], rel=1e-12, abs=1e-12)
     finally:
         station.reset_driver_station()
+
+
+#: In 2026, a PWM output has a resolution of about 0.004.
+SAME_DRIVE = """
+from pytest import approx
+
+
+def test_same(control, hal_data, robot, physics_controller):
+    def is_at(x, left, right, count):
+        assert physics_controller.get_position() == approx((x, 13.2, 0), abs=0.02)  # feet
+        outputs = [hal_data["pwm"][channel]["value"] for channel in range(4)]
+        assert outputs == approx([left, left, right, right], abs=0.005)
+        assert [hal_data["encoder"][index]["count"] for index in range(2)] == approx([count, count], abs=5)
+
+    with control.run_robot():
+        control.step_timing(seconds=1.5, autonomous=True, enabled=True)
+        is_at(9.627, 0.49, -0.49, 1543)
+        control.step_timing(seconds=0.5, autonomous=True, enabled=False)
+        for stick in range(2):
+            hal_data["joysticks"][stick]["axes"][1] = -0.7
+        control.step_timing(seconds=1, autonomous=False, enabled=True)
+        is_at(14.413, 0.482, -0.482, 2657)
+"""
+
+
+def test_a_template_drives_the_same_way(make_project: MakeProject) -> None:
+    """Its code is that of the season; its script and what comes out are the same."""
+    project = make_project({})
+    assert project.run("init", "--template", "tank").code == 0
+    project.write({"tests/test_same.py": SAME_DRIVE})
+    result = project.run("test", "--", "-k", "test_same")
+    assert result.code == 0, result.output

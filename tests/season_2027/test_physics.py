@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from conftest import MakeProject
-from test_physics_numbers import test_numbers
+from test_physics_numbers import test_a_template_drives_the_same_way, test_numbers
 
-__all__ = ["test_numbers"]
+__all__ = ["test_a_template_drives_the_same_way", "test_numbers"]
 
 ROBOT = """
     import wpilib
