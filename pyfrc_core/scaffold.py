@@ -27,7 +27,7 @@ class Template:
     """A kind of robot project.
 
     :param description: one line for the list of templates
-    :param packages: requirements of its code besides wpilib
+    :param packages: requirements of its code besides wpilib and its motor controllers
     :param extras: the extras of robotpy that install these packages on the robot
     :param opmodes: whether its robot has opmodes, which not every season's robots can have
     """
@@ -39,8 +39,8 @@ class Template:
 
     @property
     def missing(self) -> list[str]:
-        """The requirements in `packages` that are not installed here."""
-        return [package for package in self.packages if not _is_installed(package)]
+        """The requirements of its code that are not installed here."""
+        return [package for package in (*CURRENT.packages.drivers, *self.packages) if not _is_installed(package)]
 
 
 _TEMPLATES = {
@@ -158,11 +158,12 @@ def _values(template: Template, team: int | None) -> Mapping[str, str]:
         if not 1 <= team <= MAX_TEAM:
             raise UsageError(f"{team} is no team number: one is from 1 to {MAX_TEAM}", where="--team")
         number = f"team_number = {team}"
+    needed = (*CURRENT.packages.drivers, *template.packages)
     by_extras = template.packages if template.extras else ()
     return {
         "components": _toml_array(template.extras),
-        "requires": _toml_array([package for package in template.packages if package not in by_extras]),
-        "packages": "\n".join((requirement(), CURRENT.requirement, *template.packages)),
+        "requires": _toml_array([package for package in needed if package not in by_extras]),
+        "packages": "\n".join((requirement(), CURRENT.requirement, *needed)),
         "team_number": number,
         "robotpy_version": f'"{CURRENT.packages.wpilib}"',
     }

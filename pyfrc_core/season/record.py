@@ -65,11 +65,13 @@ class Packages:
     :param wpilib:   the version of WPILib that new projects ask for; pyfrc runs with no older preview
     :param commands: requirement for the command-based library
     :param utilities: requirement for the library with `MagicRobot`
+    :param drivers:  requirements for WPILib's motor controllers, where they are not in its own package
     """
 
     wpilib: str
     commands: str
     utilities: str
+    drivers: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

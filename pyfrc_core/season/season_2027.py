@@ -25,6 +25,7 @@ SEASON_2027 = Season(
         wpilib="2027.0.0a7",
         commands="robotpy-commands-v2~=2027.0.0a7",
         utilities="robotpy-wpilib-utilities~=2027.0.0a7",
+        drivers=("wpilib-drivers~=2027.0.0a7",),
     ),
     dashboards=Dashboards(
         tables=("/Telemetry", "/Tunables"),

@@ -44,6 +44,8 @@ def test_what_the_seasons_share_is_there_once(make_project: MakeProject) -> None
     for file in ("README.md", "subsystems/__init__.py"):
         assert not (SOURCES / "2027/command" / file).exists()
         assert (project.path / file).read_text("utf-8") == (SOURCES / "command" / file).read_text("utf-8")
+    for file in ("requirements.txt", "pyproject.toml"):
+        assert "wpilib-drivers~=2027.0.0a7" in (project.path / file).read_text("utf-8")
     labels = json.loads((project.path / "sim/config.json").read_text("utf-8"))["pyfrc"]["joysticks"]["0"]
     assert labels["buttons"]["0"] == "take in"  # buttons count from 0
 
