@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from conftest import MakeProject
+from test_docs import files
 from test_physics_numbers import test_a_template_drives_the_same_way, test_numbers
 
 __all__ = ["test_a_template_drives_the_same_way", "test_numbers"]
@@ -59,3 +60,12 @@ def test_what_create_physics_writes_moves_the_robot(make_project: MakeProject) -
     assert project.run("create-physics").code == 0
     result = project.run("test")
     assert result.code == 0, result.output
+
+
+def test_the_example_in_the_physics_guide_passes(make_project: MakeProject) -> None:
+    place = "wpilib_2027/"
+    examples = files("docs/physics.md").items()
+    project = make_project({file.removeprefix(place): text for file, text in examples if file.startswith(place)})
+    result = project.run("test")
+    assert result.code == 0, result.output
+    assert "tests/test_turning.py ." in result.stdout
