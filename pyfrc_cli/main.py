@@ -40,6 +40,7 @@ COMMANDS = {
     "console": ("pyfrc_cli.console", "Show the robot program's output."),
     "virtual-robot": ("pyfrc_cli.virtual_robot", "Start a virtual robot on this computer, to deploy to."),
     "config": ("pyfrc_cli.config", "Check and show sim/config.json, and print its JSON Schema."),
+    "migrate": ("pyfrc_cli.migrate", "Rewrite a robot project of 2026 for WPILib 2027."),
     "doctor": ("pyfrc_cli.doctor", "Find missing packages, wrong settings and connection problems."),
     "completion": ("pyfrc_cli.completion", "Print the completion script for your shell."),
 }

@@ -1,0 +1,97 @@
+"""The command `pyfrc migrate`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .verbosity import hint, verbosity
+
+if TYPE_CHECKING:
+    from pyfrc_core.migrate.migration import Migration
+
+
+@click.command("migrate", context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--project",
+    "directory",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="The robot project. Default: the current directory, or the nearest one above it with a robot.py.",
+)
+@click.option("--check", is_flag=True, help="Write nothing: report what would change, and what you must do.")
+@click.option("--diff", is_flag=True, help="Write nothing: print the changes.")
+@click.option("--comments", is_flag=True, help="Write what you must do into the files, too, as comments: # 2027: ...")
+@click.option("--uncommitted", is_flag=True, help="Go on although Git has changes that are in no commit.")
+@click.option("--json", "as_json", is_flag=True, help="For tools: print the report as one JSON object.")
+def command(directory: Path | None, check: bool, diff: bool, comments: bool, uncommitted: bool, as_json: bool) -> None:
+    """Rewrite a robot project of 2026 for WPILib 2027.
+
+    All its Python files, pyproject.toml, requirements.txt and the workflows: names, imports, calls that mean
+    something else now. Names of your own stay. What has to be done by hand is reported with its line and what to do.
+    A second run changes nothing.
+
+    \b
+    Exit codes: 0 nothing is left to do by hand (with --check: and nothing would change), 1 something is,
+    2 wrong usage, or Git has changes that are in no commit.
+    """
+    from pyfrc_core.migrate.migration import migrate, need_libcst, refuse_uncommitted
+    from pyfrc_core.project import find_project
+
+    need_libcst()
+    root = find_project(directory).root
+    writes = not (check or diff)
+    if writes and not uncommitted:
+        refuse_uncommitted(root)
+    done = migrate(root, progress=_show_progress if _on_terminal(as_json) else _no_progress, comments=comments)
+    if writes:
+        done.write()
+    if as_json:
+        click.echo(json.dumps(_as_json(done), indent=2))
+    elif diff:
+        click.echo("".join(done.diff()), nl=False)
+    else:
+        _print(done, writes)
+    sys.exit(1 if done.report.by_hand() or (check and done.after) else 0)
+
+
+def _print(done: Migration, written: bool) -> None:
+    count = len(done.after)
+    files = f"{count} file{'' if count == 1 else 's'}"
+    by_hand, to_check = done.report.by_hand(), done.report.to_check()
+    hint(f"{'Rewrote' if written else 'Would rewrite'} {files} of {done.files} Python files and the settings.")
+    if to_check:
+        hint(f"\nRewritten, but look at them ({len(to_check)}):", bold=True)
+        for remark in to_check:
+            hint(f"  {remark}")
+    if by_hand:
+        click.secho(f"\nTo do by hand ({len(by_hand)}; the lines are those before the rewriting):", bold=True)
+        for remark in by_hand:
+            click.echo(f"  {remark}")
+    elif count:
+        hint("\nNothing is left to do by hand. Run the tests with 2027: pyfrc test")
+
+
+def _as_json(done: Migration) -> dict[str, object]:
+    return {
+        "files": sorted(done.after),
+        "by_hand": [asdict(each) for each in done.report.by_hand()],
+        "to_check": [asdict(each) for each in done.report.to_check()],
+    }
+
+
+def _on_terminal(as_json: bool) -> bool:
+    return sys.stderr.isatty() and not as_json and not verbosity().quiet
+
+
+def _no_progress(doing: str, done: int, of: int) -> None:
+    """Show nothing."""
+
+
+def _show_progress(doing: str, done: int, of: int) -> None:
+    click.echo(f"\r\033[K{doing} {done}/{of}" if done < of else "\r\033[K", nl=False, err=True)

@@ -1,0 +1,167 @@
+"""Migrate a project: read its files, rewrite them in memory, and replace them all at the end."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+
+from ..config.robotpy import load_robotpy_version
+from ..errors import PyfrcError, UsageError
+from ..season.season_2027 import SEASON_2027
+from .names.table import table
+from .project import Progress, Source, rewrite_all
+from .report import Report
+from .settings import Settings
+
+_NOT_OURS = {"node_modules", "site-packages", "build", "dist", "__pycache__", "venv", "env"}
+_GIT_SECONDS = 60
+
+
+@dataclass(frozen=True)
+class Migration:
+    """What a migration changes.
+
+    :param before: the old content of each file that changes, by its name; a new file has none
+    :param after: the new content
+    :param files: how many files were read
+    """
+
+    root: Path
+    before: Mapping[str, bytes]
+    after: Mapping[str, bytes]
+    report: Report
+    files: int
+
+    def diff(self) -> Iterator[str]:
+        """Return the changes as a unified diff, by lines."""
+        for name, new in sorted(self.after.items()):
+            old = self.before.get(name, b"").decode(errors="replace").splitlines(keepends=True)
+            yield from difflib.unified_diff(
+                old, new.decode(errors="replace").splitlines(keepends=True), f"a/{name}", f"b/{name}"
+            )
+
+    def write(self) -> None:
+        """Replace the files, after all of them have been written beside the old ones.
+
+        :raises OSError: when one cannot be written; then no file has changed
+        """
+        written: list[tuple[Path, Path]] = []
+        try:
+            for name, content in self.after.items():
+                file = self.root / name
+                with NamedTemporaryFile("wb", dir=file.parent, prefix=f".{file.name}-", delete=False) as beside:
+                    written.append((Path(beside.name), file))
+                    beside.write(content)
+                if file.exists():
+                    shutil.copymode(file, beside.name)
+                else:
+                    Path(beside.name).chmod(0o644)
+            for new, file in written:
+                new.replace(file)
+        finally:
+            for new, _ in written:
+                new.unlink(missing_ok=True)
+
+
+def migrate(root: Path, *, progress: Progress = lambda doing, done, of: None, comments: bool = False) -> Migration:
+    """Return what a project of 2026 becomes in 2027. Nothing is written.
+
+    :param progress: called with what is done, how many files of it, and of how many
+    :param comments: write what must be changed by hand into the files, too
+    :raises UsageError: when pyproject.toml is wrong
+    """
+    report = Report()
+    names = table()
+    version, _ = load_robotpy_version(root / "pyproject.toml")
+    first_time = version is None or not version.startswith("2027")
+    sources = [Source(file, file.relative_to(root).as_posix(), file.read_bytes()) for file in python_files(root)]
+    after = dict(rewrite_all(sources, names, report, first_time=first_time, progress=progress, comments=comments))
+    before = {each.name: each.text for each in sources if each.name in after}
+    python = [after.get(each.name, each.text) for each in sources]
+    settings = Settings(
+        SEASON_2027.packages.wpilib,
+        dict(names.corrections["vendors"]),
+        report,
+        drivers=any(b"wpilib_drivers" in text for text in python),
+    )
+    for name, old, new in _settings_files(root, settings):
+        if new != old:
+            after[name] = new.encode(errors="surrogateescape")
+            if old:
+                before[name] = old.encode(errors="surrogateescape")
+    return Migration(root, before, after, report, len(sources))
+
+
+def python_files(root: Path) -> list[Path]:
+    """Return the Python files of a project, without those of virtual environments and hidden directories."""
+    found = []
+    for directory, directories, files in os.walk(root):
+        here = Path(directory)
+        directories[:] = [
+            each
+            for each in sorted(directories)
+            if not each.startswith(".") and each not in _NOT_OURS and not (here / each / "pyvenv.cfg").exists()
+        ]
+        found += [here / each for each in sorted(files) if each.endswith(".py") and not (here / each).is_symlink()]
+    return found
+
+
+def refuse_uncommitted(root: Path) -> None:
+    """Refuse a Git checkout with changes that are in no commit.
+
+    :raises UsageError: with what to do
+    """
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(root), "status", "--porcelain", "--", "."],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            encoding="utf-8",
+            errors="replace",
+            timeout=_GIT_SECONDS,
+            check=True,
+        )
+    except (OSError, subprocess.SubprocessError):
+        return  # no checkout, or no Git
+    changed = [line[3:] for line in done.stdout.splitlines()]
+    if changed:
+        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+        raise UsageError(
+            f"{changed[0]}{more}: changed, and in no commit",
+            remedy="Commit first, so that you can look at what migrate changes and go back; or add --uncommitted.",
+        )
+
+
+def need_libcst() -> None:
+    """Check that LibCST is installed.
+
+    :raises PyfrcError: with how to install it
+    """
+    try:
+        import libcst  # noqa: F401
+    except ImportError:
+        raise PyfrcError(
+            "pyfrc migrate needs the package libcst", remedy='Install it with: python -m pip install "pyfrc[migrate]"'
+        ) from None
+
+
+def _settings_files(root: Path, settings: Settings) -> Iterator[tuple[str, str, str]]:
+    """Return the name, old and new text of each settings file."""
+    old = _text(root / "pyproject.toml")
+    yield "pyproject.toml", old, settings.pyproject("pyproject.toml", old)
+    for file in sorted(root.glob("*requirements*.txt")):
+        old = _text(file)
+        yield file.name, old, settings.requirements(file.name, old)
+    for file in sorted((root / ".github" / "workflows").glob("*.y*ml")):
+        old, name = _text(file), file.relative_to(root).as_posix()
+        yield name, old, settings.workflow(name, old)
+
+
+def _text(file: Path) -> str:
+    return file.read_bytes().decode(errors="surrogateescape") if file.is_file() else ""

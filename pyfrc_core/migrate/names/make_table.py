@@ -1,0 +1,44 @@
+"""Write `table.json` anew from the packages of two seasons.
+
+Run it with the site-packages directories of environments that have each season's packages; none of them is imported:
+
+    python -m pyfrc_core.migrate.names.make_table VENV_2026/lib/python3.11/site-packages VENV_2027/lib/.../site-packages
+
+A correction that names what is not there is an error, so that corrections do not outlive what they correct.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+from .compare import compare
+from .packages import Class, Packages
+from .table import HERE, corrections
+
+
+def main(old_site: Path, new_site: Path) -> int:
+    """Write the table, and return 1 if a correction is wrong."""
+    old, new = Packages(old_site), Packages(new_site)
+    old.read()
+    new.read()
+    moved = corrections()["moved"]
+    wrong = [path for path in moved if not _exists(old, path)]
+    wrong += [path for path in moved.values() if "." in path and not _exists(new, path)]
+    for path in wrong:
+        print(f"corrections.toml: there is no {path}", file=sys.stderr)
+    text = json.dumps(compare(old, new, moved), indent=0, sort_keys=True)
+    (HERE / "table.json").write_text(text + "\n", encoding="utf-8")
+    return 1 if wrong else 0
+
+
+def _exists(packages: Packages, path: str) -> bool:
+    outer, _, name = path.rpartition(".")
+    owner = packages.entries.get(outer)
+    inside = isinstance(owner, Class) and name in owner.members
+    return path in packages.entries or path in packages.aliases or inside
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2])))

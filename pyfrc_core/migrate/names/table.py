@@ -1,0 +1,175 @@
+"""The names of 2026 and what became of them: `table.json` with the corrections.
+
+`compare` describes the table's text. Nothing here imports WPILib, so a machine with
+either season, or none, can migrate.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from .spelling import snake_case
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+#: Where the data are.
+HERE = Path(__file__).parent
+_ENTRY = re.compile(
+    r"(?P<new>[^(:{;]*)(?P<bases>\([^)]*\))?(?P<type>:[^{;]*)?(?P<parameters>\{[^}]*\})?(?P<members>;.*)?"
+)
+_MEMBER = re.compile(r"(?P<name>\w+)(?P<new>=[^:{]+)?(?P<type>:[^{]*)?(?P<parameters>\{[^}]*\})?")
+
+
+@dataclass(frozen=True)
+class Member:
+    """A member of a class.
+
+    :param new: its new name; a path of another class's member; None if it is gone
+    :param type: the path of its type, or of what it returns; `[path]` for a container; `self`
+    """
+
+    name: str
+    new: str | None
+    type: str = ""
+    parameters: Mapping[str, str] = field(default_factory=dict)
+
+    def keyword(self, name: str) -> str:
+        """Return the new name of a keyword argument."""
+        return self.parameters.get(name, snake_case(name))
+
+
+@dataclass(frozen=True)
+class Name(Member):
+    """A class, function or constant of a module; `name` and `new` are paths."""
+
+    is_class: bool = False
+    bases: tuple[str, ...] = ()
+    members: Mapping[str, Member] = field(default_factory=dict)
+
+
+class Table:
+    """What became of each name of the old season.
+
+    :param data: the content of `table.json`
+    :param corrections: the content of `corrections.toml`
+    """
+
+    def __init__(self, data: Mapping[str, Any], corrections: Mapping[str, Any]) -> None:
+        ours: Mapping[str, str] = corrections["own_types"]
+        homes = {path.rpartition(".")[0] for path in ours}
+        self.modules: Mapping[str, str] = {**data["modules"], **{home: home for home in homes}}
+        self.corrections = corrections
+        self._aliases: Mapping[str, str] = data["aliases"]
+        self._lines: Mapping[str, str] = {**data["names"], **{path: f"();{members}" for path, members in ours.items()}}
+        self._names: dict[str, Name | None] = {}
+
+    def canonical(self, path: str) -> str:
+        """Return the first path of a name that has several."""
+        head, _, tail = path.rpartition(".")
+        return self._aliases.get(path) or (f"{self._aliases[head]}.{tail}" if head in self._aliases else path)
+
+    def name(self, path: str) -> Name | None:
+        """Return a class, function or constant of a module; None if there is no such name."""
+        path = self.canonical(path)
+        if path not in self._names:
+            line = self._lines.get(path)
+            self._names[path] = None if line is None else _read_name(path, line)
+        return self._names[path]
+
+    def ancestors(self, path: str) -> list[str]:
+        """Return a class and all its bases, in the order of lookup."""
+        found = [self.canonical(path)]
+        for each in found:
+            name = self.name(each)
+            found += [base for base in (name.bases if name is not None else ()) if base not in found]
+        return found
+
+    def member(self, path: str, name: str) -> tuple[str, Member] | None:
+        """Return a member of a class or of its bases, with the class where it was found."""
+        for each in self.ancestors(path):
+            known = self.name(each)
+            if known is not None and name in known.members:
+                return each, known.members[name]
+        return None
+
+    def new_path(self, path: str) -> str | None:
+        """Return the new path of a module, class, function or constant; None if it is gone."""
+        if path in self.modules:
+            return self.modules[path] or None
+        known = self.name(path)
+        if known is not None:
+            return known.new
+        module, _, last = path.rpartition(".")
+        return f"{self.modules[module]}.{last}" if self.modules.get(module) else path
+
+    def advice(self, *paths: str) -> str:
+        """Return what `corrections.toml` says about the first of the paths that it knows."""
+        gone: Mapping[str, str] = self.corrections["gone"]
+        for path in paths:
+            parts = path.split(".")
+            for end in range(len(parts), 0, -1):
+                if ".".join(parts[:end]) in gone:
+                    return gone[".".join(parts[:end])]
+        return ""
+
+    def camel_names(self) -> frozenset[str]:
+        """Return all names of members that are spelled differently now."""
+        found = set()
+        for line in self._lines.values():
+            members = line.partition(";")[2].split(" ")
+            found |= {each for member in members if (each := re.split("[=:{]", member)[0]) != snake_case(each)}
+        return frozenset(found - {""})
+
+
+def corrections() -> dict[str, Any]:
+    """Return what was written by hand: `corrections.toml`."""
+    return tomllib.loads((HERE / "corrections.toml").read_text(encoding="utf-8"))
+
+
+@cache
+def table() -> Table:
+    """Return the table from 2026 to 2027."""
+    data = json.loads((HERE / "table.json").read_text(encoding="utf-8"))
+    return Table(data, corrections())
+
+
+def _read_name(path: str, line: str) -> Name:
+    found = _ENTRY.fullmatch(line)
+    assert found is not None, line
+    new = found["new"]
+    return Name(
+        path,
+        None if new == "-" else new or path,
+        (found["type"] or "")[1:],
+        _read_parameters(found["parameters"]),
+        is_class=found["bases"] is not None,
+        bases=tuple((found["bases"] or "()")[1:-1].split()),
+        members={member.name: member for member in map(_read_member, (found["members"] or ";")[1:].split())},
+    )
+
+
+def _read_member(text: str) -> Member:
+    found = _MEMBER.fullmatch(text)
+    assert found is not None, text
+    new = (found["new"] or "")[1:] or snake_case(found["name"])
+    return Member(
+        found["name"],
+        None if new == "-" else new,
+        (found["type"] or "")[1:],
+        _read_parameters(found["parameters"]),
+    )
+
+
+def _read_parameters(text: str | None) -> dict[str, str]:
+    pairs = (text or "{}")[1:-1].split(",")
+    return {name: new for name, _, new in (pair.partition("=") for pair in pairs if pair)}

@@ -1,0 +1,143 @@
+"""Rewrite a project's Python files: read all, find out what everything is, rewrite each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import libcst as cst
+
+from .names.table import Table
+from .report import Report
+from .rewrite import robot_init
+from .rewrite.calls import Calls, key_of
+from .rewrite.file import FileRewriter
+from .rewrite.finish import new_text, rewrite_annotation
+from .rewrite.leftovers import Leftovers
+from .types.inference import Inference
+from .types.scopes import Module
+
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class Source:
+    """A Python file of the project.
+
+    :param name: relative to the project, with `/`
+    """
+
+    path: Path
+    name: str
+    text: bytes
+
+
+def rewrite_all(
+    sources: list[Source],
+    table: Table,
+    report: Report,
+    *,
+    first_time: bool,
+    progress: Progress = lambda doing, done, of: None,
+    comments: bool = False,
+) -> Mapping[str, bytes]:
+    """Return the new content of each file that changes, by its name.
+
+    :param first_time: the project is still one of 2026
+    :param progress: called with what is done, and how much of it
+    :param comments: write what must be changed by hand into the files, too
+    """
+    modules: dict[str, Module] = {}
+    for position, source in enumerate(sources):
+        progress("reading", position, len(sources))
+        try:
+            tree = cst.parse_module(source.text)
+            modules[source.name] = Module(source.path, _module_name(source.name), tree)
+        except (cst.ParserSyntaxError, UnicodeDecodeError) as error:
+            line = getattr(error, "raw_line", 1)
+            report.add(source.name, line, "This is no valid Python, so the file stays as it is.", "Correct it first.")
+    inference = Inference(table, list(modules.values()))
+    project = _Project(modules, table)
+    changed = {}
+    for position, (name, module) in enumerate(modules.items()):
+        progress("rewriting", position, len(modules))
+        shared = module.name in project.shared
+        file = FileRewriter(module, name, inference, table, report, first_time=first_time, shared=shared)
+        new = _rewrite(file, project, comments=comments).encode(module.tree.encoding)
+        if new != module.tree.bytes:
+            changed[name] = new
+    progress("rewriting", len(modules), len(modules))
+    return changed
+
+
+class _Project:
+    """What is known of all files together."""
+
+    def __init__(self, modules: Mapping[str, Module], table: Table) -> None:
+        self.camel_names = table.camel_names()
+        sites = [node for module in modules.values() for node, _ in module.sites]
+        self.shared = {binding.path for module in modules.values() for binding in module.scope.bindings.get("*", ())}
+        reads = {
+            key_of(node)
+            for node in sites
+            if isinstance(node, cst.Call)
+            and isinstance(node.func, cst.Attribute)
+            and node.func.attr.value.startswith(("get", "setDefault"))
+        }
+        self.dashboard_reads = frozenset(each for each in reads if each is not None)
+        names = {each.node.name.value for module in modules.values() for each in module.classes}
+        names |= {each.name for module in modules.values() for each in module.functions}
+        for module in modules.values():
+            names |= {name for each in module.classes for name in each.assigned}
+            names |= {name for each in module.classes for name in each.scope.bindings}
+        self.own_names = frozenset(names)
+
+
+def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
+    calls = Calls(file, project.dashboard_reads)
+    leftovers = Leftovers(file, project.own_names, project.camel_names)
+    sites = file.module.sites
+    for own in file.module.classes:
+        for method, found in file.overrides(own):
+            if method.name.value == "robotInit":
+                robot_init.rewrite(file, own, method)
+            else:
+                file.gone_override(method, found)
+    for node, scope in sites:
+        if isinstance(node, cst.Expr):
+            calls.statement(node, scope)
+    for node, scope in sites:
+        if isinstance(node, cst.Comparison):
+            calls.comparison(node, scope)
+    for node, scope in sites:
+        if isinstance(node, cst.Call):
+            robot_init.super_call(file, node, scope)
+            calls.other_pov(node, scope)
+            calls.call(node, scope)
+            leftovers.call(node, scope)
+    for node, scope in sites:
+        if isinstance(node, cst.Attribute):
+            file.attribute(node, scope)
+        elif isinstance(node, cst.SimpleString):
+            leftovers.text(node)
+    for node, scope in file.module.annotations:
+        rewrite_annotation(file, node, scope)
+    for node, scope in sites:
+        if isinstance(node, cst.Name):
+            file.name(node, scope)
+        elif isinstance(node, cst.Attribute):
+            leftovers.attribute(node, scope)
+    for node, scope in sites:
+        if isinstance(node, cst.ImportFrom):
+            file.import_from(node, scope)
+        if isinstance(node, cst.Import | cst.ImportFrom):
+            leftovers.imports(node)
+    return new_text(file, comments=comments)
+
+
+def _module_name(name: str) -> str:
+    parts = name.removesuffix(".py").split("/")
+    if parts[-1] == "__init__":
+        parts = parts[:-1]
+    return ".".join(parts)

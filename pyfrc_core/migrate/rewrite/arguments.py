@@ -1,0 +1,163 @@
+"""Rewrite the arguments of calls: keywords, numbers of buttons, directions, buses, channels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import libcst as cst
+
+from ..types.atoms import Obj, Ref
+from ..types.scopes import Scope
+from .edits import changed, fill, in_parentheses
+from .file import FileRewriter, Found
+
+_GENERIC_HID = "wpilib.interfaces.GenericHID"
+
+
+class Arguments:
+    """The arguments of a file's calls."""
+
+    def __init__(self, rewriter: FileRewriter) -> None:
+        self._file = rewriter
+        self._corrections: Mapping[str, Any] = rewriter.table.corrections
+
+    def changed_meaning(self, node: cst.Call, scope: Scope, paths: list[str]) -> None:
+        """Rewrite arguments that mean something else now.
+
+        :param paths: what is called: the method, in its class and in the bases
+        """
+        for path in paths:
+            if path in self._corrections["buttons"]:
+                self._button(node, scope, self._corrections["buttons"][path])
+            if path in self._corrections["pov_arguments"]:
+                self._direction(node, self._corrections["pov_arguments"][path])
+            if path in self._corrections["hid_arguments"]:
+                self._hid(node, scope, self._corrections["hid_arguments"][path])
+            for position in self._corrections["channel_arguments"].get(path, ()):
+                self._channel(node, scope, position)
+            if path in self._corrections["channels"]:
+                self._limit(node, scope, self._corrections["channels"][path])
+            if path in self._corrections["can_bus"]["classes"]:
+                self._bus(node, scope)
+                break
+
+    def keywords(self, node: cst.Call, found: Found) -> None:
+        """Rename the keywords of a call."""
+        member = found.member
+        if member is None or member.new is None:
+            return
+        for arg in node.args:
+            if arg.keyword is None:
+                continue
+            new = member.keyword(arg.keyword.value)
+            if new == "-":
+                self._file.say(arg.keyword, f"{found.path} has no argument {arg.keyword.value} any more.")
+            elif new != arg.keyword.value:
+                self._file.edit(arg, changed(keyword=cst.Name(new)))
+
+    def _button(self, node: cst.Call, scope: Scope, position: int) -> None:
+        if len(node.args) <= position or node.args[position].star:
+            return
+        arg = node.args[position]
+        value = arg.value
+        if isinstance(value, cst.Integer):
+            number = cst.Integer(str(int(value.evaluated_value) - 1)) if value.evaluated_value else value
+            self._file.edit(arg, changed(value=number))
+            return
+        types = self._file.inference.infer(value, scope)
+        if types or (isinstance(value, cst.Attribute) and value.attr.value == "value"):
+            return  # a constant of an enumeration
+        self._file.edit(
+            arg,
+            lambda updated: updated.with_changes(
+                value=cst.BinaryOperation(in_parentheses(updated.value), cst.Subtract(), cst.Integer("1"))
+            ),
+        )
+        self._file.say(
+            node, "Buttons count from 0 now: 1 is subtracted here.", "Better subtract it from the constant.", done=True
+        )
+
+    def _direction(self, node: cst.Call, position: int) -> None:
+        if len(node.args) <= position:
+            return
+        arg = node.args[position]
+        direction = self.direction(arg.value)
+        if direction is None:
+            self._file.say(node, "The angle of a POV is a wpilib.POVDirection now.", "Write one of its names.")
+            return
+        spelled = self._file.imports.spell(f"wpilib.POVDirection.{direction}", None, self._file.module.scope)
+        self._file.edit(arg, changed(value=cst.parse_expression(spelled)))
+
+    def direction(self, node: cst.BaseExpression) -> str | None:
+        """Return the name of a direction in degrees."""
+        code = cst.Module([]).code_for_node(node).replace(" ", "")
+        found = self._corrections["pov_directions"].get(code)
+        return None if found is None else str(found)
+
+    def _channel(self, node: cst.Call, scope: Scope, position: int) -> None:
+        """Pass the channel of a DigitalInput in its place."""
+        if len(node.args) <= position:
+            return
+        arg = node.args[position]
+        types = {each.path for each in self._file.inference.infer(arg.value, scope) if isinstance(each, Obj)}
+        if not types & {"wpilib.DigitalInput", "wpilib.DigitalSource"}:
+            return
+        made = arg.value
+        if (
+            isinstance(made, cst.Call)
+            and len(made.args) == 1
+            and Ref("wpilib.DigitalInput") in self._file.inference.infer(made.func, scope)
+        ):
+            self._file.consume(made.func, scope)
+            self._file.edit(arg, lambda updated: updated.with_changes(value=updated.value.args[0].value, keyword=None))
+        else:
+            self._file.say(node, "This takes the number of a channel now, not a DigitalInput.", "Pass the number.")
+
+    def _hid(self, node: cst.Call, scope: Scope, position: int) -> None:
+        """Pass the GenericHID of a controller, which is none itself any more."""
+        if len(node.args) <= position:
+            return
+        arg = node.args[position]
+        types = {each.path for each in self._file.inference.infer(arg.value, scope) if isinstance(each, Obj)}
+        if (
+            types
+            and _GENERIC_HID not in types
+            and all(_GENERIC_HID in self._file.table.ancestors(each) for each in types)
+        ):
+            self._file.edit(
+                arg, lambda updated: updated.with_changes(value=fill("{self}.get_hid()", {"self": updated.value}, []))
+            )
+
+    def _limit(self, node: cst.Call, scope: Scope, count: int) -> None:
+        number = self._number(node.args[0].value, scope) if node.args else None
+        if number is not None and number >= count:
+            self._file.say(
+                node,
+                f"Channel {number} does not exist on SystemCore.",
+                f"It has the channels 0 to {count - 1}: write the one that you wire it to.",
+            )
+
+    def _number(self, node: cst.BaseExpression, scope: Scope) -> int | None:
+        """Return a number that is written here, or given to a name once."""
+        if isinstance(node, cst.Integer):
+            return int(node.evaluated_value)
+        values = self._file.inference.values(node, scope)
+        if len(values) == 1 and isinstance(values[0], cst.Integer):
+            return int(values[0].evaluated_value)
+        return None
+
+    def _bus(self, node: cst.Call, scope: Scope) -> None:
+        bus = self._corrections["can_bus"]["bus"]
+        root = node.func
+        while isinstance(root, cst.Attribute):
+            root = root.value
+        spelled = cst.parse_expression(self._file.imports.spell(bus, root, scope))
+        self._file.edit(node, lambda updated: updated.with_changes(args=[_first(spelled, updated), *updated.args]))
+        self._file.say(node, "A CAN device names its bus now.", self._corrections["can_bus"]["note"], done=True)
+
+
+def _first(value: cst.BaseExpression, call: cst.Call) -> cst.Arg:
+    if not call.args:
+        return cst.Arg(value)
+    return cst.Arg(value, comma=cst.Comma(whitespace_after=cst.SimpleWhitespace(" ")))

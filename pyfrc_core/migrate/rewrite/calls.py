@@ -1,0 +1,220 @@
+"""Rewrite calls whose meaning changed, as `corrections.toml` says; and the keywords of all calls."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import libcst as cst
+
+from ..types.atoms import Atom, Bound, Obj, OwnObj, Ref
+from ..types.scopes import Scope
+from .arguments import Arguments
+from .edits import fill, replaced
+from .file import FileRewriter, Found
+
+_TABLE = '<ntcore.NetworkTableInstance>.get_default().get_table("SmartDashboard")'
+
+
+class Calls:
+    """The calls of a file.
+
+    :param dashboard_reads: the keys that the project reads from SmartDashboard
+    """
+
+    def __init__(self, rewriter: FileRewriter, dashboard_reads: frozenset[str]) -> None:
+        self._file = rewriter
+        self._reads = dashboard_reads
+        self._arguments = Arguments(rewriter)
+        self._corrections: Mapping[str, Any] = rewriter.table.corrections
+
+    def call(self, node: cst.Call, scope: Scope) -> None:
+        """Rewrite a call."""
+        found = self._called(node, scope)
+        if found is None:
+            return
+        paths = self._paths(found)
+        self._arguments.keywords(node, found)
+        if self._dashboard(node, scope, found):
+            return
+        template = next(
+            (each for path in paths if (each := self._corrections["templates"].get(path)) is not None), None
+        )
+        if template is not None and self._template(node, scope, template):
+            for note in (each for path in paths if (each := self._corrections["notes"].get(path))):
+                self._file.say(node, f"{found.path} is rewritten.", note, done=True)
+            return
+        if not self._file.first_time:
+            return
+        self._arguments.changed_meaning(node, scope, paths)
+
+    def _called(self, node: cst.Call, scope: Scope) -> Found | None:
+        if isinstance(node.func, cst.Attribute):
+            found = self._file.look_up(node.func, scope)
+            return found[0] if found and found[0].member is not None else None
+        if isinstance(node.func, cst.Name):
+            for each in self._file.inference.infer(node.func, scope):
+                if isinstance(each, Ref) and (name := self._file.table.name(each.path)) is not None:
+                    return Found("", "", each.path, name)
+                if isinstance(each, Bound) and (member := self._file.table.member(each.owner, each.name)) is not None:
+                    return Found(each.owner, each.owner, f"{each.owner}.{each.name}", member[1])
+        return None
+
+    def _paths(self, found: Found) -> list[str]:
+        """Return the paths by which corrections may know what is called."""
+        if not found.owner:
+            return [found.path]
+        name = found.path.rpartition(".")[2]
+        return [f"{each}.{name}" for each in self._file.table.ancestors(found.receiver)]
+
+    # Templates
+
+    def _template(self, node: cst.Call, scope: Scope, template: Any) -> bool:
+        if isinstance(template, Mapping):
+            template = template.get(str(len(node.args)))
+        plain = not any(arg.star or arg.keyword for arg in node.args)
+        if template is None or not (plain or "{0}" not in template):
+            return False
+        self.replace(node, scope, template)
+        return True
+
+    def replace(self, node: cst.Call, scope: Scope, template: str) -> None:
+        """Replace a call by a template."""
+        root = self._file.consume(node.func, scope)
+        text = ""
+        for position, part in enumerate(template.replace("<", "\0").replace(">", "\0").split("\0")):
+            text += self._file.imports.spell(part, root, scope) if position % 2 else part
+
+        def edit(updated: cst.Call) -> cst.BaseExpression:
+            parts = {str(index): arg.value for index, arg in enumerate(updated.args)}
+            if isinstance(updated.func, cst.Attribute):
+                parts["self"] = updated.func.value
+            new = fill(text, parts, list(updated.args))
+            return new.with_changes(lpar=[*updated.lpar, *new.lpar], rpar=[*new.rpar, *updated.rpar])
+
+        self._file.edit(node, edit)
+
+    def _dashboard(self, node: cst.Call, scope: Scope, found: Found) -> bool:
+        if found.owner != "wpilib.SmartDashboard":
+            return False
+        name = found.path.rpartition(".")[2]
+        if name == "putData":
+            return self._put_data(node, scope)
+        key = key_of(node)
+        read = key is None or key in self._reads
+        member = self._corrections["dashboard_table"].get(name)
+        if member is None or (name.startswith("put") and not read):
+            return False
+        self.replace(node, scope, f"{_TABLE}.{member}({{args}})")
+        if not name.startswith("put"):
+            self._file.say(
+                node,
+                f"SmartDashboard.{name} reads NetworkTables' SmartDashboard table now.",
+                "A setting that a dashboard changes is better a tunable: tunables.add(name, value).",
+                done=True,
+            )
+        return True
+
+    def _put_data(self, node: cst.Call, scope: Scope) -> bool:
+        if not 1 <= len(node.args) <= 2 or any(arg.keyword or arg.star for arg in node.args):
+            return False
+        types = self._file.inference.infer(node.args[-1].value, scope)
+        names = {type_name for each in types if (type_name := self._loggable(each))}
+        if len(names) != 1:
+            return False
+        name = names.pop()
+        arguments = "{args}" if len(node.args) == 2 else f'"{name}", {{0}}'
+        if name == "SendableChooser":
+            self.replace(node, scope, f"<tunables.publish>({arguments})")
+            return True
+        self.replace(node, scope, f"<telemetry.log>({arguments})")
+        self._file.say(
+            node,
+            "SmartDashboard.putData is telemetry.log now, which logs the values of this moment.",
+            "Call it in robot_periodic to log them again and again.",
+            done=True,
+        )
+        return True
+
+    def _loggable(self, of: Atom) -> str:
+        """Return the name that the dashboard shows of something that was a Sendable, or "" if it was none."""
+        if isinstance(of, OwnObj):
+            bases = self._file.inference.lineage(of.own)[1]
+            name = of.own.name
+        elif isinstance(of, Obj):
+            bases, name = [of.path], of.path.rpartition(".")[2]
+        else:
+            return ""
+        every = {each for base in bases for each in self._file.table.ancestors(base)}
+        if not every & {"wpiutil.Sendable", "ntcore.NTSendable", "wpilib.SendableChooser"}:
+            return ""
+        return {"CommandScheduler": "Scheduler", "Field2d": "Field"}.get(name, name)
+
+    # Comparisons and statements
+
+    def comparison(self, node: cst.Comparison, scope: Scope) -> None:
+        """Rewrite a POV that is compared with an angle."""
+        if not self._file.first_time or not self.is_pov(node.left, scope):
+            return
+        for target in node.comparisons:
+            values = [target.comparator]
+            if isinstance(target.comparator, cst.Tuple | cst.List | cst.Set):
+                values = [each.value for each in target.comparator.elements]
+            directions = [self._arguments.direction(each) for each in values]
+            if None in directions or not isinstance(target.operator, cst.Equal | cst.NotEqual | cst.In | cst.NotIn):
+                return
+            for value, direction in zip(values, directions, strict=True):
+                spelled = self._file.imports.spell(f"wpilib.POVDirection.{direction}", None, scope)
+                self._file.edit(value, replaced(cst.parse_expression(spelled)))
+        self._file.handled.add(node.left)
+        if isinstance(node.left, cst.Call) and isinstance(node.left.func, cst.Attribute):
+            self._file.attribute(node.left.func, scope)
+            self._file.handled.add(node.left.func)
+
+    def is_pov(self, node: cst.BaseExpression, scope: Scope) -> bool:
+        """Return whether an expression asks for a POV's angle."""
+        found = self._called(node, scope) if isinstance(node, cst.Call) else None
+        return found is not None and any(path in self._corrections["povs"] for path in self._paths(found))
+
+    def other_pov(self, node: cst.Call, scope: Scope) -> None:
+        """Report a POV whose angle is used in another way."""
+        if self._file.first_time and node not in self._file.handled and self.is_pov(node, scope):
+            self._file.say(
+                node,
+                "A POV is a wpilib.POVDirection now, not an angle.",
+                "Compare it with wpilib.POVDirection.UP and the like, or use wpilib.get_pov_angle.",
+            )
+
+    def statement(self, node: cst.Expr, scope: Scope) -> None:
+        """Remove a statement that is not needed any more, or keep the object that a call returns now."""
+        if not isinstance(node.value, cst.Call):
+            return
+        found = self._called(node.value, scope)
+        if found is None:
+            return
+        paths = self._paths(found)
+        if any(path in self._corrections["not_needed"]["calls"] for path in paths):
+            self._file.consume(node.value.func, scope)
+            self._file.edit(node, lambda updated: cst.Pass(semicolon=updated.semicolon))
+            self._file.removed.add(node)
+            self._file.say(node, f"{found.path} is not needed any more: removed.", done=True)
+        func = node.value.func
+        if (
+            self._file.first_time
+            and any(path in self._corrections["returns_new"]["methods"] for path in paths)
+            and isinstance(func, cst.Attribute)
+            and isinstance(func.value, cst.Name | cst.Attribute)
+        ):
+
+            def assigned(updated: cst.Expr) -> cst.Assign:
+                target = cst.ensure_type(cst.ensure_type(updated.value, cst.Call).func, cst.Attribute).value
+                assert isinstance(target, cst.Name | cst.Attribute)
+                return cst.Assign([cst.AssignTarget(target)], updated.value)
+
+            self._file.edit(node, assigned)
+
+
+def key_of(node: cst.Call) -> str | None:
+    """Return the first argument, if it is a plain text."""
+    first = node.args[0].value if node.args else None
+    return str(first.evaluated_value) if isinstance(first, cst.SimpleString) else None

@@ -1,0 +1,141 @@
+"""Apply edits to a tree: each belongs to a node, and gets it with the edits inside it already made."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from typing import Any, cast
+
+import libcst as cst
+
+Edit = Callable[[Any], Any]
+
+
+class Apply(cst.CSTTransformer):
+    """Make all edits.
+
+    :param edits: by the node of the original tree
+    :param statements: by an import statement: what replaces it; nothing removes it
+    """
+
+    def __init__(
+        self,
+        edits: Mapping[cst.CSTNode, Edit],
+        statements: Mapping[cst.CSTNode, list[cst.BaseSmallStatement]] | None = None,
+    ) -> None:
+        self._edits = edits
+        self._statements = statements or {}
+
+    def on_leave(self, original_node: Any, updated_node: Any) -> Any:
+        """Replace a node that has an edit."""
+        updated = super().on_leave(original_node, updated_node)
+        if original_node in self._edits:
+            updated = self._edits[original_node](updated)
+        return updated
+
+    def leave_SimpleStatementLine(
+        self, original_node: cst.SimpleStatementLine, updated_node: cst.SimpleStatementLine
+    ) -> Any:
+        """Replace the import statements of a line."""
+        if not any(each in self._statements for each in original_node.body):
+            return updated_node
+        body: list[cst.BaseSmallStatement] = []
+        for original, updated in zip(original_node.body, updated_node.body, strict=True):
+            body += self._statements.get(original, [updated])
+        if not body:
+            return cst.RemoveFromParent()
+        if len(original_node.body) > 1:
+            return updated_node.with_changes(body=[_without_semicolon(each) for each in body])
+        lines: list[cst.BaseStatement] = [updated_node.with_changes(body=[body[0]])]
+        lines += [cst.SimpleStatementLine([each]) for each in body[1:]]
+        return cst.FlattenSentinel(lines)
+
+
+def _without_semicolon(node: cst.BaseSmallStatement) -> cst.BaseSmallStatement:
+    return node.with_changes(semicolon=cst.MaybeSentinel.DEFAULT)
+
+
+def renamed(new: str) -> Edit:
+    """Return an edit that gives a name, attribute, keyword or definition a new name."""
+
+    def edit(node: Any) -> Any:
+        if isinstance(node, cst.Attribute):
+            return node.with_changes(attr=cst.Name(new))
+        if isinstance(node, cst.Name):
+            return node.with_changes(value=new)
+        return node.with_changes(name=cst.Name(new))
+
+    return edit
+
+
+def changed(**changes: Any) -> Edit:
+    """Return an edit that changes parts of a node."""
+    return lambda updated: updated.with_changes(**changes)
+
+
+def replaced(new: cst.CSTNode) -> Edit:
+    """Return an edit that puts a node in the place of another one."""
+    return lambda updated: new
+
+
+def commented(texts: list[str]) -> Edit:
+    """Return an edit that puts comments before a statement, but for those that it has; before what replaces it, too."""
+
+    def edit(node: Any) -> Any:
+        if isinstance(node, cst.FlattenSentinel):
+            first, *others = node
+            return cst.FlattenSentinel([edit(first), *others])
+        if not isinstance(node, cst.CSTNode) or not hasattr(node, "leading_lines"):
+            return node
+        there = {each.comment.value for each in node.leading_lines if each.comment is not None}
+        new = [cst.EmptyLine(comment=cst.Comment(each)) for each in texts if each not in there]
+        return node.with_changes(leading_lines=[*node.leading_lines, *new])
+
+    return edit
+
+
+def chain(path: str) -> cst.BaseExpression:
+    """Return the expression `a.b.c`."""
+    return cst.parse_expression(path)
+
+
+def fill(text: str, parts: Mapping[str, cst.BaseExpression], arguments: list[cst.Arg]) -> cst.BaseExpression:
+    """Return an expression from a text with `{0}`, `{self}` and the like, and `{args}` for all arguments."""
+    prepared = re.sub(r"\{(\w+)\}", r"part_\1_", text)
+    tree = cst.parse_expression(prepared)
+    return cast("cst.BaseExpression", tree.visit(_Fill(parts, arguments)))
+
+
+class _Fill(cst.CSTTransformer):
+    def __init__(self, parts: Mapping[str, cst.BaseExpression], arguments: list[cst.Arg]) -> None:
+        self._parts = parts
+        self._arguments = arguments
+
+    def leave_Call(self, original_node: cst.Call, updated_node: cst.Call) -> cst.Call:
+        args = original_node.args
+        if len(args) == 1 and isinstance(args[0].value, cst.Name) and args[0].value.value == "part_args_":
+            return updated_node.with_changes(args=self._arguments)
+        return updated_node
+
+    def leave_Attribute(self, original_node: cst.Attribute, updated_node: cst.Attribute) -> cst.Attribute:
+        return updated_node.with_changes(value=in_parentheses(updated_node.value))
+
+    def leave_BinaryOperation(
+        self, original_node: cst.BinaryOperation, updated_node: cst.BinaryOperation
+    ) -> cst.BinaryOperation:
+        left, right = in_parentheses(updated_node.left), in_parentheses(updated_node.right)
+        return updated_node.with_changes(left=left, right=right)
+
+    def leave_Name(self, original_node: cst.Name, updated_node: cst.Name) -> cst.BaseExpression:
+        key = original_node.value
+        if not (key.startswith("part_") and key.endswith("_")) or key[5:-1] not in self._parts:
+            return updated_node
+        return self._parts[key[5:-1]]
+
+
+def in_parentheses(node: cst.BaseExpression) -> cst.BaseExpression:
+    """Return an expression that can stand before an operator, with parentheses if it needs them."""
+    simple = cst.Name | cst.Attribute | cst.Call | cst.Subscript | cst.Integer | cst.Float | cst.SimpleString
+    if isinstance(node, simple) or node.lpar:
+        return node
+    return node.with_changes(lpar=[cst.LeftParen()], rpar=[cst.RightParen()])

@@ -1,0 +1,317 @@
+"""Rewrite one file: names, members, keywords, overridden methods; the imports at the end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import cast
+
+import libcst as cst
+from libcst.metadata import CodeRange, MetadataWrapper, PositionProvider
+
+from ..names.spelling import snake_case
+from ..names.table import Member, Table
+from ..report import Report
+from ..types.atoms import Atoms, Obj, OwnObj, OwnRef, Ref
+from ..types.inference import Inference
+from ..types.scopes import Module, OwnClass, Scope
+from .edits import Edit, chain, fill, renamed
+from .imports import Imports
+
+
+@dataclass(frozen=True)
+class Found:
+    """What an attribute is, of all that it can be.
+
+    :param owner: the class that defines the member, or "" for a name of a module
+    :param receiver: the class that it was asked for
+    :param member: None if WPILib has no such name
+    """
+
+    owner: str
+    receiver: str
+    path: str
+    member: Member | None
+
+
+class FileRewriter:
+    """The rewriting of one file.
+
+    :param name: of the file, for the report
+    :param first_time: the project is still one of 2026: what means something else under the same name is rewritten
+    :param shared: other files import everything from this one
+    """
+
+    def __init__(
+        self,
+        module: Module,
+        name: str,
+        inference: Inference,
+        table: Table,
+        report: Report,
+        *,
+        first_time: bool,
+        shared: bool,
+    ) -> None:
+        self.module = module
+        self.table = table
+        self.inference = inference
+        self.first_time = first_time
+        self.imports = Imports(module, table, shared=shared)
+        self.edits: dict[cst.CSTNode, Edit] = {}
+        #: Nodes that an edit of the expression around them takes care of.
+        self.handled: set[cst.CSTNode] = set()
+        #: Statements that are left out.
+        self.removed: set[cst.BaseSmallStatement] = set()
+        self.name_in_report = name
+        self.report = report
+        wrapper = MetadataWrapper(module.tree, unsafe_skip_copy=True)
+        self.positions = cast("Mapping[cst.CSTNode, CodeRange]", wrapper.resolve(PositionProvider))
+        self.default_line = 1
+
+    def line(self, node: cst.CSTNode) -> int:
+        """Return the line of a node; of a string annotation, for nodes inside it."""
+        found = self.positions.get(node)
+        if isinstance(node, cst.FunctionDef | cst.ClassDef):
+            found = self.positions.get(node.name)
+        return self.default_line if found is None else found.start.line
+
+    def say(self, node: cst.CSTNode, what: str, remedy: str = "", *, done: bool = False) -> None:
+        """Add a remark about a node."""
+        self.report.add(self.name_in_report, self.line(node), what, remedy, done=done)
+
+    def edit(self, node: cst.CSTNode, edit: Edit) -> None:
+        """Add an edit, after those that the node has."""
+        before = self.edits.get(node)
+        self.edits[node] = edit if before is None else lambda updated: edit(before(updated))
+
+    # Attributes
+
+    def look_up(self, node: cst.Attribute, scope: Scope) -> list[Found]:
+        """Return what an attribute can be, where it is WPILib's or overrides what is WPILib's."""
+        return self.found_in(self.inference.infer(node.value, scope), node.attr.value)
+
+    def found_in(self, owners: Atoms, name: str) -> list[Found]:
+        """Return what a member of any of these can be."""
+        found: list[Found] = []
+        for owner in owners:
+            if isinstance(owner, Ref):
+                path = self.table.canonical(f"{owner.path}.{name}")
+                known = self.table.name(path)
+                if path in self.table.modules or known is not None:
+                    found.append(Found("", "", path, known))
+                    continue
+            if isinstance(owner, Ref | Obj):
+                found += self.member_of([owner.path], name)
+            elif isinstance(owner, OwnObj | OwnRef):
+                mine, theirs = self.inference.lineage(owner.own)
+                members = self.member_of(theirs, name)
+                own = [each for each in mine if self.inference.own_bindings(each, name)]
+                if not own or self._overrides(own, name):
+                    found += members
+        return found
+
+    def _overrides(self, classes: list[OwnClass], name: str) -> bool:
+        """Return whether a member of the team's is a method, as what it overrides is."""
+        return any(binding.kind == "function" for each in classes for binding in each.scope.bindings.get(name, ()))
+
+    def member_of(self, classes: list[str], name: str) -> list[Found]:
+        """Return a member of the first of the classes that has it; a class inside a class too."""
+        for path in classes:
+            for each in self.table.ancestors(path):
+                nested = self.table.name(f"{each}.{name}")
+                if nested is not None:
+                    return [Found("", path, f"{each}.{name}", nested)]
+            member = self.table.member(path, name)
+            if member is not None:
+                return [Found(member[0], path, f"{member[0]}.{name}", member[1])]
+        return []
+
+    def attribute(self, node: cst.Attribute, scope: Scope) -> None:
+        """Rewrite an attribute."""
+        if node in self.handled:
+            return
+        found = self.look_up(node, scope)
+        if not found:
+            return
+        new = {self._new_name(each) for each in found}
+        if len(new) > 1:
+            names = ", ".join(sorted(str(each) for each in new))
+            self.say(node, f"{node.attr.value} can be several things here.", f"Their new names: {names}.")
+            return
+        for each in found:
+            note = self.table.corrections["notes"].get(each.path)
+            if note is not None and self.first_time:
+                self.say(node, f"{node.attr.value} has another meaning.", note, done=True)
+        first, target = found[0], new.pop()
+        if target is None:
+            self._say_gone(node, first)
+        elif first.owner:
+            self._rename_member(node, scope, target)
+        elif target != first.path:
+            self._respell(node, scope, first.path, target)
+
+    def _new_name(self, found: Found) -> str | None:
+        if found.owner:
+            return None if found.member is None else found.member.new
+        return self.table.new_path(found.path)
+
+    def _say_gone(self, node: cst.Attribute, found: Found) -> None:
+        receiver = self.table.name(found.receiver)
+        if receiver is not None and receiver.new is None:
+            return  # said where the object is made
+        if found.path in self.table.modules:
+            return  # said at the import
+        advice = self.table.advice(found.path, f"{found.receiver}.{node.attr.value}", node.attr.value)
+        self.say(node, f"{found.path} is gone.", advice)
+
+    def _rename_member(self, node: cst.Attribute, scope: Scope, new: str) -> None:
+        if "(" in new:
+            self.edit(node, lambda updated: fill(f"{{self}}.{new}", {"self": updated.value}, []))
+        elif "." in new:
+            self._spell_anew(node, scope, new)
+        elif new != node.attr.value:
+            self.edit(node, renamed(new))
+
+    def _respell(self, node: cst.Attribute, scope: Scope, old: str, new: str) -> None:
+        before = {each.path for each in self.inference.infer(node.value, scope) if isinstance(each, Ref)}
+        outer, _, last = new.rpartition(".")
+        if before and {self.table.new_path(each) for each in before} == {outer} and old not in self.table.modules:
+            if last != node.attr.value:
+                self.edit(node, renamed(last))
+            return
+        self._spell_anew(node, scope, new)
+
+    def _spell_anew(self, node: cst.Attribute, scope: Scope, new: str) -> None:
+        spelled = chain(self.imports.spell(new, self.consume(node, scope), scope))
+        self.edit(node, lambda updated: spelled.with_changes(lpar=updated.lpar, rpar=updated.rpar))
+
+    # Names
+
+    def consume(self, node: cst.BaseExpression, scope: Scope) -> cst.BaseExpression:
+        """Mark what an edit replaces, and return its first name."""
+        while isinstance(node, cst.Attribute | cst.Call):
+            self.handled.add(node)
+            node = node.value if isinstance(node, cst.Attribute) else node.func
+        self.handled.add(node)
+        if isinstance(node, cst.Name):
+            self._count(node, scope, self.imports.consumed)
+        return node
+
+    def _count(self, node: cst.Name, scope: Scope, counts: dict[cst.ImportAlias, int]) -> None:
+        for binding in scope.find(node.value):
+            statement = binding.node
+            if binding.kind != "from" or not isinstance(statement, cst.ImportFrom):
+                continue
+            if isinstance(statement.names, cst.ImportStar):
+                continue
+            for alias in statement.names:
+                local = alias.asname.name if alias.asname else alias.name
+                if isinstance(local, cst.Name) and local.value == node.value:
+                    counts[alias] = counts.get(alias, 0) + 1
+
+    def name(self, node: cst.Name, scope: Scope) -> None:
+        """Rewrite a name that an import gives."""
+        if node in self.handled:
+            return
+        bindings = scope.find(node.value)
+        if bindings and not any(each.kind == "from" for each in bindings):
+            return
+        refs = [each for each in self.inference.named(node.value, scope) if isinstance(each, Ref)]
+        if not refs or refs[0].path in self.table.modules:
+            return
+        old = refs[0].path
+        new = self.table.new_path(old)
+        self._count(node, scope, self.imports.uses)
+        if new is None:
+            self.say(node, f"{old} is gone.", self.table.advice(old))
+            return
+        if not bindings:
+            self._from_star(node, scope, old, new)
+            return
+        if node.value == old.rpartition(".")[2] != new.rpartition(".")[2] and not self._renamed_by_import(node, scope):
+            self.edit(node, renamed(new.rpartition(".")[2]))
+
+    def _renamed_by_import(self, node: cst.Name, scope: Scope) -> bool:
+        return any(each.path.rpartition(".")[2] != node.value for each in scope.find(node.value))
+
+    def _from_star(self, node: cst.Name, scope: Scope, old: str, new: str) -> None:
+        module, rest = self.imports.split(new)
+        for binding in self.module.scope.bindings.get("*", ()):
+            self.imports.star_names.setdefault(binding.path, set()).add(new)
+            if self.table.modules.get(binding.path) == module or binding.path not in self.table.modules:
+                if rest != node.value:
+                    self.edit(node, renamed(rest))
+                return
+        spelled = self.imports.spell(new, node, scope)
+        if spelled != node.value:
+            self.edit(node, lambda updated: chain(spelled))
+
+    def import_from(self, node: cst.ImportFrom, scope: Scope) -> None:
+        """Report what an import names that is gone, and rename what another file of the project renamed."""
+        if isinstance(node.names, cst.ImportStar):
+            return
+        for alias in node.names:
+            local = alias.asname.name if alias.asname else alias.name
+            if not isinstance(local, cst.Name) or not isinstance(alias.name, cst.Name):
+                continue
+            for binding in scope.bindings.get(local.value, ()):
+                if binding.node is not node:
+                    continue
+                for ref in self.inference.bound(binding, local.value):
+                    if isinstance(ref, Ref):
+                        self._import_alias(node, alias, binding.path, ref.path)
+
+    def _import_alias(self, node: cst.ImportFrom, alias: cst.ImportAlias, path: str, ref: str) -> None:
+        known = self.table.name(path) is not None or path in self.table.modules
+        new = self.table.new_path(ref)
+        if new is None:
+            if not (self.imports.consumed.get(alias) and not self.imports.uses.get(alias)):
+                self.say(node, f"{ref} is gone.", self.table.advice(ref))
+        elif not known and isinstance(alias.name, cst.Name) and ref not in self.table.modules:
+            old_last, new_last = ref.rpartition(".")[2], new.rpartition(".")[2]
+            if alias.name.value == old_last != new_last:
+                self.edit(alias, renamed(new_last))
+
+    # Classes
+
+    def overrides(self, own: OwnClass) -> list[tuple[cst.FunctionDef, Found]]:
+        """Rename the methods that override methods of WPILib's, and return those that override what is gone."""
+        gone: list[tuple[cst.FunctionDef, Found]] = []
+        theirs = self.inference.lineage(own)[1]
+        if not theirs:
+            return gone
+        for name, bindings in own.scope.bindings.items():
+            methods = [each.node for each in bindings if isinstance(each.node, cst.FunctionDef)]
+            found = self.member_of(theirs, name) if methods else []
+            if not found or not found[0].owner:
+                self._hidden(own, theirs, name, methods)
+                continue
+            member = found[0].member
+            assert member is not None
+            for method in methods:
+                if member.new is None:
+                    gone.append((method, found[0]))
+                elif member.new.isidentifier() and member.new != name:
+                    if not self.inference.own_bindings(own, member.new):
+                        self.edit(method, renamed(member.new))
+                    elif snake_case(name) == member.new:
+                        self.say(method, f"{name} is {member.new} now, and {own.name} already has a {member.new}.")
+        return gone
+
+    def gone_override(self, method: cst.FunctionDef, found: Found) -> None:
+        """Report an override of a method that is gone."""
+        name = method.name.value
+        self.say(method, f"{name} is not called any more.", self.table.advice(found.path, name))
+
+    def _hidden(self, own: OwnClass, theirs: list[str], name: str, methods: list[cst.FunctionDef]) -> None:
+        if not methods or name.startswith("_") or not self.first_time:
+            return
+        for path in theirs:
+            for each in self.table.ancestors(path):
+                known = self.table.name(each)
+                members = known.members.values() if known is not None else ()
+                new = {each.new for each in members if each.new == snake_case(each.name) != each.name}
+                if name in new or name in self.table.corrections["new_members"].get(each, ()):
+                    self.say(methods[0], f"{own.name}.{name} overrides a method of WPILib 2027.", "Rename it.")
+                    return

@@ -1,0 +1,100 @@
+"""`robotInit` becomes the constructor: WPILib 2027 does not call it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import libcst as cst
+
+from ..types.scopes import OwnClass, Scope
+from .edits import renamed
+from .file import FileRewriter
+
+_CALL = "super().__init__()"
+
+
+def rewrite(file: FileRewriter, own: OwnClass, method: cst.FunctionDef) -> None:
+    """Rewrite a class's `robotInit`.
+
+    A class without a constructor gets this one. In a class with one, that calls it as its last statement.
+    """
+    constructor = own.scope.bindings.get("__init__", [])
+    node = constructor[0].node if constructor else None
+    if not isinstance(node, cst.FunctionDef):
+        file.edit(method, renamed("__init__"))
+        if not _calls_super(method):
+            file.edit(method, lambda updated: _with_first(updated, _CALL))
+        file.say(method, "robotInit is the constructor now.", done=True)
+        return
+    name = "robot_init"
+    file.edit(method, renamed(name))
+    first = node.params.params[0].name.value if node.params.params else "self"
+    file.edit(node, lambda updated: _with_last(updated, f"{first}.{name}()"))
+    file.say(method, f"robotInit is called {name} now, by the constructor.", done=True)
+
+
+def super_call(file: FileRewriter, node: cst.Call, scope: Scope) -> None:
+    """Rewrite `super().robotInit()` in what becomes a constructor."""
+    function = scope.function
+    own = function.own_class if function is not None else None
+    if function is None or own is None or function.name != "robotInit" or not _is_super(node):
+        return
+    if not own.scope.bindings.get("__init__"):
+        file.handled.add(node.func)
+        file.edit(node, lambda updated: cst.parse_expression(_CALL))
+
+
+def _is_super(node: cst.CSTNode) -> bool:
+    return (
+        isinstance(node, cst.Call)
+        and isinstance(node.func, cst.Attribute)
+        and node.func.attr.value == "robotInit"
+        and isinstance(node.func.value, cst.Call)
+        and isinstance(node.func.value.func, cst.Name)
+        and node.func.value.func.value == "super"
+    )
+
+
+def _calls_super(method: cst.FunctionDef) -> bool:
+    class Finder(cst.CSTVisitor):
+        found = False
+
+        def visit_Call(self, node: cst.Call) -> None:
+            self.found = self.found or _is_super(node)
+
+    finder = Finder()
+    method.body.visit(finder)
+    return finder.found
+
+
+def _with_first(method: Any, code: str) -> Any:
+    statement = cst.parse_statement(code)
+    body = method.body
+    if isinstance(body, cst.SimpleStatementSuite):
+        block = cst.IndentedBlock([statement, cst.SimpleStatementLine(body.body)])
+        return method.with_changes(body=block)
+    statements = list(body.body)
+    index = 1 if _is_docstring(statements[0]) else 0
+    if len(statements) == index + 1 and _is_pass(statements[index]):
+        statements = statements[:index]
+    return method.with_changes(body=body.with_changes(body=[*statements[:index], statement, *statements[index:]]))
+
+
+def _with_last(method: Any, code: str) -> Any:
+    statement = cst.parse_statement(code)
+    body = method.body
+    if isinstance(body, cst.SimpleStatementSuite):
+        return method.with_changes(body=cst.IndentedBlock([cst.SimpleStatementLine(body.body), statement]))
+    return method.with_changes(body=body.with_changes(body=[*body.body, statement]))
+
+
+def _is_docstring(statement: cst.BaseStatement) -> bool:
+    return (
+        isinstance(statement, cst.SimpleStatementLine)
+        and isinstance(statement.body[0], cst.Expr)
+        and isinstance(statement.body[0].value, cst.SimpleString | cst.ConcatenatedString)
+    )
+
+
+def _is_pass(statement: cst.BaseStatement) -> bool:
+    return isinstance(statement, cst.SimpleStatementLine) and isinstance(statement.body[0], cst.Pass)
