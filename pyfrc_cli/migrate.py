@@ -44,11 +44,13 @@ def command(directory: Path | None, check: bool, diff: bool, comments: bool, unc
     from pyfrc_core.project import find_project
 
     need_libcst()
-    root = find_project(directory).root
+    project = find_project(directory)
+    root = project.pyproject.parent if project.pyproject.is_file() else project.root
     writes = not (check or diff)
     if writes and not uncommitted:
         refuse_uncommitted(root)
-    done = migrate(root, progress=_show_progress if _on_terminal(as_json) else _no_progress, comments=comments)
+    progress = _show_progress if _on_terminal(as_json) else _no_progress
+    done = migrate(root, code=project.root, progress=progress, comments=comments)
     if writes:
         done.write()
     if as_json:

@@ -69,9 +69,16 @@ class Migration:
                 new.unlink(missing_ok=True)
 
 
-def migrate(root: Path, *, progress: Progress = lambda doing, done, of: None, comments: bool = False) -> Migration:
+def migrate(
+    root: Path,
+    *,
+    code: Path | None = None,
+    progress: Progress = lambda doing, done, of: None,
+    comments: bool = False,
+) -> Migration:
     """Return what a project of 2026 becomes in 2027. Nothing is written.
 
+    :param code: where robot.py is, if it is in a directory of its own
     :param progress: called with what is done, how many files of it, and of how many
     :param comments: write what must be changed by hand into the files, too
     :raises UsageError: when pyproject.toml is wrong
@@ -81,11 +88,15 @@ def migrate(root: Path, *, progress: Progress = lambda doing, done, of: None, co
     version, _ = load_robotpy_version(root / "pyproject.toml")
     first_time = version is None or not version.startswith("2027")
     sources = [Source(file, file.relative_to(root).as_posix(), file.read_bytes()) for file in python_files(root)]
-    after = dict(rewrite_all(sources, names, report, first_time=first_time, progress=progress, comments=comments))
+    home = "" if code is None or code == root else code.relative_to(root).as_posix() + "/"
+    after = dict(
+        rewrite_all(sources, names, report, home=home, first_time=first_time, progress=progress, comments=comments)
+    )
     before = {each.name: each.text for each in sources if each.name in after}
     python = [after.get(each.name, each.text) for each in sources]
     settings = Settings(
         SEASON_2027.packages.wpilib,
+        dict(names.corrections["vendor_versions"]),
         dict(names.corrections["vendors"]),
         report,
         drivers=any(b"wpilib_drivers" in text for text in python),

@@ -38,12 +38,14 @@ def rewrite_all(
     table: Table,
     report: Report,
     *,
+    home: str = "",
     first_time: bool,
     progress: Progress = lambda doing, done, of: None,
     comments: bool = False,
 ) -> Mapping[str, bytes]:
     """Return the new content of each file that changes, by its name.
 
+    :param home: the directory with robot.py, whose modules import each other, with a `/`; "" for the project's own
     :param first_time: the project is still one of 2026
     :param progress: called with what is done, and how much of it
     :param comments: write what must be changed by hand into the files, too
@@ -53,7 +55,7 @@ def rewrite_all(
         progress("reading", position, len(sources))
         try:
             tree = cst.parse_module(source.text)
-            modules[source.name] = Module(source.path, _module_name(source.name), tree)
+            modules[source.name] = Module(source.path, _module_name(source.name.removeprefix(home)), tree)
         except (cst.ParserSyntaxError, UnicodeDecodeError) as error:
             line = getattr(error, "raw_line", 1)
             report.add(source.name, line, "This is no valid Python, so the file stays as it is.", "Correct it first.")

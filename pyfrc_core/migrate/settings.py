@@ -28,12 +28,16 @@ class Settings:
     """The settings files of one project.
 
     :param version: of WPILib in the new season
+    :param versions: of vendors' packages that have one for the new season
     :param vendors: what is known about vendors' packages, by the name of their module
     :param drivers: the robot needs the package of the PWM motor controllers
     """
 
-    def __init__(self, version: str, vendors: dict[str, str], report: Report, *, drivers: bool) -> None:
+    def __init__(
+        self, version: str, versions: dict[str, str], vendors: dict[str, str], report: Report, *, drivers: bool
+    ) -> None:
         self._version = version
+        self._versions = versions
         self._vendors = vendors
         self._report = report
         self._drivers = drivers
@@ -93,6 +97,8 @@ class Settings:
 
         def replaced(found: re.Match[str]) -> str:
             package = re.sub(r"[-_.]+", "-", found["name"]).lower()
+            if package in self._versions:
+                return f"{found['name']}{found['extras'] or ''}=={self._versions[package]}"
             if "2026" not in found["versions"]:
                 return found[0]
             if _WPILIB.fullmatch(package):

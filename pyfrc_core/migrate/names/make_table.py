@@ -1,8 +1,11 @@
 """Write `table.json` anew from the packages of two seasons.
 
-Run it with the site-packages directories of environments that have each season's packages; none of them is imported:
+Run it with the site-packages directories of environments that have each season's packages; none of them is imported.
+After `--`, those of the new season:
 
-    python -m pyfrc_core.migrate.names.make_table VENV_2026/lib/python3.11/site-packages VENV_2027/lib/.../site-packages
+    python -m pyfrc_core.migrate.names.make_table .venv/lib/python3.11/site-packages -- venv27/lib/python3.13/site-packages
+
+It was made from wpilib 2026.2.2 and robotpy-rev 2026.0.4, and from wpilib 2027.0.0a7 and robotpy-rev 2027.0.0a7.post1.
 
 A correction that names what is not there is an error, so that corrections do not outlive what they correct.
 """
@@ -18,9 +21,9 @@ from .packages import Class, Packages
 from .table import HERE, corrections
 
 
-def main(old_site: Path, new_site: Path) -> int:
+def main(old_sites: list[Path], new_sites: list[Path]) -> int:
     """Write the table, and return 1 if a correction is wrong."""
-    old, new = Packages(old_site), Packages(new_site)
+    old, new = Packages(*old_sites), Packages(*new_sites)
     old.read()
     new.read()
     moved = corrections()["moved"]
@@ -41,4 +44,5 @@ def _exists(packages: Packages, path: str) -> bool:
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2])))
+    cut = sys.argv.index("--")
+    sys.exit(main([Path(each) for each in sys.argv[1:cut]], [Path(each) for each in sys.argv[cut + 1 :]]))

@@ -28,6 +28,7 @@ PACKAGES = (
     "wpilog",
     "romi",
     "xrp",
+    "rev",
 )
 
 _CONTAINERS = {"list", "List", "tuple", "Tuple", "Sequence", "Iterable", "set", "Annotated", "Optional", "Union"}
@@ -70,13 +71,13 @@ class _Imported:
 
 
 class Packages:
-    """The packages in a site-packages directory.
+    """The packages in some site-packages directories.
 
-    :param site: the directory
+    :param sites: the directories
     """
 
-    def __init__(self, site: Path) -> None:
-        self._site = site
+    def __init__(self, *sites: Path) -> None:
+        self._sites = sites
         self._trees: dict[str, ast.Module | None] = {}
         self._names: dict[str, dict[str, _Definition | _Imported | str]] = {}
         self._public: dict[str, str] = {}
@@ -128,19 +129,25 @@ class Packages:
     def _public_modules(self) -> list[str]:
         found = []
         for package in PACKAGES:
-            root = self._site / package
+            root = self._home(package)
             files = [*root.rglob("*.py"), *root.rglob("*.pyi")]
             for file in files:
-                parts = file.relative_to(self._site).with_suffix("").parts
+                parts = file.relative_to(root.parent).with_suffix("").parts
                 if parts[-1] == "__init__":
                     parts = parts[:-1]
                 if not any(part.startswith("_") or part in ("testing", "src", "tests") for part in parts):
                     found.append(".".join(parts))
         return list(dict.fromkeys(found))
 
+    def _home(self, module: str) -> Path:
+        """Return where a module is, without its suffix."""
+        parts = module.split(".")
+        site = next((each for each in self._sites if (each / parts[0]).is_dir()), self._sites[0])
+        return site.joinpath(*parts)
+
     def _tree(self, module: str) -> ast.Module | None:
         if module not in self._trees:
-            base = self._site.joinpath(*module.split("."))
+            base = self._home(module)
             files = [base / "__init__.py", base / "__init__.pyi", base.with_suffix(".pyi"), base.with_suffix(".py")]
             file = next((each for each in files if each.is_file()), None)
             self._trees[module] = None if file is None else ast.parse(file.read_text(encoding="utf-8"))
@@ -192,7 +199,7 @@ class Packages:
         source = statement.module or ""
         if statement.level:
             package = module.split(".")
-            is_package = self._site.joinpath(*package).is_dir()
+            is_package = self._home(module).is_dir()
             cut = statement.level - (1 if is_package else 0)
             package = package[: len(package) - cut] if cut else package
             source = ".".join([*package, *([source] if source else [])])

@@ -10,9 +10,10 @@ import libcst as cst
 from ..types.atoms import Atom, Bound, Obj, OwnObj, Ref
 from ..types.scopes import Scope
 from .arguments import Arguments
-from .edits import fill, replaced
+from .edits import fill, renamed, replaced
 from .file import FileRewriter, Found
 
+_BOTH = "wpilib.interfaces.GenericHID.RumbleType.kBothRumble"
 _TABLE = '<ntcore.NetworkTableInstance>.get_default().get_table("SmartDashboard")'
 
 
@@ -199,6 +200,11 @@ class Calls:
             self._file.removed.add(node)
             self._file.say(node, f"{found.path} is not needed any more: removed.", done=True)
         func = node.value.func
+        for arg in node.value.args:
+            if isinstance(arg.value, cst.Attribute) and self._is_both(arg.value, scope):
+                self._file.handled.add(arg.value)
+                self._file.edit(arg.value, renamed("LEFT_RUMBLE"))
+                self._file.edit(node, _for_both)
         if (
             self._file.first_time
             and any(path in self._corrections["returns_new"]["methods"] for path in paths)
@@ -212,6 +218,15 @@ class Calls:
                 return cst.Assign([cst.AssignTarget(target)], updated.value)
 
             self._file.edit(node, assigned)
+
+    def _is_both(self, node: cst.Attribute, scope: Scope) -> bool:
+        return any(each.path == _BOTH for each in self._file.look_up(node, scope))
+
+
+def _for_both(statement: cst.Expr) -> cst.FlattenSentinel[cst.BaseSmallStatement]:
+    code = cst.Module([]).code_for_node(statement).replace("LEFT_RUMBLE", "RIGHT_RUMBLE")
+    line = cst.ensure_type(cst.parse_statement(code), cst.SimpleStatementLine)
+    return cst.FlattenSentinel([statement, line.body[0]])
 
 
 def key_of(node: cst.Call) -> str | None:

@@ -36,7 +36,11 @@ class Apply(cst.CSTTransformer):
     def leave_SimpleStatementLine(
         self, original_node: cst.SimpleStatementLine, updated_node: cst.SimpleStatementLine
     ) -> Any:
-        """Replace the import statements of a line."""
+        """Replace the import statements of a line; what has become several statements has a line for each."""
+        if len(original_node.body) == 1 and len(updated_node.body) > 1:
+            first, *others = updated_node.body
+            rest = [cst.SimpleStatementLine([_without_semicolon(each)]) for each in others]
+            return cst.FlattenSentinel([updated_node.with_changes(body=[_without_semicolon(first)]), *rest])
         if not any(each in self._statements for each in original_node.body):
             return updated_node
         body: list[cst.BaseSmallStatement] = []

@@ -32,6 +32,14 @@ _SAME = {
 _ITEMS = {"values", "items", "copy"}
 _ITEM = {"get", "pop", "setdefault", "popleft"}
 
+_OPERATORS: dict[type[cst.CSTNode], str] = {
+    cst.Add: "__add__",
+    cst.Subtract: "__sub__",
+    cst.Multiply: "__mul__",
+    cst.Divide: "__truediv__",
+    cst.BitAnd: "__and__",
+    cst.BitOr: "__or__",
+}
 _AUTONOMOUS = "robotpy_ext.autonomous.StatefulAutonomous"
 
 
@@ -83,7 +91,8 @@ class Inference:
         if isinstance(node, cst.BinaryOperation):
             return self._operation(node, scope)
         if isinstance(node, cst.UnaryOperation):
-            return self._results(self.infer(node.expression, scope), "__neg__")
+            name = "__invert__" if isinstance(node.operator, cst.BitInvert) else "__neg__"
+            return self._results(self.infer(node.expression, scope), name)
         if isinstance(node, cst.Tuple | cst.List | cst.Set):
             return _many(self.infer(each.value, scope) for each in node.elements)
         if isinstance(node, cst.Dict):
@@ -300,8 +309,7 @@ class Inference:
         return _union(self._result(each) for each in self.attribute(owners, method))
 
     def _operation(self, node: cst.BinaryOperation, scope: Scope) -> Atoms:
-        method = {cst.Add: "__add__", cst.Subtract: "__sub__", cst.Multiply: "__mul__", cst.Divide: "__truediv__"}
-        name = method.get(type(node.operator), "")
+        name = _OPERATORS.get(type(node.operator), "")
         left, right = self.infer(node.left, scope), self.infer(node.right, scope)
         return self._results(left, name) | self._results(right, name.replace("__", "__r", 1))
 
@@ -321,7 +329,7 @@ class Inference:
             return self.annotated(node.annotation.annotation, function.outer)
         found = self.infer(node.default, function.outer) if node.default is not None else NOTHING
         found |= self._passed(node, function)
-        return found or (self._robots() if node.name.value == "robot" else NOTHING)
+        return found or self._fixture(node.name.value)
 
     def _passed(self, node: cst.Param, function: OwnFunction) -> Atoms:
         """Return what the project's own calls pass for a parameter."""
@@ -339,6 +347,15 @@ class Inference:
                 if arg.keyword.value == node.name.value if arg.keyword else index == position:
                     found |= self.infer(arg.value, scope)
         return found
+
+    def _fixture(self, name: str) -> Atoms:
+        """Return what pytest, or pyfrc, passes for a parameter of this name."""
+        fixtures = [each for each in self._functions.values() if each.name == name and "fixture" in each.decorators()]
+        if fixtures:
+            return _union(self._returned(each) for each in fixtures)
+        if name == "physics_controller":
+            return frozenset({Obj("pyfrc.physics.core.PhysicsInterface")})
+        return self._robots() if name == "robot" else NOTHING
 
     def _robots(self) -> Atoms:
         """Return the robot classes: what tests and physics.py call `robot`."""

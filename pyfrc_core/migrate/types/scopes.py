@@ -306,6 +306,12 @@ class _Builder(cst.CSTVisitor):
         if node.value is not None and self._scope.function is not None:
             self._scope.function.returned.append((node.value, self._scope))
 
+    def visit_Yield(self, node: cst.Yield) -> None:
+        # A fixture gives its test what it yields.
+        function = self._scope.function
+        if isinstance(node.value, cst.BaseExpression) and function is not None and "fixture" in function.decorators():
+            function.returned.append((node.value, self._scope))
+
     def visit_ListComp(self, node: cst.ListComp) -> bool:
         return self._comprehension(node.for_in, [node.elt])
 
