@@ -40,10 +40,12 @@ def command(directory: Path | None, check: bool, diff: bool, comments: bool, unc
     Exit codes: 0 nothing is left to do by hand (with --check: and nothing would change), 1 something is,
     2 wrong usage, or Git has changes that are in no commit.
     """
-    from pyfrc_core.migrate.migration import migrate, need_libcst, refuse_uncommitted
-    from pyfrc_core.project import find_project
+    from pyfrc_core.migrate import need_libcst
 
     need_libcst()
+    from pyfrc_core.migrate.migration import migrate, refuse_uncommitted
+    from pyfrc_core.project import find_project
+
     project = find_project(directory)
     root = project.pyproject.parent if project.pyproject.is_file() else project.root
     writes = not (check or diff)
@@ -64,9 +66,8 @@ def command(directory: Path | None, check: bool, diff: bool, comments: bool, unc
 
 def _print(done: Migration, written: bool) -> None:
     count = len(done.after)
-    files = f"{count} file{'' if count == 1 else 's'}"
     by_hand, to_check = done.report.by_hand(), done.report.to_check()
-    hint(f"{'Rewrote' if written else 'Would rewrite'} {files} of {done.files} Python files and the settings.")
+    hint(f"{'Rewrote' if written else 'Would rewrite'} {_files(count)} (Python files: {done.files}).")
     if to_check:
         hint(f"\nRewritten, but look at them ({len(to_check)}):", bold=True)
         for remark in to_check:
@@ -77,6 +78,10 @@ def _print(done: Migration, written: bool) -> None:
             click.echo(f"  {remark}")
     elif count:
         hint("\nNothing is left to do by hand. Run the tests with 2027: pyfrc test")
+
+
+def _files(count: int) -> str:
+    return f"{count} file{'' if count == 1 else 's'}"
 
 
 def _as_json(done: Migration) -> dict[str, object]:

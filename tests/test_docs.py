@@ -172,6 +172,23 @@ def test_the_examples_in_the_simulation_guide_work(project) -> None:
     assert "failure: None\nmode: autonomous\nleft motor: 0.49" in done.stdout, done.stdout
 
 
+def test_the_robot_in_the_guide_to_2027_becomes_what_is_shown_there(make_project) -> None:
+    pytest.importorskip("libcst")
+    document = "docs/migrate.md"
+    project = make_project(files(document))
+    check, migrate = (shlex.split(command)[1:] for command in commands(document))
+    assert project.run(*check).code == 1
+    result = project.run(*migrate)
+    assert result.stdout == blocks(document, "text")[0]
+    assert (project.path / "robot.py").read_text("utf-8") == blocks(document, "py")[0]
+
+
+def test_the_guide_to_2027_lists_every_option() -> None:
+    (table,) = re.findall(r"^\| option \|.*\n(?:\|.*\n)+", (ROOT / "docs/migrate.md").read_text("utf-8"), re.MULTILINE)
+    options = {name for each in cli.get_command(CONTEXT, "migrate").params for name in each.opts if name[:2] == "--"}
+    assert set(re.findall(r"`(--\w+)`", table)) == options - {"--project", "--verbose", "--quiet"}
+
+
 COMING_FROM = ("docs/from_pyfrc_2019.md", "docs/from_todays_pyfrc.md")
 
 

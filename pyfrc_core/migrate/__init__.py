@@ -5,3 +5,20 @@ Whether a name is WPILib's or the team's is decided by what the object is, not b
 out. `names` has what became of each of WPILib's names. `rewrite` changes them with LibCST, which keeps comments and
 layout. Nothing imports WPILib, so that a machine with either season can migrate.
 """
+
+from __future__ import annotations
+
+from ..errors import PyfrcError
+
+
+def need_libcst() -> None:
+    """Check that LibCST is installed.
+
+    :raises PyfrcError: with how to install it
+    """
+    try:
+        import libcst  # noqa: F401
+    except ImportError:
+        raise PyfrcError(
+            "pyfrc migrate needs the package libcst", remedy='Install it with: python -m pip install "pyfrc[migrate]"'
+        ) from None

@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import NamedTemporaryFile
 
 from ..config.robotpy import load_robotpy_version
-from ..errors import PyfrcError, UsageError
+from ..errors import UsageError
 from ..season.season_2027 import SEASON_2027
 from .names.table import table
 from .project import Progress, Source, rewrite_all
@@ -147,19 +147,6 @@ def refuse_uncommitted(root: Path) -> None:
             f"{changed[0]}{more}: changed, and in no commit",
             remedy="Commit first, so that you can look at what migrate changes and go back; or add --uncommitted.",
         )
-
-
-def need_libcst() -> None:
-    """Check that LibCST is installed.
-
-    :raises PyfrcError: with how to install it
-    """
-    try:
-        import libcst  # noqa: F401
-    except ImportError:
-        raise PyfrcError(
-            "pyfrc migrate needs the package libcst", remedy='Install it with: python -m pip install "pyfrc[migrate]"'
-        ) from None
 
 
 def _settings_files(root: Path, settings: Settings) -> Iterator[tuple[str, str, str]]:

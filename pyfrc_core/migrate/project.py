@@ -80,12 +80,11 @@ class _Project:
         self.camel_names = table.camel_names()
         sites = [node for module in modules.values() for node, _ in module.sites]
         self.shared = {binding.path for module in modules.values() for binding in module.scope.bindings.get("*", ())}
+        readers = {each for each in table.corrections["dashboard_table"] if not each.startswith("put")}
         reads = {
             key_of(node)
             for node in sites
-            if isinstance(node, cst.Call)
-            and isinstance(node.func, cst.Attribute)
-            and node.func.attr.value.startswith(("get", "setDefault"))
+            if isinstance(node, cst.Call) and isinstance(node.func, cst.Attribute) and node.func.attr.value in readers
         }
         self.dashboard_reads = frozenset(each for each in reads if each is not None)
         names = {each.node.name.value for module in modules.values() for each in module.classes}

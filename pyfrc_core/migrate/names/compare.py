@@ -27,19 +27,21 @@ _HID = "wpilib.GenericHID"
 _COMMAND_HID = "commands2.button.CommandGenericHID"
 
 
-def compare(old: Packages, new: Packages, moved: Mapping[str, str]) -> dict[str, object]:
+def compare(old: Packages, new: Packages, moved: Mapping[str, str], named: frozenset[str]) -> dict[str, object]:
     """Return the table.
 
     :param moved: corrections: old path to new path, or to the new name of a member
+    :param named: members that must be in the table even if nothing about them changed
     """
-    return _Comparison(old, new, moved).table()
+    return _Comparison(old, new, moved, named).table()
 
 
 class _Comparison:
-    def __init__(self, old: Packages, new: Packages, moved: Mapping[str, str]) -> None:
+    def __init__(self, old: Packages, new: Packages, moved: Mapping[str, str], named: frozenset[str]) -> None:
         self._old = old
         self._new = new
         self._moved = moved
+        self._named = named
         self._by_name: dict[str, list[str]] = {}
         for path in new.entries:
             self._by_name.setdefault(normalized(path.rpartition(".")[2]), []).append(path)
@@ -118,13 +120,13 @@ class _Comparison:
     def _members(self, path: str, target: str, entry: Class) -> list[str]:
         found = []
         for name, member in entry.members.items():
-            if isinstance(member, Class) or not _matters(name, member):
+            if isinstance(member, Class) or not (_matters(name, member) or f"{path}.{name}" in self._moved):
                 continue
             counterpart, new = self._member(path, target, name)
             spelling = "" if counterpart == snake_case(name) else f"={counterpart}"
             type_ = member.returns if isinstance(member, Function) else member.type
             extra = _parameters(member, new)
-            if spelling or type_ or extra or name != snake_case(name):
+            if spelling or type_ or extra or name != snake_case(name) or f"{path}.{name}" in self._named:
                 found.append(f"{name}{spelling}{f':{type_}' if type_ else ''}{extra}")
         return [*found, *self._inherited(path, target, entry)]
 

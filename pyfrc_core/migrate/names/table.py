@@ -72,6 +72,7 @@ class Table:
         self._aliases: Mapping[str, str] = data["aliases"]
         self._lines: Mapping[str, str] = {**data["names"], **{path: f"();{members}" for path, members in ours.items()}}
         self._names: dict[str, Name | None] = {}
+        self._camel: frozenset[str] | None = None
 
     def canonical(self, path: str) -> str:
         """Return the first path of a name that has several."""
@@ -124,11 +125,14 @@ class Table:
 
     def camel_names(self) -> frozenset[str]:
         """Return all names of members that are spelled differently now."""
+        if self._camel is not None:
+            return self._camel
         found = set()
         for line in self._lines.values():
             members = line.partition(";")[2].split(" ")
             found |= {each for member in members if (each := re.split("[=:{]", member)[0]) != snake_case(each)}
-        return frozenset(found - {""})
+        self._camel = frozenset(found - {""})
+        return self._camel
 
 
 def corrections() -> dict[str, Any]:

@@ -10,10 +10,11 @@ import libcst as cst
 from ..types.atoms import Atom, Bound, Obj, OwnObj, Ref
 from ..types.scopes import Scope
 from .arguments import Arguments
-from .edits import fill, renamed, replaced
+from .edits import changed, fill, renamed, replaced
 from .file import FileRewriter, Found
 
 _BOTH = "wpilib.interfaces.GenericHID.RumbleType.kBothRumble"
+_ADD_TO_TAB = "wpilib.shuffleboard.ShuffleboardContainer.add"
 _TABLE = '<ntcore.NetworkTableInstance>.get_default().get_table("SmartDashboard")'
 
 
@@ -76,6 +77,11 @@ class Calls:
         plain = not any(arg.star or arg.keyword for arg in node.args)
         if template is None or not (plain or "{0}" not in template):
             return False
+        if template.endswith(".u(0)") and node in self._file.module.subscripted:
+            return False  # the number is taken from the array already
+        for position, arg in enumerate(node.args):
+            if "{args}" not in template and f"{{{position}}}" not in template:
+                self._file.consume_all(arg.value, scope)
         self.replace(node, scope, template)
         return True
 
@@ -198,7 +204,10 @@ class Calls:
             self._file.consume(node.value.func, scope)
             self._file.edit(node, lambda updated: cst.Pass(semicolon=updated.semicolon))
             self._file.removed.add(node)
-            self._file.say(node, f"{found.path} is not needed any more: removed.", done=True)
+            advice = self._file.table.advice(found.path) if found.path in self._corrections["gone"] else ""
+            self._file.say(node, f"{found.path} is gone, and removed here.", advice, done=True)
+        if found.path == _ADD_TO_TAB and len(node.value.args) == 2:
+            self._add_to_tab(node.value)
         func = node.value.func
         for arg in node.value.args:
             if isinstance(arg.value, cst.Attribute) and self._is_both(arg.value, scope):
@@ -218,6 +227,18 @@ class Calls:
                 return cst.Assign([cst.AssignTarget(target)], updated.value)
 
             self._file.edit(node, assigned)
+
+    def _add_to_tab(self, node: cst.Call) -> None:
+        self._file.handled.add(node.func)
+        self._file.edit(node.func, renamed("log"))
+        for arg in node.args:
+            self._file.edit(arg, changed(keyword=None, equal=cst.MaybeSentinel.DEFAULT))
+        self._file.say(
+            node,
+            "A Shuffleboard tab is a telemetry table now, which logs the values of this moment.",
+            "Call it in robot_periodic to log them again and again.",
+            done=True,
+        )
 
     def _is_both(self, node: cst.Attribute, scope: Scope) -> bool:
         return any(each.path == _BOTH for each in self._file.look_up(node, scope))

@@ -198,6 +198,13 @@ class FileRewriter:
             self._count(node, scope, self.imports.consumed)
         return node
 
+    def consume_all(self, node: cst.CSTNode, scope: Scope) -> None:
+        """Mark an expression that is left out."""
+        if isinstance(node, cst.BaseExpression):
+            self.consume(node, scope)
+        for child in node.children:
+            self.consume_all(child, scope)
+
     def _count(self, node: cst.Name, scope: Scope, counts: dict[cst.ImportAlias, int]) -> None:
         for binding in scope.find(node.value):
             statement = binding.node

@@ -60,11 +60,13 @@ class Imports:
         module, rest = self.split(path)
         if not rest:
             return self._module_name(module)
-        if self._is_from(root, scope):
-            first = rest.partition(".")[0]
-            if first not in self._bound or self._gives(first, f"{module}.{first}", scope):
-                if not self._gives(first, f"{module}.{first}", scope):
-                    self._wanted_names.setdefault(module, set()).add(first)
+        first = rest.partition(".")[0]
+        # A function is called by its module's name: `telemetry.log` says more than `log`.
+        if self._is_from(root, scope) and first[0].isupper():
+            if self._gives(first, f"{module}.{first}", scope):
+                return rest
+            if first not in self._bound:
+                self._wanted_names.setdefault(module, set()).add(first)
                 return rest
         return f"{self._module_name(module)}.{rest}"
 
@@ -228,7 +230,8 @@ class Imports:
             local = cst.Name(name) if name != module else None
             wanted.append(_import_module(module, local))
         for module, names in sorted(self._wanted_names.items()):
-            wanted.append(_import_names(module, names))
+            if not self._extend(found, module, names):
+                wanted.append(_import_names(module, names))
         if not wanted:
             return
         ours = [each for each in self._top if self._is_ours(each)]
@@ -237,6 +240,22 @@ class Imports:
             self.at_top = wanted
         else:
             found[anchor] = [*found.get(anchor, [anchor]), *wanted]
+
+    def _extend(self, found: dict[cst.CSTNode, list[cst.BaseSmallStatement]], module: str, names: set[str]) -> bool:
+        """Add names to an import of the same module, if there is one."""
+        for top in self._top:
+            statements = found.get(top, [top])
+            for index, each in enumerate(statements):
+                if isinstance(each, cst.ImportFrom) and dotted(each.module) == module and not each.relative:
+                    if isinstance(each.names, cst.ImportStar):
+                        continue
+                    there = {dotted(alias.name): alias for alias in each.names}
+                    new = {name: cst.ImportAlias(cst.Name(name)) for name in names}
+                    aliases = [alias for _, alias in sorted({**new, **there}.items())]
+                    aliases = [alias.with_changes(comma=cst.MaybeSentinel.DEFAULT) for alias in aliases]
+                    found[top] = [*statements[:index], each.with_changes(names=aliases), *statements[index + 1 :]]
+                    return True
+        return False
 
     #: Statements to add where no import is to put them after.
     at_top: list[cst.BaseSmallStatement] = []  # noqa: RUF012 - replaced, never changed

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from .scopes import Module, OwnClass, OwnFunction
@@ -76,3 +77,37 @@ class Many:
 Atom = Ref | Obj | Bound | OwnModuleRef | OwnRef | OwnObj | OwnCallable | Many
 Atoms = frozenset[Atom]
 NOTHING: Atoms = frozenset()
+
+
+def union(of: Iterable[Atoms]) -> Atoms:
+    """Return all atoms of several sets."""
+    return frozenset().union(*of)
+
+
+def many(of: Iterable[Atoms]) -> Atoms:
+    """Return a container of these."""
+    found = union(of)
+    return frozenset({Many(found)}) if found else NOTHING
+
+
+def elements(of: Atoms) -> Atoms:
+    """Return what is in containers."""
+    return union(each.of for each in of if isinstance(each, Many))
+
+
+def instance(of: Ref | OwnRef) -> Atom:
+    """Return an object of a class."""
+    return OwnObj(of.own) if isinstance(of, OwnRef) else Obj(of.path)
+
+
+def of_type(type_: str, receiver: Atom, *, values_only: bool = False) -> Atoms:
+    """Return an object of a type as the table writes it: a path, `[path]`, or `self`."""
+    if not type_:
+        return NOTHING
+    if type_ == "self":
+        if isinstance(receiver, Ref):
+            return frozenset({Obj(receiver.path)})
+        return NOTHING if values_only else frozenset({receiver})
+    if type_.startswith("["):
+        return frozenset({Many(of_type(type_[1:-1], receiver))})
+    return frozenset({Obj(type_)})

@@ -6,12 +6,29 @@ nothing: the empty set. Parameters without an annotation are what the project's 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import libcst as cst
 
 from ..names.table import Table
-from .atoms import NOTHING, Atom, Atoms, Bound, Many, Obj, OwnCallable, OwnModuleRef, OwnObj, OwnRef, Ref
+from .atoms import (
+    NOTHING,
+    Atom,
+    Atoms,
+    Bound,
+    Many,
+    Obj,
+    OwnCallable,
+    OwnModuleRef,
+    OwnObj,
+    OwnRef,
+    Ref,
+    elements,
+    instance,
+    many,
+    of_type,
+    union,
+)
 from .scopes import Binding, Module, OwnClass, OwnFunction, Scope
 
 _SINGLE = {"Optional", "Union", "Final", "ClassVar", "Annotated", "Type", "type"}
@@ -57,8 +74,14 @@ class Inference:
         self._classes = {each.node: each for module in modules for each in module.classes}
         self._functions = {each.node: each for module in modules for each in module.functions}
         self._calls: dict[str, list[tuple[cst.Call, Scope]]] = {}
+        #: The call that a lambda is passed to.
+        self._receivers: dict[cst.CSTNode, tuple[cst.Call, Scope]] = {}
         for module in modules:
             for node, scope in module.sites:
+                if isinstance(node, cst.Call):
+                    self._receivers |= {
+                        arg.value: (node, scope) for arg in node.args if isinstance(arg.value, cst.Lambda)
+                    }
                 if isinstance(node, cst.Call) and isinstance(node.func, cst.Name | cst.Attribute):
                     name = node.func.value if isinstance(node.func, cst.Name) else node.func.attr.value
                     self._calls.setdefault(name, []).append((node, scope))
@@ -94,15 +117,15 @@ class Inference:
             name = "__invert__" if isinstance(node.operator, cst.BitInvert) else "__neg__"
             return self._results(self.infer(node.expression, scope), name)
         if isinstance(node, cst.Tuple | cst.List | cst.Set):
-            return _many(self.infer(each.value, scope) for each in node.elements)
+            return many(self.infer(each.value, scope) for each in node.elements)
         if isinstance(node, cst.Dict):
-            return _many(self.infer(each.value, scope) for each in node.elements)
+            return many(self.infer(each.value, scope) for each in node.elements)
         if isinstance(node, cst.ListComp | cst.SetComp | cst.GeneratorExp | cst.DictComp):
             element = node.value if isinstance(node, cst.DictComp) else node.elt
-            return _many([self.infer(element, scope.module.comprehensions.get(element, scope))])
+            return many([self.infer(element, scope.module.comprehensions.get(element, scope))])
         if isinstance(node, cst.Subscript):
             found = self.infer(node.value, scope)
-            return _elements(found) | self._results(found, "__getitem__")
+            return elements(found) | self._results(found, "__getitem__")
         if isinstance(node, cst.Lambda):
             return frozenset({OwnCallable(self._functions[node])}) if node in self._functions else NOTHING
         return NOTHING
@@ -126,9 +149,9 @@ class Inference:
         """Return what a name can be in a scope."""
         bindings = scope.find(name)
         if bindings:
-            return _union(self.bound(each, name) for each in bindings)
+            return union(self.bound(each, name) for each in bindings)
         stars = scope.module.scope.bindings.get("*", ())
-        return _union(self._member_of_module(each.path, name) for each in stars)
+        return union(self._member_of_module(each.path, name) for each in stars)
 
     def bound(self, binding: Binding, name: str) -> Atoms:
         """Return what a binding gives its name."""
@@ -148,9 +171,9 @@ class Inference:
         if binding.kind in ("value", "element", "enter"):
             found = self.infer(binding.node, binding.scope)
             if binding.kind == "element":
-                found = _elements(found)
+                found = elements(found)
             if binding.unpacked:
-                found = _elements(found) | found
+                found = elements(found) | found
         return found
 
     def annotated(self, node: cst.CSTNode, scope: Scope) -> Atoms:
@@ -167,9 +190,9 @@ class Inference:
             inner = [each.slice.value for each in node.slice if isinstance(each.slice, cst.Index)]
             if name == "Callable":
                 return NOTHING
-            found = _union(self.annotated(each, scope) for each in inner)
+            found = union(self.annotated(each, scope) for each in inner)
             return found if name in _SINGLE else frozenset({Many(found)}) if found else NOTHING
-        return frozenset(_instance(each) for each in self.infer(node, scope) if isinstance(each, Ref | OwnRef))
+        return frozenset(instance(each) for each in self.infer(node, scope) if isinstance(each, Ref | OwnRef))
 
     # Modules
 
@@ -184,13 +207,13 @@ class Inference:
         return found or self._member_of_module(module, name)
 
     def _member_of_module(self, module: str, name: str) -> Atoms:
-        return _union(self.attribute(frozenset({each}), name) for each in self._module(module))
+        return union(self.attribute(frozenset({each}), name) for each in self._module(module))
 
     # Attributes
 
     def attribute(self, owners: Atoms, name: str) -> Atoms:
         """Return what an attribute of any of these can be."""
-        return _union(self._attribute(each, name) for each in owners)
+        return union(self._attribute(each, name) for each in owners)
 
     def _attribute(self, owner: Atom, name: str) -> Atoms:
         if isinstance(owner, OwnModuleRef):
@@ -215,11 +238,11 @@ class Inference:
             return NOTHING
         owner, member = found
         # A method, or a value of the type: the table does not say which, and only one of them makes sense.
-        return frozenset({Bound(owner, name, receiver)}) | _of_type(member.type, receiver, values_only=True)
+        return frozenset({Bound(owner, name, receiver)}) | of_type(member.type, receiver, values_only=True)
 
     def own_bases(self, own: OwnClass) -> list[OwnRef | Ref]:
         """Return the classes that a class of the team's is derived from directly."""
-        atoms = _union(self.infer(each.value, own.outer) for each in own.node.bases)
+        atoms = union(self.infer(each.value, own.outer) for each in own.node.bases)
         return [each for each in atoms if isinstance(each, OwnRef | Ref)]
 
     def lineage(self, own: OwnClass) -> tuple[list[OwnClass], list[str]]:
@@ -245,11 +268,11 @@ class Inference:
             bindings = self.own_bindings(own, name)
             if not bindings:
                 continue
-            found = _union(self.bound(each, name) for each in bindings)
+            found = union(self.bound(each, name) for each in bindings)
             methods = [each for each in found if isinstance(each, OwnCallable)]
             read = [each for each in methods if {"property", "cached_property"} & each.function.decorators()]
-            return found | _union(self._returned(each.function) for each in read)
-        found = _union(self._member(owner, path, name) for path in theirs)
+            return found | union(self._returned(each.function) for each in read)
+        found = union(self._member(owner, path, name) for path in theirs)
         return found or (self._components(name) if _AUTONOMOUS in theirs else NOTHING)
 
     def _components(self, name: str) -> Atoms:
@@ -260,7 +283,7 @@ class Inference:
                 dictionaries = [arg.value, *self.values(arg.value, scope)]
                 for each in dictionaries:
                     if isinstance(each, cst.Dict):
-                        found |= _union(
+                        found |= union(
                             self.infer(item.value, scope)
                             for item in each.elements
                             if isinstance(item, cst.DictElement)
@@ -275,11 +298,11 @@ class Inference:
         if isinstance(node.func, cst.Name) and not scope.find(node.func.value):
             name = node.func.value
             if name == "super":
-                own = _class_around(scope)
+                own = scope.class_around()
                 return frozenset({OwnObj(own, above=True)}) if own is not None else NOTHING
             if name in _SAME or name in ("next", "max", "min"):
-                found = _union(self.infer(each.value, scope) for each in node.args)
-                return found if name in _SAME else _elements(found) | found
+                found = union(self.infer(each.value, scope) for each in node.args)
+                return found if name in _SAME else elements(found) | found
         called = self.infer(node.func, scope)
         if isinstance(node.func, cst.Attribute):
             owner = self.infer(node.func.value, scope)
@@ -287,8 +310,8 @@ class Inference:
             if kept and node.func.attr.value in _ITEMS:
                 return kept
             if kept and node.func.attr.value in _ITEM:
-                return _elements(kept)
-        return _union(self._result(each) for each in called)
+                return elements(kept)
+        return union(self._result(each) for each in called)
 
     def _result(self, called: Atom) -> Atoms:
         if isinstance(called, OwnRef):
@@ -299,14 +322,14 @@ class Inference:
             name = self._table.name(called.path)
             if name is None:
                 return NOTHING
-            return frozenset({Obj(called.path)}) if name.is_class else _of_type(name.type, called)
+            return frozenset({Obj(called.path)}) if name.is_class else of_type(name.type, called)
         if isinstance(called, Bound):
             found = self._table.member(called.owner, called.name)
-            return NOTHING if found is None else _of_type(found[1].type, called.receiver)
+            return NOTHING if found is None else of_type(found[1].type, called.receiver)
         return NOTHING
 
     def _results(self, owners: Atoms, method: str) -> Atoms:
-        return _union(self._result(each) for each in self.attribute(owners, method))
+        return union(self._result(each) for each in self.attribute(owners, method))
 
     def _operation(self, node: cst.BinaryOperation, scope: Scope) -> Atoms:
         name = _OPERATORS.get(type(node.operator), "")
@@ -317,7 +340,7 @@ class Inference:
         node = function.node
         if isinstance(node, cst.FunctionDef) and node.returns is not None:
             return self.annotated(node.returns.annotation, function.outer)
-        return _union(self.infer(value, scope) for value, scope in function.returned)
+        return union(self.infer(value, scope) for value, scope in function.returned)
 
     # Parameters
 
@@ -329,7 +352,16 @@ class Inference:
             return self.annotated(node.annotation.annotation, function.outer)
         found = self.infer(node.default, function.outer) if node.default is not None else NOTHING
         found |= self._passed(node, function)
-        return found or self._fixture(node.name.value)
+        return found or self._from_callback(function) or self._fixture(node.name.value)
+
+    def _from_callback(self, function: OwnFunction) -> Atoms:
+        """Return what WPILib passes to a lambda."""
+        call, scope = self._receivers.get(function.node, (None, None))
+        if call is None or scope is None:
+            return NOTHING
+        paths = [f"{each.owner}.{each.name}" for each in self.infer(call.func, scope) if isinstance(each, Bound)]
+        types = self._table.corrections["callbacks"]
+        return frozenset(Obj(types[path]) for path in paths if path in types)
 
     def _passed(self, node: cst.Param, function: OwnFunction) -> Atoms:
         """Return what the project's own calls pass for a parameter."""
@@ -352,7 +384,7 @@ class Inference:
         """Return what pytest, or pyfrc, passes for a parameter of this name."""
         fixtures = [each for each in self._functions.values() if each.name == name and "fixture" in each.decorators()]
         if fixtures:
-            return _union(self._returned(each) for each in fixtures)
+            return union(self._returned(each) for each in fixtures)
         if name == "physics_controller":
             return frozenset({Obj("pyfrc.physics.core.PhysicsInterface")})
         return self._robots() if name == "robot" else NOTHING
@@ -365,41 +397,3 @@ class Inference:
             if any("wpilib.RobotBase" in self._table.ancestors(path) for path in self.lineage(own)[1])
         ]
         return frozenset(OwnObj(each) for each in robots)
-
-
-def _class_around(scope: Scope) -> OwnClass | None:
-    each: Scope | None = scope
-    while each is not None:
-        if each.kind == "class":
-            return each.own_class
-        each = each.parent
-    return None
-
-
-def _union(of: Iterable[Atoms]) -> Atoms:
-    return frozenset().union(*of)
-
-
-def _many(of: Iterable[Atoms]) -> Atoms:
-    found = _union(of)
-    return frozenset({Many(found)}) if found else NOTHING
-
-
-def _elements(of: Atoms) -> Atoms:
-    return _union(each.of for each in of if isinstance(each, Many))
-
-
-def _instance(of: Ref | OwnRef) -> Atom:
-    return OwnObj(of.own) if isinstance(of, OwnRef) else Obj(of.path)
-
-
-def _of_type(type_: str, receiver: Atom, *, values_only: bool = False) -> Atoms:
-    if not type_:
-        return NOTHING
-    if type_ == "self":
-        if isinstance(receiver, Ref):
-            return frozenset({Obj(receiver.path)})
-        return NOTHING if values_only else frozenset({receiver})
-    if type_.startswith("["):
-        return frozenset({Many(_of_type(type_[1:-1], receiver))})
-    return frozenset({Obj(type_)})

@@ -51,6 +51,13 @@ class Scope:
             scope = scope.parent
         return ()
 
+    def class_around(self) -> OwnClass | None:
+        """Return the class whose code this is."""
+        scope: Scope | None = self
+        while scope is not None and scope.kind != "class":
+            scope = scope.parent
+        return scope.own_class if scope is not None else None
+
 
 @dataclass(eq=False)
 class OwnFunction:
@@ -117,6 +124,8 @@ class Module:
     functions: list[OwnFunction] = field(default_factory=list)
     #: Strings that are annotations.
     annotations: list[tuple[cst.SimpleString, Scope]] = field(default_factory=list)
+    #: Calls whose result is indexed.
+    subscripted: set[cst.CSTNode] = field(default_factory=set)
     #: The scope of each part of a comprehension.
     comprehensions: dict[cst.CSTNode, Scope] = field(default_factory=dict)
 
@@ -169,6 +178,9 @@ class _Builder(cst.CSTVisitor):
 
     def visit_Expr(self, node: cst.Expr) -> None:
         self._site(node)
+
+    def visit_Subscript(self, node: cst.Subscript) -> None:
+        self._module.subscripted.add(node.value)
 
     def visit_SimpleString(self, node: cst.SimpleString) -> None:
         if self._annotating:

@@ -1,0 +1,29 @@
+"""The new names in the table of `pyfrc migrate` exist in WPILib 2027."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import wpilib
+
+from pyfrc_core.migrate.names.packages import Class, Packages
+from pyfrc_core.migrate.names.table import HERE, table
+
+
+def test_every_new_name_exists() -> None:
+    assert wpilib.__file__ is not None
+    installed = Packages(Path(wpilib.__file__).parents[1])
+    installed.read()
+    wrong = []
+    for path in re.findall(r'^"([\w.]+)": "', (HERE / "table.json").read_text("utf-8"), re.MULTILINE):
+        name = table().name(path)
+        new = None if name is None else name.new
+        if new is None or new.partition(".")[0] == "rev" or path in table().modules:
+            continue
+        outer, _, last = new.rpartition(".")
+        owner = installed.entries.get(outer)
+        inside = isinstance(owner, Class) and last in owner.members
+        if not (new in installed.entries or new in installed.aliases or inside):
+            wrong.append(f"{path} -> {new}")
+    assert wrong == []

@@ -1,0 +1,543 @@
+"""What `pyfrc migrate` makes of code: WPILib's names by what the objects are, and the team's own names unchanged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+pytest.importorskip("libcst")
+
+from pyfrc_core.migrate.migration import migrate
+from pyfrc_core.migrate.report import Remark
+
+
+def migrated(tmp_path: Path, **files: str) -> dict[str, str]:
+    """Return the files after a migration; a name's `__` is a `/`."""
+    for name, text in files.items():
+        file = tmp_path / (name.replace("__", "/") + ".py")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(dedent(text).lstrip("\n"), "utf-8")
+    done = migrate(tmp_path)
+    done.write()
+    assert not migrate(tmp_path).after, "a second run changes something"
+    return {name: (tmp_path / (name.replace("__", "/") + ".py")).read_text("utf-8") for name in files}
+
+
+def remarks(tmp_path: Path, code: str) -> list[Remark]:
+    (tmp_path / "robot.py").write_text(dedent(code).lstrip("\n"), "utf-8")
+    report = migrate(tmp_path).report
+    return [*report.by_hand(), *report.to_check()]
+
+
+#: Code, and what it becomes.
+CODE = {
+    "modules that are one now": (
+        """
+        import wpimath.geometry
+        import wpimath.controller
+        from wpimath.kinematics import ChassisSpeeds
+        pose = wpimath.geometry.Pose2d()
+        pid = wpimath.controller.PIDController(Kp=1, Ki=0, Kd=0)
+        speeds = ChassisSpeeds(1, 0, 0)
+        turned = pose.rotation().rotateBy(wpimath.geometry.Rotation2d.fromDegrees(90))
+        """,
+        """
+        import wpimath
+        from wpimath import ChassisVelocities
+        pose = wpimath.Pose2d()
+        pid = wpimath.PIDController(kp=1, ki=0, kd=0)
+        speeds = ChassisVelocities(1, 0, 0)
+        turned = pose.rotation().rotate_by(wpimath.Rotation2d.from_degrees(90))
+        """,
+    ),
+    "aliases": (
+        """
+        import wpilib as w, wpimath.geometry as geo
+        from wpilib.drive import DifferentialDrive as DD
+        drive = DD(w.Spark(0), w.Spark(1))
+        drive.arcadeDrive(0, 0)
+        angle = geo.Rotation2d.fromDegrees(3)
+        """,
+        """
+        import wpilib as w, wpimath as geo
+        import wpilib_drivers
+        from wpilib import DifferentialDrive as DD
+        drive = DD(wpilib_drivers.Spark(0), wpilib_drivers.Spark(1))
+        drive.arcade_drive(0, 0)
+        angle = geo.Rotation2d.from_degrees(3)
+        """,
+    ),
+    "everything from a module": (
+        """
+        from wpilib import *
+        from wpimath.geometry import *
+        motor = PWMSparkMax(0)
+        stick = PS4Controller(1)
+        pose = Pose2d().transformBy(Transform2d())
+        """,
+        """
+        from wpilib import *
+        from wpilib_drivers import PWMSparkMax
+        from wpimath import Pose2d, Transform2d
+        motor = PWMSparkMax(0)
+        stick = DualShock4Controller(1)
+        pose = Pose2d().transform_by(Transform2d())
+        """,
+    ),
+    "imports in branches": (
+        """
+        from typing import TYPE_CHECKING
+        if TYPE_CHECKING:
+            from wpilib import Encoder
+            from wpimath.geometry import Pose2d
+
+        def far(encoder: "Encoder", poses: "list[Pose2d]") -> float:
+            return encoder.getDistance() + poses[0].x
+        """,
+        """
+        from typing import TYPE_CHECKING
+        if TYPE_CHECKING:
+            from wpilib import Encoder
+            from wpimath import Pose2d
+
+        def far(encoder: "Encoder", poses: "list[Pose2d]") -> float:
+            return encoder.get_distance() + poses[0].x
+        """,
+    ),
+    "motors": (
+        """
+        import wpilib
+        from wpilib.interfaces import MotorController
+
+        def run(motors: list[MotorController], led: wpilib.DigitalOutput):
+            for motor in motors:
+                motor.set(0.5)
+                print(f"{motor.get():.2f} {motors[0].getInverted()}")
+            led.set(True)
+            [m.stopMotor() for m in motors]
+        """,
+        """
+        import wpilib
+        from wpilib import MotorController
+
+        def run(motors: list[MotorController], led: wpilib.DigitalOutput):
+            for motor in motors:
+                motor.set_throttle(0.5)
+                print(f"{motor.get_throttle():.2f} {motors[0].get_inverted()}")
+            led.set(True)
+            [m.disable() for m in motors]
+        """,
+    ),
+    "the driver station": (
+        """
+        from wpilib import DriverStation
+        import wpilib
+        if DriverStation.isEnabled() and wpilib.DriverStation.getAlliance() == DriverStation.Alliance.kRed:
+            data = DriverStation.getGameSpecificMessage()[:1]
+        """,
+        """
+        from wpilib import Alliance, MatchState, RobotState
+        import wpilib
+        if RobotState.is_enabled() and wpilib.MatchState.get_alliance() == Alliance.RED:
+            data = (MatchState.get_game_data() or '')[:1]
+        """,
+    ),
+    "times": (
+        """
+        import wpilib
+        start = wpilib.RobotController.getFPGATime()
+        late = 1e6 / wpilib.RobotController.getFPGATime()
+        now = wpilib.Timer.getFPGATimestamp()
+        """,
+        """
+        import wpilib
+        start = (wpilib.RobotController.get_monotonic_time() // 1000)
+        late = 1e6 / (wpilib.RobotController.get_monotonic_time() // 1000)
+        now = wpilib.Timer.get_monotonic_timestamp()
+        """,
+    ),
+    "buttons count from 0": (
+        """
+        import wpilib
+        from commands2.button import CommandXboxController, JoystickButton
+        stick = wpilib.Joystick(0)
+        driver = CommandXboxController(1)
+        FIRE = 3
+        if stick.getRawButton(1) or stick.getRawButtonPressed(FIRE):
+            pass
+        JoystickButton(stick, 2).onTrue(None)
+        driver.button(4).onTrue(None)
+        """,
+        """
+        import wpilib
+        from commands2.button import CommandXboxController, JoystickButton
+        stick = wpilib.Joystick(0)
+        driver = CommandXboxController(1)
+        FIRE = 3
+        if stick.get_raw_button(0) or stick.get_raw_button_pressed(FIRE - 1):
+            pass
+        JoystickButton(stick.get_hid(), 1).on_true(None)
+        driver.button(3).on_true(None)
+        """,
+    ),
+    "directions of a POV": (
+        """
+        import wpilib
+        stick = wpilib.Joystick(0)
+        if stick.getPOV() == 90:
+            pass
+        free = stick.getPOV(0) in (180, -1)
+        """,
+        """
+        import wpilib
+        stick = wpilib.Joystick(0)
+        if stick.get_pov() == wpilib.POVDirection.RIGHT:
+            pass
+        free = stick.get_pov(0) in (wpilib.POVDirection.DOWN, wpilib.POVDirection.CENTER)
+        """,
+    ),
+    "dashboards": (
+        """
+        import wpilib
+
+        class Auto:
+            def __init__(self):
+                self.chooser = wpilib.SendableChooser()
+                self.chooser.setDefaultOption("none", None)
+                self.chooser.addOption("one", 1)
+                wpilib.SmartDashboard.putData("Auto", self.chooser)
+                wpilib.SmartDashboard.putNumber("gain", 1)
+                wpilib.SmartDashboard.putBoolean("ready", True)
+
+            def get(self):
+                self.gain = wpilib.SmartDashboard.getNumber("gain", 0)
+                return self.chooser.getSelected()
+        """,
+        """
+        import wpilib
+        import ntcore
+        import telemetry
+        import tunables
+
+        class Auto:
+            def __init__(self):
+                self.chooser = tunables.Selectable()
+                self.chooser.add_default("none", None)
+                self.chooser.add("one", 1)
+                tunables.publish("Auto", self.chooser)
+                ntcore.NetworkTableInstance.get_default().get_table("SmartDashboard").put_number("gain", 1)
+                telemetry.log("ready", True)
+
+            def get(self):
+                self.gain = ntcore.NetworkTableInstance.get_default().get_table("SmartDashboard").get_number("gain", 0)
+                return self.chooser.get_selected()
+        """,
+    ),
+    "simulation": (
+        """
+        import wpilib
+        from magicbot import MagicRobot
+
+        class MyRobot(MagicRobot):
+            def createObjects(self):
+                self.motor = wpilib.Talon(0)
+
+            def _simulationPeriodic(self):
+                pass
+        """,
+        """
+        import wpilib
+        import wpilib_drivers
+        from magicbot import MagicRobot
+
+        class MyRobot(MagicRobot):
+            def create_objects(self):
+                self.motor = wpilib_drivers.Talon(0)
+
+            def simulation_periodic(self):
+                pass
+        """,
+    ),
+    "a constructor that there is": (
+        """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def __init__(self):
+                super().__init__(0.01)
+
+            def robotInit(self):
+                self.timer = wpilib.Timer()
+        """,
+        """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def __init__(self):
+                super().__init__(0.01)
+                self.robot_init()
+
+            def robot_init(self):
+                self.timer = wpilib.Timer()
+        """,
+    ),
+    "commands": (
+        """
+        import commands2
+        import commands2.cmd
+
+        class Lift(commands2.Subsystem):
+            def up(self) -> commands2.Command:
+                return self.runOnce(self.raiseIt).andThen(commands2.cmd.waitSeconds(1)).withName("up")
+
+            def raiseIt(self):
+                self.getCurrentCommand()
+
+        class Wait(commands2.Command):
+            def __init__(self, lift: Lift):
+                super().__init__()
+                self.addRequirements(lift)
+
+            def isFinished(self):
+                return True
+
+        Wait(Lift()).isFinished()
+        commands2.CommandScheduler.getInstance().run()
+        """,
+        """
+        import commands2
+        import commands2.cmd
+
+        class Lift(commands2.Subsystem):
+            def up(self) -> commands2.Command:
+                return self.run_once(self.raiseIt).and_then(commands2.cmd.wait_seconds(1)).with_name("up")
+
+            def raiseIt(self):
+                self.get_current_command()
+
+        class Wait(commands2.Command):
+            def __init__(self, lift: Lift):
+                super().__init__()
+                self.add_requirements(lift)
+
+            def is_finished(self):
+                return True
+
+        Wait(Lift()).is_finished()
+        commands2.CommandScheduler.get_instance().run()
+        """,
+    ),
+    "swerve": (
+        """
+        from wpimath.geometry import Rotation2d
+        from wpimath.kinematics import ChassisSpeeds, SwerveModuleState
+
+        def turn(state: SwerveModuleState, angle: Rotation2d):
+            state.optimize(angle)
+            return state.speed
+
+        speeds = ChassisSpeeds.fromFieldRelativeSpeeds(1, 0, 0, Rotation2d())
+        """,
+        """
+        from wpimath import ChassisVelocities, Rotation2d
+        from wpimath import SwerveModuleVelocity
+
+        def turn(state: SwerveModuleVelocity, angle: Rotation2d):
+            state = state.optimize(angle)
+            return state.velocity
+
+        speeds = ChassisVelocities(1, 0, 0).to_robot_relative(Rotation2d())
+        """,
+    ),
+    "devices on a CAN bus": (
+        """
+        import wpilib
+        import rev
+        pdp = wpilib.PowerDistribution()
+        spark = rev.SparkMax(3, rev.SparkMax.MotorType.kBrushless)
+        spark.getEncoder().getPosition()
+        """,
+        """
+        import wpilib
+        import rev
+        pdp = wpilib.PowerDistribution(wpilib.CANPort.CAN_S0)
+        spark = rev.SparkMax(wpilib.CANPort.CAN_S0, 3, rev.SparkMax.MotorType.BRUSHLESS)
+        spark.get_encoder().get_position()
+        """,
+    ),
+    "members named in strings": (
+        """
+        import wpilib
+        encoder = wpilib.Encoder(0, 1)
+        distance = getattr(encoder, "getDistance")()
+        """,
+        """
+        import wpilib
+        encoder = wpilib.Encoder(0, 1)
+        distance = getattr(encoder, "get_distance")()
+        """,
+    ),
+    "rumble on both sides": (
+        """
+        import wpilib
+        stick = wpilib.XboxController(0)
+        if True:
+            stick.setRumble(wpilib.XboxController.RumbleType.kBothRumble, 0.5)
+        """,
+        """
+        import wpilib
+        stick = wpilib.XboxController(0)
+        if True:
+            stick.set_rumble(wpilib.GenericHID.RumbleType.LEFT_RUMBLE, 0.5)
+            stick.set_rumble(wpilib.GenericHID.RumbleType.RIGHT_RUMBLE, 0.5)
+        """,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CODE)
+def test_code(tmp_path: Path, name: str) -> None:
+    before, after = CODE[name]
+    assert migrated(tmp_path, robot=before)["robot"] == dedent(after).lstrip("\n")
+
+
+#: Code that stays as it is.
+OWN = {
+    "a method with WPILib's name": """
+        class Drive:
+            def getRate(self):
+                return 1
+
+            def set(self, speed):
+                self.speed = speed
+
+        drive = Drive()
+        drive.set(drive.getRate())
+    """,
+    "a dictionary and a list": """
+        settings = {"isFinished": True}
+        settings.get("isFinished")
+        names = ["getRate"]
+        names.sort()
+    """,
+    "another library": """
+        import threading
+        threading.Thread(target=print).isAlive
+        threading.currentThread().getName()
+    """,
+    "a function and variables": """
+        def getInstance(arcadeDrive):
+            teleopPeriodic = arcadeDrive
+            return teleopPeriodic
+        kRed = getInstance(arcadeDrive=1)
+    """,
+    "an object that is not known": """
+        def read(sensor):
+            return sensor.getRate()
+    """,
+}
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_what_is_the_teams_own_stays(tmp_path: Path, name: str) -> None:
+    code = dedent(OWN[name]).lstrip("\n")
+    assert migrated(tmp_path, own=code)["own"] == code
+
+
+def test_types_are_followed_through_files(tmp_path: Path) -> None:
+    """A return, a parameter that calls pass, an attribute, magicbot's injection, a fixture, a class in between."""
+    after = migrated(
+        tmp_path,
+        parts="""
+            import wpilib
+
+
+            def made():
+                return wpilib.Encoder(0, 1)
+
+
+            class Base(wpilib.TimedRobot):
+                def autonomousPeriodic(self):
+                    pass
+        """,
+        components__arm="""
+            from wpilib import Encoder
+
+
+            class Arm:
+                encoder: Encoder
+                speed = 3
+
+                def angle(self):
+                    return self.encoder.getDistance()
+        """,
+        robot="""
+            from components.arm import Arm
+            from parts import Base, made
+
+
+            class MyRobot(Base):
+                arm: Arm
+
+                def teleopPeriodic(self):
+                    super().autonomousPeriodic()
+                    self.show(made())
+                    self.arm.encoder.reset()
+
+                def show(self, encoder):
+                    print(encoder.getRate(), self.arm.encoder.getRate())
+        """,
+        tests__arm_test="""
+            import pytest
+            from wpilib.simulation import XboxControllerSim
+
+
+            @pytest.fixture
+            def driver():
+                return XboxControllerSim(0)
+
+
+            def test_it(driver, robot):
+                driver.setLeftY(-1)
+                robot.teleopPeriodic()
+                assert robot.arm.encoder.getDistance() == 0
+        """,
+    )
+    assert "def autonomous_periodic(self)" in after["parts"]
+    assert "self.encoder.get_distance()" in after["components__arm"]
+    assert "super().autonomous_periodic()" in after["robot"]
+    assert "encoder.get_rate(), self.arm.encoder.get_rate()" in after["robot"]
+    assert "driver.set_left_y(-1)" in after["tests__arm_test"]
+    assert "robot.teleop_periodic()" in after["tests__arm_test"]
+    assert "robot.arm.encoder.get_distance()" in after["tests__arm_test"]
+
+
+#: Code with one line that a person has to change, which ends in `# here`, and what is said there.
+BY_HAND = {
+    "hardware": ("import wpilib\nservo = wpilib.Servo(1)  # here\n", "wpilib.Servo is gone."),
+    "an import": ("from wpilib import Relay  # here\n", "wpilib.Relay is gone."),
+    "a module": ("from wpilib.shuffleboard import Shuffleboard  # here\n", "Shuffleboard is gone"),
+    "a member": ("import wpilib\nprint(wpilib.Encoder(0, 1).getPeriod())  # here\n", "use get_rate"),
+    "a vendor": ("import pathplannerlib.auto  # here\n", "has no release for 2027"),
+    "a channel": ("import wpilib\nPORT = 9\nled = wpilib.AddressableLED(PORT)  # here\n", "channels 0 to 5"),
+    "a POV's angle": ("import wpilib\nangle = wpilib.Joystick(0).getPOV()  # here\n", "not an angle"),
+    "an unknown object": ("def f(sensor):\n    return sensor.getRate()  # here\n", "write get_rate"),
+    "a path in a string": ('patched = "wpilib.DriverStation.isEnabled"  # here\n', "names something of WPILib 2026"),
+    "a new method": (
+        "import wpilib\nclass R(wpilib.TimedRobot):\n    def simulation_periodic(self):  # here\n        pass\n",
+        "overrides a method of WPILib 2027",
+    ),
+    "a Sendable": (
+        "import wpiutil\nclass A(wpiutil.Sendable):  # here\n    pass\n",
+        "write log_to(self, table)",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BY_HAND)
+def test_what_is_to_do_by_hand_is_said_at_its_line(tmp_path: Path, name: str) -> None:
+    code, said = BY_HAND[name]
+    here = next(number for number, line in enumerate(code.splitlines(), 1) if line.endswith("# here"))
+    assert [each for each in remarks(tmp_path, code) if each.line == here and said in str(each) and not each.done]
