@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 
-from ..config.robotpy import load_robotpy_version
+from ..config.robotpy import load_robot_packages
 from ..errors import UsageError
 from ..season.season_2027 import SEASON_2027
 from .names.table import table
@@ -85,7 +85,7 @@ def migrate(
     """
     report = Report()
     names = table()
-    version, _ = load_robotpy_version(root / "pyproject.toml")
+    version = load_robot_packages(root / "pyproject.toml").version
     first_time = version is None or not version.startswith("2027")
     sources = [Source(file, file.relative_to(root).as_posix(), file.read_bytes()) for file in python_files(root)]
     home = "" if code is None or code == root else code.relative_to(root).as_posix() + "/"
