@@ -208,6 +208,9 @@ class JoystickData(LiveDict):
             "name": Slot(lambda: station.text_of(name()), partial(hs.set_joystick_name, port), text(255)),
             "is_gamepad": Slot(lambda: bool(gamepad()), partial(hs.set_joystick_is_gamepad, port), BOOL),
             "type": Slot(descriptor("gamepad_type"), partial(hs.set_joystick_gamepad_type, port), whole(0, 255)),
+            "supported_outputs": Slot(
+                descriptor("supported_outputs"), partial(hs.set_joystick_supported_outputs, port), whole(0, 255)
+            ),
             "axis_count": count(0, hs.set_joystick_axes_available, AXES),
             "button_count": count(1, hs.set_joystick_buttons_available, station.MAX_BUTTONS),
             "pov_count": count(2, hs.set_joystick_povs_available, POVS),
