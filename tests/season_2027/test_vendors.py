@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 from conftest import MakeProject
@@ -12,6 +13,8 @@ require(
     "vendors' devices of 2027",
     [name for name in ("robotpy-rev", "phoenix6") if not find_spec(name.removeprefix("robotpy-"))],
 )
+
+ROBOTS = Path(__file__).parents[1] / "robots" / "season_2027"
 
 REV_ROBOT = """
     import rev
@@ -142,6 +145,18 @@ def test_sparks(make_project: MakeProject) -> None:
     replayed = project.run("replay", "recorded/tests_test_robot.py.test_closed_loops.jsonl")
     assert replayed.code == 0, replayed.output
     assert "The trace equals the recorded one." in replayed.stdout
+
+
+def test_a_swerve_drive_on_sparks(make_project: MakeProject) -> None:
+    """It drives, and its odometry agrees, with the physics that `create-physics` writes."""
+    project = make_project({})
+    project.copy(ROBOTS / "rev_swerve")
+    made = project.run("create-physics")
+    assert made.code == 0, made.output
+    assert "swerve drive\n  SPARK MAX [0,2] (modules[front_left].drive) drives" in made.stdout
+    result = project.run("test", "--", "-k", "swerve or practice")
+    assert result.code == 0, result.output
+    assert "4 passed" in result.stdout
 
 
 @pytest.mark.slow

@@ -1,0 +1,3 @@
+"""The tests that come with pyfrc."""
+
+from pyfrc.tests import *  # noqa: F403
