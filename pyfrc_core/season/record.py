@@ -113,6 +113,7 @@ class Season:
     :param cli_plugins:  group of the entry points by which the command `robotpy` finds commands
     :param opmodes:      whether robots can have opmodes
     :param first_button: the number that robot code gives the first button of a joystick
+    :param window_drives: whether WPILib's own simulator window drives a robot whose time pyfrc steps
     :param test_mode:    what drivers read for the mode ``test``
     """
 
@@ -127,6 +128,7 @@ class Season:
     cli_plugins: str
     opmodes: bool = False
     first_button: int = 1
+    window_drives: bool = True
     test_mode: str = "Test"
 
     @property

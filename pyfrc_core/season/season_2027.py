@@ -44,5 +44,6 @@ SEASON_2027 = Season(
     cli_plugins="robotpy_cli.2027",
     opmodes=True,
     first_button=0,
+    window_drives=False,  # seen with 2027.0.0a7: it takes pyfrc's packets for those of another driver station
     test_mode="Utility",
 )

@@ -14,6 +14,7 @@ from typing import Literal
 from ...browser import is_ci, why_no_browser
 from ...display import GET_TKINTER, WITHOUT_DISPLAY, has_display, has_terminal
 from ...errors import UsageError
+from ...season import CURRENT
 from ..engine.extensions import WINDOW
 from ..engine.output_log import OutputCursor
 from ..engine.simulation import Simulation
@@ -108,6 +109,8 @@ def _make_web(request: SimRequest, say: Say) -> FrontEnd:
 
 
 def _make_wpilib(request: SimRequest, say: Say) -> FrontEnd:
+    if not CURRENT.window_drives:
+        say(f"WPILib's window of {CURRENT.year} shows this robot, but cannot enable it. To drive: --ui web\n")
     return WpilibWindow()
 
 
