@@ -86,8 +86,12 @@ class Result:
 
     @property
     def first_error(self) -> str:
-        """The first line of the error that a command ended with."""
-        return self.stderr.partition("\n")[0].removeprefix("error: ")
+        """The first line of the error that a command ended with.
+
+        On a busy machine, a note may stand before it that code makes no progress.
+        """
+        lines = self.stderr.splitlines() or [""]
+        return next((line for line in lines if line.startswith("error: ")), lines[0]).removeprefix("error: ")
 
     def blocks(self) -> dict[str, str]:
         """What pytest shows of each failure and error, by the test's name."""

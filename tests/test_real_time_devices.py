@@ -8,8 +8,8 @@ from __future__ import annotations
 import hashlib
 import json
 import sys
+from collections.abc import Iterator
 from importlib.util import find_spec
-from itertools import pairwise
 from pathlib import Path
 from textwrap import dedent
 
@@ -215,20 +215,19 @@ TIMED = ROBOT.replace(
                 file.write(f"{{time.clock_gettime(time.CLOCK_MONOTONIC)}}\\n")""",
 ).replace("import os", "import os\n    import time\n    import phoenix6.controls")
 
-#: What a robot does with its devices, and whether robot time waits for it.
-USES = {
-    "self.talons[0].set_control(phoenix6.controls.VelocityVoltage())": True,
-    "self.talons[0].sim_state": True,
-    "self.talons[0].set_control(phoenix6.controls.VoltageOut())": False,
-    "pass": False,
-}
+#: What a robot does with its devices, where robot time waits for them, and where it does not.
+WAITED_FOR = (
+    "self.talons[0].set_control(phoenix6.controls.VelocityVoltage())",
+    "self.talons[0].sim_state",
+)
+NOT_WAITED_FOR = ("self.talons[0].set_control(phoenix6.controls.VoltageOut())", "pass")
 
 
-@pytest.mark.parametrize("use", USES)
-def test_robot_time_waits_where_a_device_closes_a_loop_or_is_simulated(with_phoenix: PhoenixProject, use: str) -> None:
-    """In tests and replays, while the robot is enabled: at a fifth of its speed, each packet of 20 ms takes 0.1 s."""
+def turns_in_real_time(with_phoenix: PhoenixProject, use: str, speed: float) -> Iterator[list[float]]:
+    """Run this robot in a test and in its replay, and yield the real time of each turn."""
     robot = TIMED.format(use)
-    with_phoenix.project.write({"pyproject.toml": "[tool.pyfrc.test]\nreal_time_speed = 0.2\n", "robot.py": robot})
+    settings = f"[tool.pyfrc.test]\nreal_time_speed = {speed}\n"
+    with_phoenix.project.write({"pyproject.toml": settings, "robot.py": robot})
     noted = with_phoenix.path / "real_time.txt"
     for command in (
         ("test", "-j", "1", "--record", "recorded", "--", "-k", "teleop"),
@@ -236,10 +235,22 @@ def test_robot_time_waits_where_a_device_closes_a_loop_or_is_simulated(with_phoe
     ):
         noted.unlink(missing_ok=True)
         with_phoenix.output(*command)
-        times = [float(line) for line in noted.read_text("utf-8").split()]
-        # The first turn is the program's start, the second its first packet's.
-        packets = [after - before for before, after in pairwise(times[2:9])]
-        assert (min(packets) > 0.05) is USES[use], packets
+        yield [float(line) for line in noted.read_text("utf-8").split()]
+
+
+@pytest.mark.parametrize("use", WAITED_FOR)
+def test_robot_time_waits_where_a_device_closes_a_loop_or_is_simulated(with_phoenix: PhoenixProject, use: str) -> None:
+    """In tests and replays, while the robot is enabled: at a fifth of its speed, each packet of 20 ms takes 0.1 s."""
+    for times in turns_in_real_time(with_phoenix, use, speed=0.2):
+        # The first turn is the program's start, and there are six waits before the ninth. A busy machine adds to them.
+        assert times[8] - times[0] > 0.59, times
+
+
+@pytest.mark.parametrize("use", NOT_WAITED_FOR)
+def test_robot_time_waits_for_no_other_device(with_phoenix: PhoenixProject, use: str) -> None:
+    """At this speed, one packet would take half an hour."""
+    for times in turns_in_real_time(with_phoenix, use, speed=0.00001):
+        assert len(times) > 8
 
 
 MEETING = {
