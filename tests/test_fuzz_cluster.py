@@ -1,4 +1,4 @@
-"""Campaigns on a Dask cluster: a real scheduler with two workers, on this computer."""
+"""Campaigns on a Dask cluster: a real scheduler with its workers, on this computer."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import MakeProject, Result
 from skips import require
 from started_commands import StartedCommand, start_command
 
@@ -124,15 +125,26 @@ class Cluster:
 
 
 @pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Generator[Cluster]:
-    """A cluster with two workers."""
+def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Generator[Cluster]:
+    """A scheduler, to which `cluster` adds a worker."""
     cluster = Cluster(tmp_path_factory.mktemp("cluster"))
     try:
-        cluster.add_worker()
-        cluster.add_worker()
         yield cluster
     finally:
         cluster.close()
+
+
+@pytest.fixture(scope="module")
+def without_workers(scheduler: Cluster, make_shared_project: MakeProject) -> Result:
+    """What a campaign says while there are no workers."""
+    return make_shared_project({"robot.py": ROBOT}).run("fuzz", "--scheduler", scheduler.address)
+
+
+@pytest.fixture(scope="module")
+def cluster(scheduler: Cluster, without_workers: Result) -> Cluster:
+    """A cluster with a worker."""
+    scheduler.add_worker()
+    return scheduler
 
 
 @pytest.fixture
@@ -180,6 +192,7 @@ def _everywhere(project: Any, result: Any) -> tuple[dict[str, bytes], str]:
 
 @pytest.mark.slow
 def test_a_cluster_finds_what_one_process_finds(cluster: Cluster, alone, make_shared_project) -> None:
+    cluster.add_worker()
     project = copy(make_shared_project)
     options = [cluster.address if each.startswith("tcp://") else each for each in FUZZ[2:]]
     result = project.run("fuzz", *options, *CAMPAIGN)
@@ -242,12 +255,15 @@ def test_a_scheduler_that_is_lost(own_cluster: Cluster, make_shared_project) -> 
     assert list(project.path.rglob("tests/fuzz/*.jsonl"))
 
 
-def test_no_workers_and_workers_with_another_version(own_cluster: Cluster, make_shared_project, tmp_path: Path) -> None:
-    project = copy(make_shared_project)
-    result = project.run("fuzz", "--scheduler", own_cluster.address)
-    assert (result.code, result.first_error) == (1, f"the scheduler at {own_cluster.address} has no workers")
-    assert f"dask worker {own_cluster.address}" in result.stderr
+def test_a_scheduler_without_workers(scheduler: Cluster, without_workers: Result) -> None:
+    result = without_workers
+    assert (result.code, result.first_error) == (1, f"the scheduler at {scheduler.address} has no workers")
+    assert f"dask worker {scheduler.address}" in result.stderr
 
+
+@pytest.mark.slow
+def test_a_worker_with_another_version(own_cluster: Cluster, make_shared_project, tmp_path: Path) -> None:
+    project = copy(make_shared_project)
     metadata = tmp_path / "other" / "pyfrc-2025.9.9.dist-info" / "METADATA"
     metadata.parent.mkdir(parents=True)
     metadata.write_text("Metadata-Version: 2.1\nName: pyfrc\nVersion: 2025.9.9\n")

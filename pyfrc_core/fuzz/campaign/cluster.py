@@ -29,8 +29,8 @@ from ..match.work import MatchResult, Result, Shrunk, Work
 from .executors import PooledMatchExecutor
 from .packed_project import pack
 
-#: How long to try to reach the scheduler.
-_CONNECT_SECONDS = 10.0
+#: How long to try to reach the scheduler, and how long one that is there may take to respond: it may be busy.
+_CONNECT_SECONDS, _RESPONSE_SECONDS = 10.0, 60.0
 #: The time between two checks whether there are workers, and how long a campaign waits for the first new one.
 _CHECK_SECONDS, _WITHOUT_WORKERS_SECONDS = 2.0, 60.0
 #: How often the match of a process that has ended is played again.
@@ -151,7 +151,7 @@ def _connected(address: str) -> Iterator[DaskClient]:
         if name.startswith(("asyncio", "distributed", "tornado")):  # what they log is shown as an error of ours
             logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
-        client: DaskClient = connect(address, timeout=_CONNECT_SECONDS, set_as_default=False)
+        client: DaskClient = connect(address, timeout=_RESPONSE_SECONDS, set_as_default=False)
     except OSError as error:
         raise _unreachable(address, error) from error
     try:
