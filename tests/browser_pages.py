@@ -129,6 +129,10 @@ def missing_browser() -> list[str]:
 MODULE = "window.module = (name) => import(`#${name}`);"
 
 
+#: Twenty frames in a second, as on a slow computer: drawing takes most of what a page costs.
+FRAMES = "window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 50);"
+
+
 #: Add scripts that are not the page's own, and return which of the page's rules refuse them, and what has run.
 INJECTED = """async () => {
   const code = "window.hasRun = (window.hasRun ?? 0) + 1";
@@ -283,7 +287,7 @@ def page_of(browser: Browser, server: Served, address: str = "", script: str = "
     context = browser.new_context(viewport={"width": 1366, "height": 768}, **options)
     try:
         seen = Seen(context.new_page(), server)
-        seen.page.add_init_script(MODULE + script)
+        seen.page.add_init_script(MODULE + FRAMES + script)
         yield seen.open(address)
         assert not seen.wrong, seen.wrong
     finally:

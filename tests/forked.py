@@ -38,7 +38,9 @@ import pytest
 import pyfrc_cli
 import pyfrc_core
 from pyfrc_cli import start
+from pyfrc_core.deploy.agent_stream import agent_package
 from pyfrc_core.processes import spawn
+from pyfrc_core.project.loaded_modules import loaded_modules
 from pyfrc_core.season import CURRENT
 
 #: Whether programs can be forked here: where Linux reports the end of a process by a descriptor.
@@ -331,6 +333,8 @@ def main() -> None:
     # The seed is fixed already: Python need not be started again.
     start._restart_with_fixed_seed = lambda: os.environ.update(PYTHONHASHSEED="0")  # type: ignore[assignment]
     spawn.popen = functools.partial(popen, listener.getsockname().decode())
+    loaded_modules.look()  # a fork then goes only through what it has imported itself
+    agent_package()  # packed once
     gc.collect()
     gc.freeze()
     if (request := _serve(listener)) is not None:

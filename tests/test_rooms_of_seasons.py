@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -18,16 +19,26 @@ def package_of(statement: ast.ImportFrom, file: Path) -> Path:
     return file.parents[statement.level - 1].joinpath(*filter(None, parts)) if statement.level else Path(*parts)
 
 
+@cache
+def modules() -> list[tuple[Path, list[ast.ImportFrom], set[tuple[str, str]]]]:
+    """Return all modules but the seasons' own: imports, and attributes of names as name and attribute."""
+    found = []
+    for file in (each for each in CORE.rglob("*.py") if "season_2" not in each.parent.name):
+        tree = list(ast.walk(ast.parse(file.read_text("utf-8"))))
+        attributes = (each for each in tree if isinstance(each, ast.Attribute))
+        named = {(each.value.id, each.attr) for each in attributes if isinstance(each.value, ast.Name)}
+        found.append((file, [each for each in tree if isinstance(each, ast.ImportFrom)], named))
+    return found
+
+
+@cache
 def asked(room: Path) -> set[tuple[str, str]]:
     """Return what other modules name of a season's modules, as module and name."""
     found = set()
-    for file in (each for each in CORE.rglob("*.py") if "season_2" not in each.parent.name):
-        tree = list(ast.walk(ast.parse(file.read_text("utf-8"))))
-        froms = [each for each in tree if isinstance(each, ast.ImportFrom) and package_of(each, file) == room]
+    for file, imports, named in modules():
+        froms = [each for each in imports if package_of(each, file) == room]
         topics = {alias.asname or alias.name: alias.name for each in froms for alias in each.names}
-        for each in tree:
-            if isinstance(each, ast.Attribute) and isinstance(each.value, ast.Name) and each.value.id in topics:
-                found.add((topics[each.value.id], each.attr))
+        found |= {(topics[name], attribute) for name, attribute in named if name in topics}
     return {(topic, name) for topic, name in found if (room / "season_2026" / f"{topic}.py").exists()}
 
 
