@@ -12,6 +12,7 @@ from pathlib import Path
 
 import click
 import pytest
+from conftest import sampled
 
 from pyfrc_cli.completion import SHELLS
 from pyfrc_cli.main import COMMANDS, cli
@@ -136,7 +137,7 @@ def test_ctrl_c_after_the_result_ends_without_a_traceback() -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
-@pytest.mark.parametrize("no_color", [None, "1"])
+@pytest.mark.parametrize("no_color", sampled([None, "1"], None))
 def test_colours_are_for_terminals_and_for_who_wants_them(no_color: str | None, make_project) -> None:
     project = make_project({})
     script = project.path / "in_a_terminal.py"

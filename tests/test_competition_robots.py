@@ -22,7 +22,7 @@ NOISE = "do not repeat exactly, because REV's library draws the noise of their v
 SETTINGS = "\n[tool.pyfrc.match]\nautonomous = 2\npause = 0.1\nteleop = 2\n"
 
 
-@pytest.fixture(params=sampled(NAMES, "magic_swerve", "rev_swerve"))
+@pytest.fixture(params=sampled(NAMES, "magic_swerve"))
 def project(request: pytest.FixtureRequest, make_project: MakeProject) -> RobotProject:
     made = make_project({})
     made.copy(ROBOTS / request.param)

@@ -12,7 +12,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject, RobotProject, sampled
 
 from pyfrc_core.measure.coverage import never_run
 
@@ -113,7 +113,7 @@ def functions_run(report: dict[str, Any]) -> set[str]:
     return {name for name, function in functions.items() if name and function["executed_lines"]}
 
 
-@pytest.mark.parametrize("isolation", ["auto", "spawn", "none"])
+@pytest.mark.parametrize("isolation", sampled(["auto", "spawn", "none"], "auto", "none"))
 def test_lines_in_threads_and_isolated_tests_count(project: RobotProject, isolation: str) -> None:
     tests = () if isolation != "none" else ("--", "-k", "teleop")
     report = measured(project, "test", "--isolation", isolation, *tests)

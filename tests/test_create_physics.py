@@ -223,8 +223,8 @@ def test_ways(control, hal_data, robot, physics_controller, axis, way):
     ("names", "axes"),
     [
         (("front_left", "rear_left", "front_right", "rear_right"), {"sideways": 0, "turn": 4}),
-        (("left_1", "left_2", "right_1", "right_2"), {"sideways": 4, "turn": 0}),
-        (("a", "b", "c", "d"), {"sideways": 0, "turn": 2}),
+        pytest.param(("left_1", "left_2", "right_1", "right_2"), {"sideways": 4, "turn": 0}, marks=pytest.mark.slow),
+        pytest.param(("a", "b", "c", "d"), {"sideways": 0, "turn": 2}, marks=pytest.mark.slow),
     ],
     ids=["named", "sides tell which axis turns", "without names the x axis moves sideways"],
 )
@@ -263,7 +263,7 @@ def test_the_templates(make_project: MakeProject, template: str, says: str) -> N
     assert (project.path / ".pyfrc/create-physics/physics.py").exists() == (result.code == 1)
 
 
-@pytest.mark.parametrize("robot", sampled(SAMPLES, SAMPLES[0], SAMPLES[-1]))
+@pytest.mark.parametrize("robot", sampled(SAMPLES, SAMPLES[-1]))
 def test_every_sample_robot_runs_with_it(make_project: MakeProject, robot: str) -> None:
     project = make_project({})
     project.copy(ROBOTS / robot)
@@ -371,11 +371,11 @@ def test_only_what_it_breaks_keeps_it_from_its_place(make_project: MakeProject) 
 @pytest.mark.parametrize(
     ("code", "width"),
     [
-        ("TRACK_WIDTH = 0.61", "0.61 * units.metre"),
+        pytest.param("TRACK_WIDTH = 0.61", "0.61 * units.metre", marks=pytest.mark.slow),
         ("kTrackwidth = 0.55", "0.55 * units.metre"),
         ("kinematics = DifferentialDriveKinematics(0.7)", "0.7 * units.metre"),
         ("TRACK_WIDTH = 24.0", "22 * units.inch"),
-        ("WIDTH = 0.61", "22 * units.inch"),
+        pytest.param("WIDTH = 0.61", "22 * units.inch", marks=pytest.mark.slow),
     ],
 )
 def test_the_width_is_that_of_the_robots_code(make_project: MakeProject, code: str, width: str) -> None:
@@ -496,7 +496,7 @@ def test_something_else_in_the_place_of_a_file(make_project: MakeProject, file: 
     assert not any((project.path / name).is_file() for name in FILES)
 
 
-@pytest.mark.parametrize("options", [["--main", "src/robot.py"], []], ids=["--main", "pyproject.toml"])
+@pytest.mark.parametrize("options", sampled([["--main", "src/robot.py"], []], []), ids=["--main", "pyproject.toml"])
 def test_files_are_named_from_the_current_directory(make_project: MakeProject, options: list[str]) -> None:
     project = make_project({"src/robot.py": EMPTY["robot.py"]})
     below = project.path / "src"
@@ -528,7 +528,13 @@ FAILING = {
 }
 
 
-@pytest.mark.parametrize(("code", "message"), FAILING.values(), ids=FAILING.keys())
+@pytest.mark.parametrize(
+    ("code", "message"),
+    sampled(
+        FAILING.values(), *(FAILING[each] for each in ("in robotInit", "by hanging", "by ending the process", "in C"))
+    ),
+    ids=FAILING.keys(),
+)
 def test_a_robot_that_fails_is_told_by_its_line(make_project: MakeProject, code: str, message: str) -> None:
     if "string_at" in code and sys.platform == "win32":
         pytest.skip("there, a fault in C is an exception of Python's")

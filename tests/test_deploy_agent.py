@@ -88,6 +88,7 @@ def test_memory(robot: LocalRobot, tmp_path: Path) -> None:
 MESSAGE = st.dictionaries(st.text(), st.recursive(st.none() | st.integers() | st.text(), st.lists, max_leaves=5))
 
 
+@settings(max_examples=50)
 @given(MESSAGE, st.lists(st.binary()), st.data())
 def test_frames_come_as_they_were_sent(said: wire.Message, pieces: list[bytes], data: st.DataObject) -> None:
     stream = wire.message_frame(said) + b"".join(wire.frame(wire.CONTENT, piece) for piece in pieces)

@@ -320,6 +320,7 @@ def test_a_missing_package_is_named_while_the_old_program_runs_on(roborio: Robor
     assert deploy(project, roborio).code == 0
 
 
+@pytest.mark.slow
 def test_deploying_all_the_same(roborio: Roborio, make_project) -> None:
     project = make_project({"robot.py": ROBOT.format(imports="import commands2")})
     code, shown = run_at_terminal(

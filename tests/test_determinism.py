@@ -19,17 +19,17 @@ ROBOTS = Path(__file__).parent / "robots"
 NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
 
 #: How often a new interpreter tests each robot. Another one, forked from a third where that can be, tests it once.
-TESTED_IN_ONE = 3
+TESTED_IN_ONE = 2
 
 #: Its own tests count the loops of a match of the real length.
 WHOLE_MATCHES = "timed"
 
-#: One more session has a busy machine: for a robot that runs in place, and for one with threads and a loop of its own.
+#: These are tested on a busy machine, too: a robot that runs in place, and one with threads and a loop of its own.
+TESTED_BUSY = (WHOLE_MATCHES, "worker")
 #: A container may have only some of the computer's cores: with as many busy processes as those, nothing would go on.
 BUSY = min(os.cpu_count() or 1, 8)
 #: Ends also when pytest is killed.
 COMPUTE = "import os\nstarted_by = os.getppid()\nwhile os.getppid() == started_by:\n    sum(range(100_000))"
-TESTED_BUSY = (WHOLE_MATCHES, "worker")
 
 #: Between them they are in every mode; the fuzz test has a determinism test of its own.
 COMPARED = ("test_operator_control", "test_practice")
@@ -89,18 +89,31 @@ def test_sample_robot_passes_all_tests_and_does_the_same_again_and_again(
         shutil.rmtree(tmp_path / "traces-own")
         add_settings(project.path, SHORT_MATCH)
     pyfrc_test(project, "--trace", str(tmp_path / "traces-new"), cold=True)
-    if name in TESTED_BUSY:
-        with busy_processes(BUSY):
-            pyfrc_test(project, "--trace", str(tmp_path / "traces-busy"), "--", "tests/run0_test.py", cold=False)
+    found = the_same_each_time(tmp_path, TESTED_IN_ONE + (name != WHOLE_MATCHES))
+    compare_with_other_interpreters(name, found)
 
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", TESTED_BUSY)
+def test_a_sample_robot_does_the_same_on_a_busy_machine(name: str, project: RobotProject, tmp_path: Path) -> None:
+    add_settings(project.path, SHORT_MATCH)
+    shutil.rmtree(project.path / "tests")
+    project.write({"tests/run_test.py": READY_MADE})
+    pyfrc_test(project, "--trace", str(tmp_path / "traces-alone"), cold=False)
+    with busy_processes(BUSY):
+        pyfrc_test(project, "--trace", str(tmp_path / "traces-busy"), cold=False)
+    the_same_each_time(tmp_path, 2)
+
+
+def the_same_each_time(traces: Path, times: int) -> dict[str, str]:
+    """Return the hash of each test's traces, which are so many, and equal."""
     seen: dict[str, list[str]] = defaultdict(list)
-    for directory in tmp_path.glob("traces*"):
+    for directory in traces.glob("traces*"):
         for test, digest in hashes(directory):
             seen[test].append(digest)
-    times = TESTED_IN_ONE + (name != WHOLE_MATCHES) + (name in TESTED_BUSY)
     assert {test: len(digests) for test, digests in seen.items()} == dict.fromkeys(COMPARED, times)
     assert {test: len(set(digests)) for test, digests in seen.items()} == dict.fromkeys(COMPARED, 1)
-    compare_with_other_interpreters(name, {test: digests[0] for test, digests in seen.items()})
+    return {test: digests[0] for test, digests in seen.items()}
 
 
 def compare_with_other_interpreters(name: str, found: dict[str, str]) -> None:

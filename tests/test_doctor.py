@@ -241,7 +241,7 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
     ("files", "topic", "said", "remedy"),
     [
         ({"robot.py": "import wpilib\n\n1 / 0\n"}, "program", "robot.py:3: ZeroDivisionError", ""),
-        ({"robot.py": "import os\nos._exit(0)\n"}, "program", "robot.py:2", ""),
+        pytest.param({"robot.py": "import os\nos._exit(0)\n"}, "program", "robot.py:2", "", marks=pytest.mark.slow),
         ({"robot.py": "x = 1\n"}, "program", "no robot class", "class MyRobot"),
         (
             {"pyproject.toml": "[tool.pyfrc]\nmian = 'robot.py'\n"},
@@ -258,7 +258,7 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
         ),
         ({"sim/config.json": '{"pyfrc": {"robot": {"w": "wide"}}}'}, "sim/config.json", "robot.w", ""),
         ({"wpilib/__init__.py": ""}, "project", "wpilib/__init__.py hides a library", "another name"),
-        ({"random.py": ""}, "project", "random.py hides a library", "another name"),
+        pytest.param({"random.py": ""}, "project", "random.py hides a library", "another name", marks=pytest.mark.slow),
         (
             {"physics.py": "class PhysicsEngine:"},
             "physics",
@@ -271,7 +271,13 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
             "physics.py:1: there is no module phisics",
             "Did you mean physics?",
         ),
-        ({"physics.py": "class PhysicEngine: pass"}, "physics", "PhysicsEngine", "It must have a class"),
+        pytest.param(
+            {"physics.py": "class PhysicEngine: pass"},
+            "physics",
+            "PhysicsEngine",
+            "It must have a class",
+            marks=pytest.mark.slow,
+        ),
         (
             {"physics.py": "class PhysicsEngine:\n    def update_sim(self): pass\n"},
             "physics",

@@ -60,7 +60,7 @@ def test_an_encoder_counts_from_its_reset_and_has_a_rate(make_project: MakeProje
     assert result.code == 0, result.output
 
 
-@pytest.mark.parametrize("values", [(math.nan, 0.0), (0.0, math.inf)])
+@pytest.mark.parametrize("values", [pytest.param((math.nan, 0.0), marks=pytest.mark.slow), (0.0, math.inf)])
 def test_a_shaft_refuses_what_is_not_a_number(values: tuple[float, float], make_project: MakeProject) -> None:
     project = make_project(
         {

@@ -59,6 +59,7 @@ def held_in_autonomous(script: InputScript) -> Iterable[str]:
             yield from (target for target, pressed in held.items() if pressed)
 
 
+@pytest.mark.slow
 def test_nothing_is_pressed_in_autonomous(make_project: Any) -> None:
     project = make_project({"robot.py": FAILS_IN_AUTONOMOUS, "pyproject.toml": SHORT})
     result = project.run("fuzz", "--seed", "1", "--runs", "16")

@@ -158,7 +158,7 @@ FAULTY = """
     """
 
 
-@pytest.mark.parametrize("kind", sampled(FAULTS, "not_a_number", "stuck_modes", "process_ended", "ZeroDivisionError"))
+@pytest.mark.parametrize("kind", sampled(FAULTS, "not_a_number", "process_ended", "ZeroDivisionError"))
 def test_what_is_a_failure(kind: str, make_project) -> None:
     code, message = FAULTS[kind]
     slow = f"hang_seconds = {0.1 if kind == 'hangs' else 0.2}\n    out_of_range = true"
@@ -343,11 +343,20 @@ EXITING = """
     [
         ("auto", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"),
         pytest.param(
-            *("spawn", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"), marks=pytest.mark.slow
+            "spawn", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit", marks=pytest.mark.slow
         ),
-        ("auto", 2, "raise KeyboardInterrupt", "KeyboardInterrupt", "keyboardinterrupt-robot-autonomousinit"),
+        pytest.param(
+            "auto",
+            2,
+            "raise KeyboardInterrupt",
+            "KeyboardInterrupt",
+            "keyboardinterrupt-robot-autonomousinit",
+            marks=pytest.mark.slow,
+        ),
         ("auto", 1, "sys.exit(5)", "exit(5) was called", "systemexit-robot-robotinit"),
-        ("auto", 0, "exit(False)", "exit(False) was called", "systemexit-robot-__init__"),
+        pytest.param(
+            "auto", 0, "exit(False)", "exit(False) was called", "systemexit-robot-__init__", marks=pytest.mark.slow
+        ),
     ],
 )
 def test_a_robot_that_exits_has_failed(

@@ -6,6 +6,7 @@ from collections import Counter
 from typing import Any
 
 import pytest
+from conftest import sampled
 
 from pyfrc_core.fuzz.guidance.seed_schedule import SeedScheduler
 from pyfrc_core.fuzz.inputs.left_out import needed_inputs, without
@@ -71,13 +72,17 @@ def test_one_misbehavior_does_not_hide_another_from_its_script(make_project) -> 
 
 @pytest.mark.parametrize(
     ("created", "disabled"),
-    [
+    sampled(
+        [
+            ("pass", "self.can.set(0.2)"),
+            ("pass", "self.can.setVoltage(4.0)"),
+            ("self.drive = DifferentialDrive(self.can, CanMotor())", "self.drive.arcadeDrive(0.5, 0.0)"),
+            ("self.group = wpilib.MotorControllerGroup(self.can)", "self.group.set(0.5)"),
+            ("self.drive = DifferentialDrive(self.can.set, self.can.set)", "self.drive.tankDrive(0.5, 0.5)"),
+        ],
         ("pass", "self.can.set(0.2)"),
-        ("pass", "self.can.setVoltage(4.0)"),
         ("self.drive = DifferentialDrive(self.can, CanMotor())", "self.drive.arcadeDrive(0.5, 0.0)"),
-        ("self.group = wpilib.MotorControllerGroup(self.can)", "self.group.set(0.5)"),
-        ("self.drive = DifferentialDrive(self.can.set, self.can.set)", "self.drive.tankDrive(0.5, 0.5)"),
-    ],
+    ),
 )
 def test_controllers_on_the_can_bus_are_inert_while_disabled(created: str, disabled: str, make_project) -> None:
     project = make(make_project, created=created, disabled=disabled, seconds=20)
@@ -87,11 +92,14 @@ def test_controllers_on_the_can_bus_are_inert_while_disabled(created: str, disab
 
 @pytest.mark.parametrize(
     ("created", "disabled"),
-    [
+    sampled(
+        [
+            ("self.drive = DifferentialDrive(self.motor, self.can)", "self.drive.arcadeDrive(0.5, 0.0)"),
+            ("self.group = wpilib.MotorControllerGroup(self.motor)", "self.group.set(0.5)"),
+            ("self.drive = DifferentialDrive(self.motor.set, self.can.set)", "self.drive.tankDrive(0.5, 0.5)"),
+        ],
         ("self.drive = DifferentialDrive(self.motor, self.can)", "self.drive.arcadeDrive(0.5, 0.0)"),
-        ("self.group = wpilib.MotorControllerGroup(self.motor)", "self.group.set(0.5)"),
-        ("self.drive = DifferentialDrive(self.motor.set, self.can.set)", "self.drive.tankDrive(0.5, 0.5)"),
-    ],
+    ),
 )
 def test_pwm_controllers_are_not(created: str, disabled: str, make_project) -> None:
     project = make(make_project, created=created, disabled=disabled, seconds=20)

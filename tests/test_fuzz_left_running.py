@@ -59,7 +59,12 @@ def test_a_motor_that_autonomous_leaves_running_is_found(make_project: Any) -> N
     writes = [value for step in load_script(file).steps for target, value in step.writes.items() if target == "mode"]
     assert [each for each in writes if "disabled" not in each] == ["autonomous", "teleop"]
     assert f"then {message}" in project.run("replay", file).output
-    project.write({"pyproject.toml": SHORT + "motors_left_running = false\n"})
+
+
+@pytest.mark.slow
+def test_the_check_can_be_switched_off(make_project: Any) -> None:
+    settings = SHORT + "motors_left_running = false\n"
+    project = make_project({"robot.py": ROBOT.format(teleop="pass", disabled="pass"), "pyproject.toml": settings})
     assert project.run("fuzz", "--seed", "1", "--runs", "8").code == 0
 
 

@@ -793,9 +793,9 @@ def covered(result: Result) -> dict[str, str]:
     ("isolation", "robot"),
     [
         pytest.param("fork", MEASURED_ROBOT, marks=needs_fork, id="fork"),
-        pytest.param("auto", ROBOT_WITH_DEVICE_IN_CLASS, id="device-in-class"),
+        pytest.param("auto", ROBOT_WITH_DEVICE_IN_CLASS, id="device-in-class", marks=pytest.mark.slow),
         pytest.param("spawn", MEASURED_ROBOT, id="spawn"),
-        pytest.param("none", MEASURED_ROBOT, id="none"),
+        pytest.param("none", MEASURED_ROBOT, id="none", marks=pytest.mark.slow),
     ],
 )
 def test_coverage_counts_lines_of_the_robot_wherever_they_run(
@@ -810,6 +810,7 @@ def test_coverage_counts_lines_of_the_robot_wherever_they_run(
     assert [path.name for path in project.temporary.iterdir() if not path.name.startswith("pytest-of-")] == []
 
 
+@pytest.mark.slow
 def test_the_longest_test_starts_first_the_next_time_and_reports_stay_in_order(make_project) -> None:
     project = make_project(
         {

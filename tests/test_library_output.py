@@ -6,7 +6,7 @@ import os
 import sys
 
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject, RobotProject, sampled
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork") or sys.platform == "darwin", reason="there is no safe fork")
 
@@ -57,7 +57,9 @@ def check(output: str, times: int) -> None:
         assert hidden not in output
 
 
-@pytest.mark.parametrize("isolation", [pytest.param("fork", marks=needs_fork), "spawn"])
+@pytest.mark.parametrize(
+    "isolation", [pytest.param("fork", marks=needs_fork), pytest.param("spawn", marks=pytest.mark.slow)]
+)
 def test_of_the_output_of_tests_that_failed(project: RobotProject, isolation: str) -> None:
     result = project.run("test", "--isolation", isolation)
     assert "2 failed, 1 passed" in result.stdout
@@ -65,7 +67,7 @@ def test_of_the_output_of_tests_that_failed(project: RobotProject, isolation: st
 
 
 @needs_fork
-@pytest.mark.parametrize("jobs", ["1", "2"])
+@pytest.mark.parametrize("jobs", sampled(["1", "2"], "2"))
 def test_of_output_that_is_not_captured(project: RobotProject, jobs: str) -> None:
     result = project.run("test", "-j", jobs, "--", "-s")
     assert "2 failed, 1 passed" in result.stdout

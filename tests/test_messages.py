@@ -230,18 +230,29 @@ IN_TELEOP = """
     ("bound", "text", "remedy"),
     [
         ("self.arm.down()", "None, from self.arm.down()", "Write return before the command in down() (robot.py:10)."),
-        ("self.arm.up", "the function self.arm.up, and no command", "Write self.arm.up(), which returns the command."),
+        pytest.param(
+            "self.arm.up",
+            "the function self.arm.up, and no command",
+            "Write self.arm.up(), which returns the command.",
+            marks=pytest.mark.slow,
+        ),
         (
             "self.arm.down",
             "the function self.arm.down, and no",
             "Write commands2.cmd.runOnce(self.arm.down, SUBSYSTEM)",
         ),
-        (
+        pytest.param(
             "lambda: print(1)",
             "the function lambda: print(1)",
             "Write commands2.cmd.runOnce(lambda: print(1), SUBSYSTEM)",
+            marks=pytest.mark.slow,
         ),
-        ("Raise", "the class Raise, and no command", "Write Raise(...), with what its __init__ needs (robot.py:14)."),
+        pytest.param(
+            "Raise",
+            "the class Raise, and no command",
+            "Write Raise(...), with what its __init__ needs (robot.py:14).",
+            marks=pytest.mark.slow,
+        ),
     ],
     ids=["none", "factory", "function", "lambda", "class"],
 )

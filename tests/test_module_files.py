@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from conftest import MakeProject
+from conftest import MakeProject, sampled
 
 ROBOT = """
     import sys
@@ -27,7 +27,7 @@ TEST = "def test_it(control, robot):\n    control.run_test(lambda now: now < 0.1
 SHORT = "[tool.pyfrc.fuzz]\nmatch_seconds = 1\n"
 
 
-@pytest.mark.parametrize("command", ["test", "fuzz --seed 1 --runs 1"])
+@pytest.mark.parametrize("command", sampled(["test", "fuzz --seed 1 --runs 1"], "test"))
 def test_they_are_known(command: str, make_project: MakeProject) -> None:
     files = {"robot.py": ROBOT.format("", RESOLVED), "tests/test_it.py": TEST, "pyproject.toml": SHORT}
     result = make_project(files).run(*command.split(), cold=True)
@@ -36,14 +36,19 @@ def test_they_are_known(command: str, make_project: MakeProject) -> None:
 
 @pytest.mark.parametrize(
     "oddity",
-    [
+    sampled(
+        [
+            "odd.__file__ = Path(__file__)",
+            "odd.__file__ = ''",
+            "odd.__file__ = 'a\\0b'",
+            "__file__ = Path(__file__)",
+            "odd.__getattr__ = lambda name: wpilib.PWMSparkMax(3)",
+            "makes = {'__getattr__': lambda self, name: wpilib.PWMSparkMax(3)};"
+            " odd.__class__ = type('Lazy', (types.ModuleType,), makes)",
+        ],
         "odd.__file__ = Path(__file__)",
-        "odd.__file__ = ''",
-        "odd.__file__ = 'a\\0b'",
-        "__file__ = Path(__file__)",
         "odd.__getattr__ = lambda name: wpilib.PWMSparkMax(3)",
-        "odd.__class__ = type('Lazy', (types.ModuleType,), {'__getattr__': lambda self, name: wpilib.PWMSparkMax(3)})",
-    ],
+    ),
 )
 def test_odd_modules_are_left_alone(oddity: str, make_project: MakeProject) -> None:
     """To ask one for its file can raise an error, or make a device before the fork."""

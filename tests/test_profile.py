@@ -104,7 +104,9 @@ def test_percentiles_agree_with_a_stopwatch_in_the_robot(make_project: MakeProje
         assert function[name] == pytest.approx(by_stopwatch, rel=0.05), name
 
 
-@pytest.mark.parametrize("isolation", [pytest.param("fork", marks=needs_fork), "spawn", "none"])
+@pytest.mark.parametrize(
+    "isolation", [pytest.param("fork", marks=needs_fork), pytest.param("spawn", marks=pytest.mark.slow), "none"]
+)
 def test_a_slow_function_is_named_with_its_mode_and_time(make_project: MakeProject, isolation: str) -> None:
     project = make_project({"robot.py": SLOW_ROBOT.replace("PLANTED", "0.03"), "tests/test_a.py": BOTH_MODES})
     tests = ("test_teleop",) if isolation == "none" else ("test_autonomous", "test_teleop")

@@ -158,6 +158,7 @@ def test_failures_are_told(project: RobotProject) -> None:
 # -- on a robot --------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_deploy_and_its_kin(robot: Roborio, make_project: MakeProject) -> None:
     failing = "def test_it():\n    print('the words of a test')\n    assert not {}\n"
     project = make_project({"robot.py": ROBOT, "tests/test_it.py": failing.format(False)})

@@ -64,11 +64,7 @@ AT_IMPORT = [(what, True) for what in REPLACES if what not in ("none", "closed")
 
 @pytest.mark.parametrize(
     ("what", "at_import"),
-    [
-        *((what, False) for what in REPLACES),
-        *(pytest.param(*each, marks=pytest.mark.slow) for each in AT_IMPORT[1:]),
-        AT_IMPORT[0],
-    ],
+    sampled([*((what, False) for what in REPLACES), *AT_IMPORT], ("none", False), ("closed", False), AT_IMPORT[0]),
 )
 def test_tests_and_replays(make_project: MakeProject, what: str, at_import: bool) -> None:
     project = make(make_project, what, at_import)

@@ -103,7 +103,7 @@ def configs(valid_only: bool) -> st.SearchStrategy[dict[str, Any]]:
     return st.fixed_dictionaries({}, optional={"pyfrc": pyfrc, "other": ANYTHING, "$schema": ANYTHING})
 
 
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(document=configs(valid_only=True), indent=st.none() | st.integers(0, 4), ascii_only=st.booleans())
 def test_what_is_valid_loads_and_what_is_shown_loads_as_the_same(
     load: Load, document: dict[str, Any], indent: int | None, ascii_only: bool
@@ -117,7 +117,7 @@ def test_what_is_valid_loads_and_what_is_shown_loads_as_the_same(
     assert loaded.config.robot.l == given_robot.get("l", given_robot.get("h", 3))
 
 
-@settings(max_examples=250)
+@settings(max_examples=120)
 @given(document=configs(valid_only=False))
 def test_the_schema_accepts_what_the_loader_accepts(load: Load, document: dict[str, Any]) -> None:
     try:

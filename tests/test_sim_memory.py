@@ -51,6 +51,7 @@ def trace_hash(file: Path) -> str:
     return digest.hexdigest()
 
 
+@pytest.mark.slow
 def test_memory_grows_little_with_time(make_project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(history, "_BLOCK", 64)
     monkeypatch.setattr(snapshot_builder, "_RECENT_POINTS", 64)

@@ -40,6 +40,7 @@ def test_a_number_keeps_its_digits_unless_it_is_edited(person: Seen) -> None:
     assert written(person) == [6e-5, 1e-9, 12345678.5, 1 / 3, 7e-5]
 
 
+@pytest.mark.slow
 def test_tab_and_a_click_elsewhere_write_what_was_typed_and_escape_does_not(person: Seen) -> None:
     page = person.page
     person.tab("NetworkTables").click()
@@ -56,6 +57,7 @@ def test_tab_and_a_click_elsewhere_write_what_was_typed_and_escape_does_not(pers
     assert written(person) == [2, 3]
 
 
+@pytest.mark.slow
 def test_a_number_is_edited_while_the_robot_is_paused(person: Seen) -> None:
     person.tab("NetworkTables").click()
     person.pause()

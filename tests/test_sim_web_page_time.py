@@ -129,6 +129,7 @@ def same_series(person: Seen, path: str) -> None:
     assert differs() == []
 
 
+@pytest.mark.slow
 def test_curves_have_no_holes_when_they_are_added_or_a_run_goes_on(person: Seen) -> None:
     page = person.page
     add = "path => module('js/plotting.js').then(({ addToPlot }) => addToPlot(path, 'plot:1'))"
@@ -202,6 +203,7 @@ def test_marks_and_moments_are_found_on_the_timeline(person: Seen) -> None:
     page.get_by_text("Saved kept/drive.jsonl").wait_for(state="detached")
 
 
+@pytest.mark.slow
 def test_every_value_can_be_searched_and_plotted_by_keys_alone(person: Seen) -> None:
     page = person.page
     person.tab("Plot 1").focus()
@@ -263,6 +265,7 @@ def test_a_robot_that_floods_the_console_or_hangs_leaves_the_page_alive(person: 
     person.state("Teleoperated disabled")
 
 
+@pytest.mark.slow
 def test_the_console_is_filtered_and_searched(person: Seen) -> None:
     page = person.page
     page.locator(".line.warning", has_text="this is a warning").first.wait_for()

@@ -16,7 +16,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
-from conftest import RobotProject
+from conftest import RobotProject, sampled
 from ports import lasting_port
 from skips import require
 from started_commands import StartedCommand
@@ -131,6 +131,7 @@ def ended(pid: int) -> bool:
         os.close(descriptor)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("patient_doctor")
 def test_a_program_is_deployed_changed_rolled_back_and_removed(project: RobotProject, directory: Path) -> None:
     with started(project, directory) as robot:
@@ -327,7 +328,7 @@ class MyRobot(wpilib.TimedRobot):
 """
 
 
-@pytest.mark.parametrize("stop", ["interrupt", "kill", "undeploy"])
+@pytest.mark.parametrize("stop", sampled(["interrupt", "kill", "undeploy"], "interrupt"))
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux finds processes that have left their group")
 def test_a_stopped_robot_leaves_no_child_processes(project: RobotProject, directory: Path, stop: str) -> None:
     project.write({"robot.py": LEAVES_PROCESSES})
