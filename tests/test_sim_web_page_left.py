@@ -199,6 +199,7 @@ def test_a_branch_that_is_longer_than_the_present_is_shown_whole(person: Seen) -
       return [length(), compared.end];
     }"""
     page.locator(".u-over").first.wait_for()
+    page.wait_for_function("module('js/compare.js').then(({ compared }) => compared.end > 0)")
     present, end = page.evaluate(shown)
     assert (present, end) == (pytest.approx(1.0), pytest.approx(long))
     # The pointer is at a moment that only the branch has, and the plot's own curve has no value there.
