@@ -33,7 +33,7 @@ FINDS = """
     import threading
     import traceback
 
-    TOP_LEVEL = {name.partition(".")[0] for name in sys.modules}
+    TOP_LEVEL = {name.partition(".")[0] for name in list(sys.modules)}  # a thread may import meanwhile
 
 
     def stream(file):
