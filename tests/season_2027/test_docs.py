@@ -31,7 +31,9 @@ ROBOT = """
             self.motor.set_throttle(0.5 if self.timer.get() < 2 else 0)
 
 
-    wpilib.autonomous(Goes, name="Leave the line")
+    @wpilib.autonomous(name="Leave the line")
+    class Leave(Goes):
+        pass
 
 
     @wpilib.autonomous
