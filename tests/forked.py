@@ -310,7 +310,9 @@ def _standard_stream(number: int, errors: str) -> io.TextIOWrapper:
     )
 
 
-_NEEDS_TK = re.compile(r"\.ui\.tk\b" if find_spec("tkinter") is None else r"(?!)")
+#: The modules that need a package that may be missing.
+_NEEDS = {"tkinter": r"\.ui\.tk\b", "libcst": r"\.migrate\."}
+_LACKING = re.compile("|".join(["(?!)", *(each for need, each in _NEEDS.items() if find_spec(need) is None)]))
 #: The packages that are written for another season's WPILib; those in `season` import none.
 _OTHER_SEASON = re.compile(rf"(?<!core\.season)\.season_(?!{CURRENT.year}\b)")
 
@@ -324,8 +326,8 @@ def main() -> None:
         pytest.main(["-VV"])  # imports its plugins, in its own way
     for package in (pyfrc_cli, pyfrc_core):
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            # Not what imports Dask, nor what imports another season's WPILib; nor the window where there is no Tk.
-            if not ("cluster" in module.name or _OTHER_SEASON.search(module.name) or _NEEDS_TK.search(module.name)):
+            # Not what imports Dask, nor what imports another season's WPILib; nor what lacks a package.
+            if not ("cluster" in module.name or _OTHER_SEASON.search(module.name) or _LACKING.search(module.name)):
                 importlib.import_module(module.name)
     for name in _IMPORTED:
         with suppress(ImportError):  # of another season, or an optional package
