@@ -67,7 +67,7 @@ class FakeRobot:
             self.waiting.update(command.writes)
 
     def _tell(self) -> None:
-        nothing: dict[str, object] = dict.fromkeys(("drawings", "targets", "choosers", "robot"))
+        nothing: dict[str, object] = dict.fromkeys(("drawings", "targets", "choosers", "opmodes", "robot"))
         times = dict.fromkeys(
             ("reached", "average", "packet_seconds", "worst_packet_seconds", "worst_loop_seconds", "distance"), 0.0
         )
