@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from conftest import MakeProject
+from conftest import SHORT_MATCH, MakeProject, add_settings
 
 from pyfrc_core.scaffold import TEMPLATES
 
@@ -27,6 +27,7 @@ def test_it_passes_its_tests_and_a_match_with_random_inputs(make_project: MakePr
     project = make_project({})
     made = project.run("init", "--template", template)
     assert made.code == 0, made.output
+    add_settings(project.path, SHORT_MATCH)
     for command in (
         ("config", "check", "--strict"),
         ("test", "--coverage", "--fail-under", "80"),
