@@ -15,9 +15,10 @@ from hal import simulation as hs
 from wpilib.simulation import DriverStationSim
 
 from ...wpi.season_2027 import station
-from ..containers import LiveDict, LiveList, Slot, ValueList, stored
+from ..containers import LiveDict, LiveList, Slot, stored
 from ..fields import HAS_SOURCE, DeviceField
-from ..kinds import BOOL, FLOAT, ValueKind, choice, number, text, whole
+from ..joystick_lists import JoystickLists
+from ..kinds import BOOL, FLOAT, choice, text, whole
 from ..paths import join
 
 AXES, POVS = 12, 8  # the maximum of the HAL
@@ -121,7 +122,7 @@ def joysticks() -> LiveList:
     return LiveList("joysticks", [JoystickData(port) for port in range(station.JOYSTICKS)])
 
 
-class JoystickData(LiveDict):
+class JoystickData(JoystickLists):
     """One joystick: its axes, buttons and POVs as sent to the robot, and the data that the robot sends back.
 
     The robot sees `axis_count` axes, `button_count` buttons and `pov_count` POVs; writing a later one raises its count.
@@ -133,40 +134,11 @@ class JoystickData(LiveDict):
     sent_keys = ("left_rumble", "right_rumble", "left_trigger_rumble", "right_trigger_rumble", "leds")
 
     def __init__(self, port: int) -> None:
-        super().__init__(join("joysticks", port), self._all)
+        super().__init__(join("joysticks", port), self._all, AXES, POVS)
         self._port = port
         self._axes, self._buttons, self._povs = hal.JoystickAxes(), hal.JoystickButtons(), hal.JoystickPOVs()
         # Both are views of the buffers above, which each read fills again.
         self._axis_values, self._pov_values = self._axes.axes, self._povs.povs
-        path = self._path
-        self.axes = ValueList(
-            join(path, "axes"),
-            number(-1, 1),
-            lambda: AXES,
-            self._axis,
-            self._set_axis,
-            self._load_axes,
-            partial(self._changed, "axes"),
-        )
-        self.buttons = ValueList(
-            join(path, "buttons"),
-            BOOL,
-            self._buttons_shown,
-            self._button,
-            self._set_button,
-            self._load_buttons,
-            partial(self._changed, "buttons"),
-        )
-        angle = ValueKind("-1 or an angle from 0 to 360", whole(-1, 360).convert, -1)
-        self.povs = ValueList(
-            join(path, "povs"),
-            angle,
-            lambda: POVS,
-            self._pov,
-            self._set_pov,
-            self._load_povs,
-            partial(self._changed, "povs"),
-        )
 
     def counts(self) -> tuple[int, int, int]:
         """Return how many axes, buttons and POVs the robot sees."""
