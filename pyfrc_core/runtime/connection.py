@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ..wpi import station
+from ..wpi import connection, station
 
 #: Motors expire after 0.1 s without a new value, unless robot code sets another time: the first packet after that, and
 #: then every fourth, as while packets come.
@@ -25,7 +25,7 @@ class DriverStationConnection:
     """
 
     def __init__(self) -> None:
-        self.held: station.MatchInfo | None = station.MatchInfo()
+        self.held: connection.MatchInfo | None = connection.MatchInfo()
         self.when_connected: list[Callable[[], object]] = []
         self._missed = 0
         self._motors_ran = False
@@ -37,7 +37,7 @@ class DriverStationConnection:
 
     def boot(self) -> None:
         """Show the robot what it sees after power-on: no driver station, alliance, match and joysticks."""
-        station.detach_at_boot()
+        connection.detach_at_boot()
 
     def packet(self) -> None:
         """Deliver a packet if a driver station is attached; otherwise it is missed."""
@@ -60,9 +60,9 @@ class DriverStationConnection:
         self._missed += 1
         since_first_check = self._missed - _FIRST_CHECK
         if self._motors_ran and since_first_check >= 0 and since_first_check % _PACKETS_BETWEEN_CHECKS == 0:
-            station.check_motors_after_loss()
+            connection.check_motors_after_loss()
 
     def _lose(self) -> None:
         """Show the robot the loss: not attached, disabled, and joysticks without axes, buttons and POVs."""
-        self.held, self._motors_ran = station.sent_match(), station.sends_enabled()
-        station.deliver_loss()
+        self.held, self._motors_ran = connection.sent_match(), station.sends_enabled()
+        connection.deliver_loss()

@@ -28,6 +28,7 @@ from ..season import CURRENT
 if TYPE_CHECKING:
     from .season_2026 import callbacks as callbacks
     from .season_2026 import commands as commands
+    from .season_2026 import connection as connection
     from .season_2026 import dashboards as dashboards
     from .season_2026 import devices as devices
     from .season_2026 import encoders as encoders

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from typing import Literal, NamedTuple, TypeAlias
+from collections.abc import Callable
+from typing import Literal, TypeAlias
 
 import hal
 import wpilib.testing
@@ -30,7 +29,7 @@ from hal.simulation import (
     set_joystick_pov,
     set_joystick_povs_available,
 )
-from wpilib import DriverStationBackend, MatchState, MotorSafety, RobotState
+from wpilib import DriverStationBackend, RobotState
 from wpilib.simulation import DriverStationSim
 
 from ...errors import UsageError
@@ -60,16 +59,6 @@ deliver_packet = notify_driver_station_new_data
 
 #: Have the robot program take in the last packet, as its loop does.
 refresh = DriverStationBackend.refresh_data
-
-
-class MatchInfo(NamedTuple):
-    """The match, as the field sends it."""
-
-    event_name: str = ""
-    match_type: int = 0
-    match_number: int = 0
-    replay_number: int = 0
-    game_data: str = ""
 
 
 def reset_driver_station() -> None:
@@ -366,75 +355,6 @@ def silence_joystick_warnings() -> None:
     DriverStationBackend.silence_joystick_connection_alert(True)
 
 
-# -- without a connection ----------------------------------------------------------------------------------------------
-
-
-def detach_at_boot() -> None:
-    """Show the robot what it sees after power-on: no driver station, alliance, match and joysticks."""
-    reset_driver_station_data()
-    set_game_data_string("")
-    deliver_packet()
-    set_driver_station_ds_attached(False)
-    refresh()
-
-
-def sent_match() -> MatchInfo:
-    """Return the match that packets contain now."""
-    info, message = hal.MatchInfo(), hal.GameData()
-    hal.simulation.get_match_info(info)
-    hal.simulation.get_game_data(message)
-    return MatchInfo(
-        text_of(info.event_name),
-        int(info.match_type),
-        info.match_number,
-        info.replay_number,
-        text_of(message.game_data),
-    )
-
-
 def text_of(characters: memoryview) -> str:
     """Return the text in one of the HAL's buffers."""
     return characters.tobytes().partition(b"\0")[0].decode(errors="replace")
-
-
-def deliver_loss() -> None:
-    """Show the robot the loss: not attached, disabled, and joysticks without axes, buttons and POVs."""
-    with _nothing_new():
-        deliver_packet()
-
-
-def check_motors_after_loss() -> None:
-    """Stop the motors that were not updated since the loss.
-
-    WPILib's own check does nothing in a robot that is disabled. So WPILib sees the robot enabled for as long as the
-    check takes.
-    """
-    enabled = get_driver_station_enabled()
-    with _nothing_new():
-        set_driver_station_enabled(True)
-        deliver_packet()
-        hal.refresh_ds_data()
-        MotorSafety.check_motors()
-        set_driver_station_enabled(enabled)
-    hal.refresh_ds_data()
-
-
-@contextmanager
-def _nothing_new() -> Iterator[None]:
-    """Make packets contain no joysticks, and the alliance and match time that the robot has, until the context ends."""
-    available = [get_joystick_availables(stick) for stick in range(JOYSTICKS)]
-    alliance, match_time = DriverStationSim.get_alliance_station_id(), get_driver_station_match_time()
-    for stick in range(JOYSTICKS):
-        unplug(stick)
-    DriverStationSim.set_alliance_station_id(hal.AllianceStationID(int(hal.get_alliance_station()[0])))
-    set_driver_station_match_time(MatchState.get_match_time())
-    try:
-        yield
-    finally:
-        for stick, (axes, buttons, povs) in enumerate(available):
-            set_joystick_axes_available(stick, axes)
-            set_joystick_buttons_available(stick, buttons)
-            set_joystick_povs_available(stick, povs)
-        DriverStationSim.set_alliance_station_id(alliance)
-        set_driver_station_match_time(match_time)
-        set_driver_station_ds_attached(False)

@@ -14,7 +14,7 @@ import hal.simulation
 import wpilib
 import wpilib.simulation
 
-from ....wpi.season_2027 import station
+from ....wpi.season_2027.connection import MatchInfo
 from ...patch_table import Patch
 from ..active_run import active_run
 from ..stepping import delivering
@@ -26,7 +26,7 @@ def patches() -> list[Patch]:
 
 
 def _match_information() -> list[Patch]:
-    def held_back(owner: Any, name: str, read: Callable[[station.MatchInfo], object]) -> Patch:
+    def held_back(owner: Any, name: str, read: Callable[[MatchInfo], object]) -> Patch:
         real = getattr(owner, name)
 
         def get() -> Any:
