@@ -226,6 +226,9 @@ SETTINGS = {
         robotpy[all]~=2026.2
         numpy>=1.26
     """,
+    "sim/config.json": """
+        {"joysticks": {"0": {"axes": {"1": "drive"}, "buttons": {"1": "shoot", "10": "climb"}}}}
+    """,
     ".github/workflows/test.yml": """
         steps:
           - uses: actions/setup-python@v5
@@ -250,6 +253,9 @@ line-length = 120
 robotpy[all]==2027.0.0a7
 numpy>=1.26
 wpilib-drivers==2027.0.0a7
+""",
+    "sim/config.json": """\
+{"joysticks": {"0": {"axes": {"1": "drive"}, "buttons": {"0": "shoot", "9": "climb"}}}}
 """,
     ".github/workflows/test.yml": """\
 steps:

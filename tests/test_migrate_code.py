@@ -33,6 +33,30 @@ def remarks(tmp_path: Path, code: str) -> list[Remark]:
 
 #: Code, and what it becomes.
 CODE = {
+    "buttons in hal_data": (
+        """
+        from wpilib import XboxController
+        def test_it(control, hal_data):
+            stick = hal_data["joysticks"][0]
+            stick["buttons"][1] = True
+            hal_data["joysticks"][1]["buttons"][XboxController.Button.kA] = True
+            for each in range(1, 3):
+                stick["buttons"][each] = False
+            mine = {"buttons": [1, 2]}
+            mine["buttons"][1] = 3
+        """,
+        """
+        from wpilib import XboxController
+        def test_it(control, hal_data):
+            stick = hal_data["joysticks"][0]
+            stick["buttons"][0] = True
+            hal_data["joysticks"][1]["buttons"][XboxController.Button.A] = True
+            for each in range(1, 3):
+                stick["buttons"][each - 1] = False
+            mine = {"buttons": [1, 2]}
+            mine["buttons"][1] = 3
+        """,
+    ),
     "modules that are one now": (
         """
         import wpimath.geometry

@@ -101,7 +101,7 @@ def migrate(
         report,
         drivers=any(b"wpilib_drivers" in text for text in python),
     )
-    for name, old, new in _settings_files(root, settings):
+    for name, old, new in _settings_files(root, settings, (code or root) if first_time else None):
         if new != old:
             after[name] = new.encode(errors="surrogateescape")
             if old:
@@ -149,8 +149,15 @@ def refuse_uncommitted(root: Path) -> None:
         )
 
 
-def _settings_files(root: Path, settings: Settings) -> Iterator[tuple[str, str, str]]:
-    """Return the name, old and new text of each settings file."""
+def _settings_files(root: Path, settings: Settings, code: Path | None) -> Iterator[tuple[str, str, str]]:
+    """Return the name, old and new text of each settings file.
+
+    :param code: where robot.py is, while buttons count from 1
+    """
+    if code is not None:
+        config = code / "sim" / "config.json"
+        old = _text(config)
+        yield config.relative_to(root).as_posix(), old, settings.labels(old)
     old = _text(root / "pyproject.toml")
     yield "pyproject.toml", old, settings.pyproject("pyproject.toml", old)
     for file in sorted(root.glob("*requirements*.txt")):

@@ -14,6 +14,7 @@ from .rewrite import robot_init
 from .rewrite.calls import Calls, key_of
 from .rewrite.file import FileRewriter
 from .rewrite.finish import new_text, rewrite_annotation
+from .rewrite.hal_data import HalData
 from .rewrite.leftovers import Leftovers
 from .types.inference import Inference
 from .types.scopes import Module
@@ -97,6 +98,7 @@ class _Project:
 
 def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
     calls = Calls(file, project.dashboard_reads)
+    hal_data = HalData(file)
     leftovers = Leftovers(file, project.own_names, project.camel_names)
     sites = file.module.sites
     for own in file.module.classes:
@@ -122,6 +124,8 @@ def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
             file.attribute(node, scope)
         elif isinstance(node, cst.SimpleString):
             leftovers.text(node)
+        elif isinstance(node, cst.Subscript):
+            hal_data.subscript(node, scope)
     for node, scope in file.module.annotations:
         rewrite_annotation(file, node, scope)
     for node, scope in sites:

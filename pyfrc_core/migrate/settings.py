@@ -21,6 +21,8 @@ _REQUIREMENT = re.compile(
 _HEADER = re.compile(r"^\[tool\.robotpy\][ \t]*(#.*)?$", re.M)
 _VERSION = re.compile(r"^(robotpy_version[ \t]*=[ \t]*)([\"'])[^\"']*\2", re.M)
 _REQUIRES = re.compile(r"^requires[ \t]*=[ \t]*\[", re.M)
+_LABELS = re.compile(r'"buttons"\s*:\s*\{[^{}]*\}')
+_BUTTON = re.compile(r'"([1-9]\d*)"(\s*:)')
 _PYTHON = re.compile(r"(python-version:\s*)([\"']?)3\.(\d+)\2(?=\s)")
 
 
@@ -91,6 +93,14 @@ class Settings:
             return found[0] if int(found[3]) >= 11 else f'{found[1]}"3.13"'
 
         return _PYTHON.sub(python, self._requirements(name, text))
+
+    def labels(self, text: str) -> str:
+        """Return the new text of sim/config.json, where labels have the numbers of buttons."""
+
+        def counted_from_0(labels: re.Match[str]) -> str:
+            return _BUTTON.sub(lambda found: f'"{int(found[1]) - 1}"{found[2]}', labels[0])
+
+        return _LABELS.sub(counted_from_0, text)
 
     def _requirements(self, name: str, text: str) -> str:
         """Return a text with the versions of 2026 of WPILib's packages replaced."""

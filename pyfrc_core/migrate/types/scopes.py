@@ -181,6 +181,7 @@ class _Builder(cst.CSTVisitor):
 
     def visit_Subscript(self, node: cst.Subscript) -> None:
         self._module.subscripted.add(node.value)
+        self._site(node)
 
     def visit_SimpleString(self, node: cst.SimpleString) -> None:
         if self._annotating:
