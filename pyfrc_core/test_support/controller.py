@@ -123,7 +123,7 @@ class TestController:
         raise UsageError(f"there is no opmode {name!r}: the robot has published {there}")
 
     def set_practice_match(self) -> None:
-        """Run a practice match. Call it before `run_test`.
+        """Run a practice match. Call it before `run_test`. A robot with opmodes gets the first one of each mode.
 
         :raises CalledTooLate: when the robot runs already
         """
@@ -355,6 +355,7 @@ class _PracticeMatch:
         self._control = control
         self._mode: station.Mode | None = None
         self._periods = MatchPeriods(settings)
+        station.choose_first_opmodes()
 
     def changes_mode(self, now: float) -> bool:
         """Return whether `on_step` will change the mode."""

@@ -84,6 +84,66 @@ def test_period_and_opmodes_that_are_added_later(make_project: MakeProject) -> N
     assert "OpMode" not in result.output  # what WPILib prints of each is left out
 
 
+def test_a_practice_match_has_the_first_opmode_of_each_mode(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": """
+                import wpilib
+
+
+                class MyRobot(wpilib.OpModeRobot):
+                    def __init__(self):
+                        super().__init__()
+                        self.log = []
+
+
+                class Logs(wpilib.PeriodicOpMode):
+                    def __init__(self, robot):
+                        super().__init__()
+                        self.robot = robot
+
+                    def start(self):
+                        self.robot.log.append((type(self).__name__, wpilib.RobotState.is_autonomous()))
+
+
+                @wpilib.autonomous(group="B")
+                class Alpha(Logs):
+                    pass
+
+
+                @wpilib.autonomous(group="A")
+                class Beta(Logs):
+                    pass
+
+
+                @wpilib.teleop
+                class Drive(Logs):
+                    pass
+
+
+                @wpilib.teleop
+                class Other(Logs):
+                    pass
+            """,
+            "tests/test_robot.py": """
+                def test_first(control, robot):
+                    control.set_practice_match()
+                    control.run_test()
+                    assert robot.log == [("Beta", True), ("Drive", False)]
+
+
+                def test_chosen(control, robot):
+                    control.set_opmode("Other")
+                    control.set_practice_match()
+                    control.run_test()
+                    assert robot.log == [("Beta", True), ("Other", False)]
+            """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 0, result.output
+
+
 def test_a_mark_chooses_the_opmodes_of_a_test(make_project: MakeProject) -> None:
     project = make_project(
         {

@@ -216,6 +216,10 @@ def opmode_name() -> str:
     return ""
 
 
+def choose_first_opmodes() -> None:
+    """Choose the first opmode of each mode: there are none before 2027."""
+
+
 def select_opmode(opmode: Opmode) -> None:
     """Select an opmode with the next packet, and its mode."""
 

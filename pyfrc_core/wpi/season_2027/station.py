@@ -323,6 +323,13 @@ def select_opmode(opmode: Opmode) -> None:
     set_mode(autonomous=opmode.mode == "autonomous", test=opmode.mode == "test", enabled=sends_enabled())
 
 
+def choose_first_opmodes() -> None:
+    """Choose the first opmode of each mode for which none is chosen yet, by group and name."""
+    for opmode in sorted(published_opmodes(), key=lambda each: (each.group, each.name)):
+        _chosen.setdefault(int(hal.opmode_get_robot_mode(opmode.id)), opmode.id)
+    send_mode(DriverStationSim.get_robot_mode())
+
+
 def _choose(opmode: Opmode) -> None:
     _chosen[int(hal.opmode_get_robot_mode(opmode.id))] = opmode.id
 
