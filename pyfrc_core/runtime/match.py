@@ -21,6 +21,10 @@ class MatchPeriods:
         #: How long it all takes, in microseconds.
         self.length_us = self._teleop_from + to_us(settings.teleop)
 
+    def is_before_autonomous(self, since_us: int) -> bool:
+        """Return whether the match has begun and autonomous has not."""
+        return since_us < self._autonomous_from
+
     def at(self, since_us: int) -> tuple[station.Mode, float] | None:
         """The mode so long after the match began, and the seconds left in it; None when it is over."""
         if since_us >= self.length_us:

@@ -89,7 +89,7 @@ def test_a_practice_match_runs_the_opmode_of_each_mode(make_project: MakeProject
     result = project.run("sim", "--mode", "practice", "--opmode", "Left", "--record", "run.jsonl")
     assert result.code == 0, result.output
     chosen = [name for _, name in changes_of(project.path / "run.jsonl", "control.opmode")]
-    assert chosen == ["Drive", "Left", "Drive"]  # disabled before the match, as later: about to be teleoperated
+    assert chosen == ["Left", "Drive"]  # each from the pause before its mode
     assert "The trace equals the recorded one." in project.run("replay", "run.jsonl").stdout
 
 

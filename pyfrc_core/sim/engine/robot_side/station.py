@@ -207,8 +207,11 @@ class Station:
         since = self.state.practice_since_us
         self._keeps_time = since is not None
         period = None if since is None else self._periods.at(self._run.clock.now_us - since)
+        mode: str
         mode, left = period or ("disabled", 0.0)
         if since is not None:
+            if self._published("autonomous") and self._periods.is_before_autonomous(self._run.clock.now_us - since):
+                mode = "disabled autonomous"  # as on a field: so the opmode for autonomous is made before it
             if mode != station.mode_name():
                 self._enter(mode)
             station.set_match_time(left)

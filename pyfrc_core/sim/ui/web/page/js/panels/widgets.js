@@ -57,7 +57,7 @@ function CommandCard({ folder, values }) {
 }
 
 function ValuesCard({ folder, values }) {
-  const rows = [...values].filter(([path]) => path.startsWith(`${folder.path}/`) && !path.slice(folder.path.length + 1).startsWith("."));
+  const rows = [...values].filter(([path]) => path.startsWith(`${folder.path}/`) && !path.slice(folder.path.length).includes("/."));
   return html`<div class="card"><h4>${folder.name}<span class="chip">${folder.type}</span></h4>
     ${rows.map(([path, value]) => html`<${ValueRow} key=${path} path=${path} name=${path.slice(folder.path.length + 1)} value=${plain(value)} />`)}</div>`;
 }
