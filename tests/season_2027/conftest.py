@@ -10,5 +10,6 @@ from importlib.util import find_spec
 from pyfrc_core.season import CURRENT
 
 collect_ignore_glob = [] if CURRENT.year == 2027 else ["test_*.py"]
-if find_spec("playwright") is None:
-    collect_ignore_glob.append("test_page.py")
+collect_ignore_glob += [
+    test for test, needs in (("test_page.py", "playwright"), ("test_window.py", "tkinter")) if find_spec(needs) is None
+]

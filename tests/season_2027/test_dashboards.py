@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 
+import ntcore
 import pytest
 from conftest import MakeProject
+from ports import lasting_port
 from web_pages import served
 
 ROBOT = {
@@ -99,6 +101,30 @@ def test_a_chooser_is_chosen_and_stays_chosen_when_the_robot_restarts(make_proje
         page.command("enable")
         page.run_for(0.1)
         assert page.values["pwm[0].value"] == 1
+
+
+def test_a_dashboard_tunes_and_chooses(make_project: MakeProject) -> None:
+    port = lasting_port()
+    with served(make_project(ROBOT), nt_port=port, speed=1, paused=False) as server, server.page() as page:
+        tables = ntcore.NetworkTableInstance.create()
+        try:
+            tables.start_client("dashboard")
+            tables.set_server("127.0.0.1", port)
+            seen = ntcore.MultiSubscriber(tables, ["/Tunables/"])
+            page.until(lambda: tables.get_topic("/Tunables/Auto/options").exists())
+            # What WPILib's dashboards write: of robust tunables, as of a chooser, the entry "tune".
+            publishers = [
+                tables.get_string_topic("/Tunables/Auto/selected/tune").publish(),
+                tables.get_double_topic("/Tunables/Arm/limit/tune").publish(),
+                tables.get_double_topic("/Tunables/Drive/kP").publish(),
+            ]
+            for publisher, value in zip(publishers, ("Forward", 100.0, 10.0), strict=True):
+                publisher.set(value)
+            page.until(lambda: page.values.get("nt:/Telemetry/sum") == 10 + 100 + 7 + 1)
+            page.until(lambda: page.parts["choosers"][0]["active"] == "Forward")
+            seen.close()
+        finally:
+            ntcore.NetworkTableInstance.destroy(tables)
 
 
 def test_the_robot_begins_at_its_start_and_is_placed_on_the_field(make_project: MakeProject) -> None:
