@@ -381,14 +381,16 @@ CODE = {
         import rev
         pdp = wpilib.PowerDistribution()
         spark = rev.SparkMax(3, rev.SparkMax.MotorType.kBrushless)
-        spark.getEncoder().getPosition()
+        encoder = spark.getEncoder()
+        angle, later = encoder.getPosition() * 360, encoder.getVelocity
         """,
         """
         import wpilib
         import rev
         pdp = wpilib.PowerDistribution(wpilib.CANPort.CAN_S0)
         spark = rev.SparkMax(wpilib.CANPort.CAN_S0, 3, rev.SparkMax.MotorType.BRUSHLESS)
-        spark.get_encoder().get_position()
+        encoder = spark.get_encoder()
+        angle, later = encoder.get_position().get() * 360, (lambda: encoder.get_velocity().get())
         """,
     ),
     "members named in strings": (
@@ -401,6 +403,20 @@ CODE = {
         import wpilib
         encoder = wpilib.Encoder(0, 1)
         distance = getattr(encoder, "get_distance")()
+        """,
+    ),
+    "servos": (
+        """
+        import wpilib
+        hood = wpilib.Servo(1)
+        hood.set(0.5)
+        hood.setAngle(90)
+        """,
+        """
+        import wpilib
+        hood = wpilib.PWM(1)
+        hood.set_pulse_time(int(600 + 1800 * 0.5))
+        hood.set_pulse_time(int(600 + 10 * 90))
         """,
     ),
     "rumble on both sides": (
@@ -540,7 +556,7 @@ def test_types_are_followed_through_files(tmp_path: Path) -> None:
 
 #: Code with one line that a person has to change, which ends in `# here`, and what is said there.
 BY_HAND = {
-    "hardware": ("import wpilib\nservo = wpilib.Servo(1)  # here\n", "wpilib.Servo is gone."),
+    "hardware": ("import wpilib\nlight = wpilib.Relay(1)  # here\n", "wpilib.Relay is gone."),
     "an import": ("from wpilib import Relay  # here\n", "wpilib.Relay is gone."),
     "a module": ("from wpilib.shuffleboard import Shuffleboard  # here\n", "Shuffleboard is gone"),
     "a member": ("import wpilib\nprint(wpilib.Encoder(0, 1).getPeriod())  # here\n", "use get_rate"),

@@ -123,6 +123,8 @@ class _Comparison:
             if isinstance(member, Class) or not (_matters(name, member) or f"{path}.{name}" in self._moved):
                 continue
             counterpart, new = self._member(path, target, name)
+            if isinstance(new, Function) and new.returns.startswith("rev.Signal_"):
+                counterpart += "().get"  # REV's signals carry an error and a time; the value is one call away
             spelling = "" if counterpart == snake_case(name) else f"={counterpart}"
             type_ = member.returns if isinstance(member, Function) else member.type
             extra = _parameters(member, new)

@@ -9,6 +9,7 @@ import libcst as cst
 
 from ..types.atoms import Obj, Ref
 from ..types.scopes import Scope
+from ..types.values import values
 from .edits import changed, fill, in_parentheses
 from .file import FileRewriter, Found
 
@@ -79,7 +80,7 @@ class Arguments:
         )
 
     def _direction(self, node: cst.Call, position: int) -> None:
-        if len(node.args) <= position:
+        if len(node.args) <= position or not node.args:
             return
         arg = node.args[position]
         direction = self.direction(arg.value)
@@ -142,9 +143,9 @@ class Arguments:
         """Return a number that is written here, or given to a name once."""
         if isinstance(node, cst.Integer):
             return int(node.evaluated_value)
-        values = self._file.inference.values(node, scope)
-        if len(values) == 1 and isinstance(values[0], cst.Integer):
-            return int(values[0].evaluated_value)
+        found = values(self._file.inference, node, scope)
+        if len(found) == 1 and isinstance(found[0], cst.Integer):
+            return int(found[0].evaluated_value)
         return None
 
     def _bus(self, node: cst.Call, scope: Scope) -> None:

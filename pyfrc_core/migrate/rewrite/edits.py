@@ -122,13 +122,17 @@ class _Fill(cst.CSTTransformer):
         return updated_node
 
     def leave_Attribute(self, original_node: cst.Attribute, updated_node: cst.Attribute) -> cst.Attribute:
-        return updated_node.with_changes(value=in_parentheses(updated_node.value))
+        return updated_node.with_changes(value=self._operand(original_node.value, updated_node.value))
 
     def leave_BinaryOperation(
         self, original_node: cst.BinaryOperation, updated_node: cst.BinaryOperation
     ) -> cst.BinaryOperation:
-        left, right = in_parentheses(updated_node.left), in_parentheses(updated_node.right)
+        left = self._operand(original_node.left, updated_node.left)
+        right = self._operand(original_node.right, updated_node.right)
         return updated_node.with_changes(left=left, right=right)
+
+    def _operand(self, before: cst.BaseExpression, after: cst.BaseExpression) -> cst.BaseExpression:
+        return in_parentheses(after) if isinstance(before, cst.Name) else after
 
     def leave_Name(self, original_node: cst.Name, updated_node: cst.Name) -> cst.BaseExpression:
         key = original_node.value

@@ -166,7 +166,9 @@ class FileRewriter:
         self.say(node, f"{found.path} is gone.", advice)
 
     def _rename_member(self, node: cst.Attribute, scope: Scope, new: str) -> None:
-        if "(" in new:
+        if new.endswith("().get") and node not in self.module.called:
+            self.edit(node, lambda updated: fill(f"(lambda: {{self}}.{new}())", {"self": updated.value}, []))
+        elif "(" in new:
             self.edit(node, lambda updated: fill(f"{{self}}.{new}", {"self": updated.value}, []))
         elif "." in new:
             self._spell_anew(node, scope, new)

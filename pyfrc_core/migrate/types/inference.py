@@ -30,6 +30,7 @@ from .atoms import (
     union,
 )
 from .scopes import Binding, Module, OwnClass, OwnFunction, Scope
+from .values import values
 
 _SINGLE = {"Optional", "Union", "Final", "ClassVar", "Annotated", "Type", "type"}
 _SAME = {
@@ -68,8 +69,8 @@ class Inference:
 
     def __init__(self, table: Table, modules: Sequence[Module]) -> None:
         self._table = table
-        self._modules = {module.name: module for module in modules}
-        self._packages = {name.rpartition(".")[0] for name in self._modules if "." in name}
+        self.modules = {module.name: module for module in modules}
+        self._packages = {name.rpartition(".")[0] for name in self.modules if "." in name}
         self._memo: dict[object, Atoms | None] = {}
         self._classes = {each.node: each for module in modules for each in module.classes}
         self._functions = {each.node: each for module in modules for each in module.functions}
@@ -119,31 +120,17 @@ class Inference:
         if isinstance(node, cst.Tuple | cst.List | cst.Set):
             return many(self.infer(each.value, scope) for each in node.elements)
         if isinstance(node, cst.Dict):
-            return many(self.infer(each.value, scope) for each in node.elements)
+            keys = [each.key for each in node.elements if isinstance(each, cst.DictElement)]
+            return many(self.infer(each, scope) for each in (*keys, *(each.value for each in node.elements)))
         if isinstance(node, cst.ListComp | cst.SetComp | cst.GeneratorExp | cst.DictComp):
-            element = node.value if isinstance(node, cst.DictComp) else node.elt
-            return many([self.infer(element, scope.module.comprehensions.get(element, scope))])
+            parts = [node.key, node.value] if isinstance(node, cst.DictComp) else [node.elt]
+            return many(self.infer(each, scope.module.comprehensions.get(each, scope)) for each in parts)
         if isinstance(node, cst.Subscript):
             found = self.infer(node.value, scope)
             return elements(found) | self._results(found, "__getitem__")
         if isinstance(node, cst.Lambda):
             return frozenset({OwnCallable(self._functions[node])}) if node in self._functions else NOTHING
         return NOTHING
-
-    def values(self, node: cst.BaseExpression, scope: Scope) -> list[cst.CSTNode]:
-        """Return the expressions that are assigned to a name, or to an attribute of the team's classes."""
-        bindings: list[Binding] = []
-        if isinstance(node, cst.Name):
-            bindings = [*scope.find(node.value)]
-        elif isinstance(node, cst.Attribute):
-            for owner in self.infer(node.value, scope):
-                if isinstance(owner, OwnRef | OwnObj):
-                    bindings += [
-                        each for own in self.lineage(owner.own)[0] for each in self.own_bindings(own, node.attr.value)
-                    ]
-                elif isinstance(owner, OwnModuleRef) and owner.module is not None:
-                    bindings += owner.module.scope.bindings.get(node.attr.value, ())
-        return [each.node for each in bindings if each.kind == "value" and not each.unpacked]
 
     def named(self, name: str, scope: Scope) -> Atoms:
         """Return what a name can be in a scope."""
@@ -197,8 +184,8 @@ class Inference:
     # Modules
 
     def _module(self, path: str) -> Atoms:
-        if path in self._modules or path in self._packages:
-            return frozenset({OwnModuleRef(path, self._modules.get(path))})
+        if path in self.modules or path in self._packages:
+            return frozenset({OwnModuleRef(path, self.modules.get(path))})
         return frozenset({Ref(path)}) if path in self._table.modules else NOTHING
 
     def _imported(self, path: str) -> Atoms:
@@ -280,7 +267,7 @@ class Inference:
         found: Atoms = NOTHING
         for call, scope in self._calls.get("AutonomousModeSelector", ()):
             for arg in call.args:
-                dictionaries = [arg.value, *self.values(arg.value, scope)]
+                dictionaries = [arg.value, *values(self, arg.value, scope)]
                 for each in dictionaries:
                     if isinstance(each, cst.Dict):
                         found |= union(

@@ -124,6 +124,8 @@ class Module:
     functions: list[OwnFunction] = field(default_factory=list)
     #: Strings that are annotations.
     annotations: list[tuple[cst.SimpleString, Scope]] = field(default_factory=list)
+    #: What is called.
+    called: set[cst.CSTNode] = field(default_factory=set)
     #: Calls whose result is indexed.
     subscripted: set[cst.CSTNode] = field(default_factory=set)
     #: The scope of each part of a comprehension.
@@ -172,6 +174,7 @@ class _Builder(cst.CSTVisitor):
 
     def visit_Call(self, node: cst.Call) -> None:
         self._site(node)
+        self._module.called.add(node.func)
 
     def visit_Comparison(self, node: cst.Comparison) -> None:
         self._site(node)

@@ -1,0 +1,41 @@
+"""The expressions that are assigned to a name: for constants, whose value matters and not only their type."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import libcst as cst
+
+from .atoms import OwnModuleRef, OwnObj, OwnRef
+from .scopes import Binding, Module, Scope
+
+if TYPE_CHECKING:
+    from .inference import Inference
+
+
+def values(inference: Inference, node: cst.BaseExpression, scope: Scope) -> list[cst.CSTNode]:
+    """Return the expressions that are assigned to a name, or to an attribute of the team's classes and modules."""
+    bindings: list[Binding] = []
+    if isinstance(node, cst.Name):
+        bindings = [*scope.find(node.value)] or _from_stars(inference, node.value, scope)
+    elif isinstance(node, cst.Attribute):
+        for owner in inference.infer(node.value, scope):
+            if isinstance(owner, OwnRef | OwnObj):
+                lineage = inference.lineage(owner.own)[0]
+                bindings += [each for own in lineage for each in inference.own_bindings(own, node.attr.value)]
+            elif isinstance(owner, OwnModuleRef) and owner.module is not None:
+                bindings += owner.module.scope.bindings.get(node.attr.value, ())
+    imported = [other for each in bindings if each.kind == "from" for other in _at(inference.modules, each.path)]
+    return [each.node for each in (*bindings, *imported) if each.kind == "value" and not each.unpacked]
+
+
+def _from_stars(inference: Inference, name: str, scope: Scope) -> list[Binding]:
+    stars = scope.module.scope.bindings.get("*", ())
+    return [each for star in stars for each in _at(inference.modules, f"{star.path}.{name}")]
+
+
+def _at(modules: Mapping[str, Module], path: str) -> list[Binding]:
+    """Return what binds a name of one of the project's modules."""
+    module, _, name = path.rpartition(".")
+    return [*modules[module].scope.bindings.get(name, ())] if module in modules else []
