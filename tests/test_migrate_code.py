@@ -66,6 +66,7 @@ CODE = {
         pid = wpimath.controller.PIDController(Kp=1, Ki=0, Kd=0)
         speeds = ChassisSpeeds(1, 0, 0)
         turned = pose.rotation().rotateBy(wpimath.geometry.Rotation2d.fromDegrees(90))
+        far, get = pose.X() + (pose.translation().Y()), pose.X
         """,
         """
         import wpimath
@@ -74,6 +75,7 @@ CODE = {
         pid = wpimath.PIDController(kp=1, ki=0, kd=0)
         speeds = ChassisVelocities(1, 0, 0)
         turned = pose.rotation().rotate_by(wpimath.Rotation2d.from_degrees(90))
+        far, get = pose.x + (pose.translation().y), (lambda: pose.x)
         """,
     ),
     "aliases": (
@@ -353,6 +355,26 @@ CODE = {
         commands2.CommandScheduler.get_instance().run()
         """,
     ),
+    "dictionaries": (
+        """
+        import wpilib
+        motors = {"left": wpilib.Talon(0)}
+        alerts = {name: wpilib.Alert(name, wpilib.Alert.AlertType.kInfo) for name in motors}
+        for name, motor in motors.items():
+            motor.set(len(name))
+            alerts[name].set(True)
+        """,
+        """
+        import wpilib
+        import wpilib_drivers
+        import wpiutil
+        motors = {"left": wpilib_drivers.Talon(0)}
+        alerts = {name: wpiutil.Alert(name, name, wpiutil.Alert.Level.LOW) for name in motors}
+        for name, motor in motors.items():
+            motor.set_throttle(len(name))
+            alerts[name].set(True)
+        """,
+    ),
     "swerve": (
         """
         from wpimath.geometry import Rotation2d
@@ -473,6 +495,16 @@ OWN = {
             return teleopPeriodic
         kRed = getInstance(arcadeDrive=1)
     """,
+    "what can be either": """
+        import wpilib
+
+        class Mine:
+            def set(self, on):
+                pass
+
+        def switch(which: "Mine | wpilib.DigitalOutput"):
+            which.set(True)
+    """,
     "an object that is not known": """
         def read(sensor):
             return sensor.getRate()
@@ -556,6 +588,15 @@ def test_types_are_followed_through_files(tmp_path: Path) -> None:
 
 #: Code with one line that a person has to change, which ends in `# here`, and what is said there.
 BY_HAND = {
+    "one of several": (
+        "import wpilib\nthings = [wpilib.Talon(0), wpilib.DigitalOutput(1)]\nthings[0].set(1)  # here\n",
+        "set can be several things here",
+    ),
+    "a list of lights": (
+        "import wpilib\nlights = [wpilib.AddressableLED.LEDData() for _ in range(9)]\n"
+        "wpilib.LEDPattern.rainbow(255, 128).applyTo(lights)  # here\n",
+        "AddressableLEDBuffer",
+    ),
     "hardware": ("import wpilib\nlight = wpilib.Relay(1)  # here\n", "wpilib.Relay is gone."),
     "an import": ("from wpilib import Relay  # here\n", "wpilib.Relay is gone."),
     "a module": ("from wpilib.shuffleboard import Shuffleboard  # here\n", "Shuffleboard is gone"),

@@ -12,14 +12,14 @@ The table, as JSON:
   the new path ("" if it has not changed, "-" if it is gone); for a class `(` its bases `)`; for a function or constant
   `:` and its type; `{old=new}`, the parameters that do not follow the rule; for a class `;` and its members, separated
   by spaces, each a name with the same parts. `=new` is the new name where it does not follow the rule (snake_case),
-  `=-` a member that is gone. A type in brackets is a container of it.
+  `=-` a member that is gone, `=x!` a method that is a property now. A type in brackets is a container of it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from .packages import Class, Entry, Function, Packages
+from .packages import Class, Entry, Function, Packages, Value
 from .spelling import normalized, snake_case
 
 _MOVED_PACKAGES = ("wpilib", "wpilib_drivers", "wpimath", "wpiutil", "wpilog")
@@ -125,6 +125,8 @@ class _Comparison:
             counterpart, new = self._member(path, target, name)
             if isinstance(new, Function) and new.returns.startswith("rev.Signal_"):
                 counterpart += "().get"  # REV's signals carry an error and a time; the value is one call away
+            if isinstance(member, Function) and isinstance(new, Value):
+                counterpart += "!"
             spelling = "" if counterpart == snake_case(name) else f"={counterpart}"
             type_ = member.returns if isinstance(member, Function) else member.type
             extra = _parameters(member, new)

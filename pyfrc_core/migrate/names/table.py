@@ -35,6 +35,7 @@ class Member:
     """A member of a class.
 
     :param new: its new name; a path of another class's member; None if it is gone
+    :param is_value: a method has become a property
     :param type: the path of its type, or of what it returns; `[path]` for a container; `self`
     """
 
@@ -42,6 +43,7 @@ class Member:
     new: str | None
     type: str = ""
     parameters: Mapping[str, str] = field(default_factory=dict)
+    is_value: bool = False
 
     def keyword(self, name: str) -> str:
         """Return the new name of a keyword argument."""
@@ -168,9 +170,10 @@ def _read_member(text: str) -> Member:
     new = (found["new"] or "")[1:] or snake_case(found["name"])
     return Member(
         found["name"],
-        None if new == "-" else new,
+        None if new == "-" else new.removesuffix("!"),
         (found["type"] or "")[1:],
         _read_parameters(found["parameters"]),
+        is_value=new.endswith("!"),
     )
 
 

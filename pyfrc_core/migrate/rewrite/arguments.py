@@ -7,7 +7,7 @@ from typing import Any
 
 import libcst as cst
 
-from ..types.atoms import Obj, Ref
+from ..types.atoms import Many, Obj, Ref
 from ..types.scopes import Scope
 from ..types.values import values
 from .edits import changed, fill, in_parentheses
@@ -37,6 +37,10 @@ class Arguments:
                 self._hid(node, scope, self._corrections["hid_arguments"][path])
             for position in self._corrections["channel_arguments"].get(path, ()):
                 self._channel(node, scope, position)
+            if path in self._corrections["no_lists"] and node.args:
+                types = self._file.inference.infer(node.args[0].value, scope)
+                if any(isinstance(each, Many) for each in types):
+                    self._file.say(node, f"{path} takes no list any more.", self._corrections["no_lists"][path])
             if path in self._corrections["channels"]:
                 self._limit(node, scope, self._corrections["channels"][path])
             if path in self._corrections["can_bus"]["classes"]:

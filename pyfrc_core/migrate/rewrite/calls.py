@@ -37,6 +37,8 @@ class Calls:
             return
         paths = self._paths(found)
         self._arguments.keywords(node, found)
+        if found.member is not None and found.member.is_value and not node.args:
+            self._file.edit(node, _without_call)
         if self._dashboard(node, scope, found):
             return
         template = next(
@@ -53,7 +55,7 @@ class Calls:
     def _called(self, node: cst.Call, scope: Scope) -> Found | None:
         if isinstance(node.func, cst.Attribute):
             found = self._file.look_up(node.func, scope)
-            return found[0] if found and found[0].member is not None else None
+            return found[0] if found and found[0].member is not None and not any(each.stays for each in found) else None
         if isinstance(node.func, cst.Name):
             for each in self._file.inference.infer(node.func, scope):
                 if isinstance(each, Ref) and (name := self._file.table.name(each.path)) is not None:
@@ -242,6 +244,11 @@ class Calls:
 
     def _is_both(self, node: cst.Attribute, scope: Scope) -> bool:
         return any(each.path == _BOTH for each in self._file.look_up(node, scope))
+
+
+def _without_call(updated: cst.Call) -> cst.BaseExpression:
+    func = updated.func
+    return func.with_changes(lpar=[*updated.lpar, *func.lpar], rpar=[*func.rpar, *updated.rpar])
 
 
 def _for_both(statement: cst.Expr) -> cst.FlattenSentinel[cst.BaseSmallStatement]:

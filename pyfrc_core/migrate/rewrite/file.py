@@ -26,12 +26,18 @@ class Found:
     :param owner: the class that defines the member, or "" for a name of a module
     :param receiver: the class that it was asked for
     :param member: None if WPILib has no such name
+    :param stays: the name is the team's own, or has not changed
     """
 
     owner: str
     receiver: str
     path: str
     member: Member | None
+    stays: bool = False
+
+
+def _unchanged(name: str) -> Found:
+    return Found("-", "", "", Member(name, name), stays=True)
 
 
 class FileRewriter:
@@ -102,13 +108,17 @@ class FileRewriter:
                     found.append(Found("", "", path, known))
                     continue
             if isinstance(owner, Ref | Obj):
-                found += self.member_of([owner.path], name)
+                members = self.member_of([owner.path], name)
+                known = self.table.name(owner.path)
+                # The table has every name that is spelled differently, but not all that have not changed.
+                if not members and known is not None and known.is_class and name == snake_case(name):
+                    members = [_unchanged(name)]
+                found += members
             elif isinstance(owner, OwnObj | OwnRef):
                 mine, theirs = self.inference.lineage(owner.own)
                 members = self.member_of(theirs, name)
                 own = [each for each in mine if self.inference.own_bindings(each, name)]
-                if not own or self._overrides(own, name):
-                    found += members
+                found += members if not own or self._overrides(own, name) else [_unchanged(name)]
         return found
 
     def _overrides(self, classes: list[OwnClass], name: str) -> bool:
@@ -132,7 +142,7 @@ class FileRewriter:
         if node in self.handled:
             return
         found = self.look_up(node, scope)
-        if not found:
+        if all(each.stays for each in found):
             return
         new = {self._new_name(each) for each in found}
         if len(new) > 1:
@@ -147,7 +157,8 @@ class FileRewriter:
         if target is None:
             self._say_gone(node, first)
         elif first.owner:
-            self._rename_member(node, scope, target)
+            is_value = first.member is not None and first.member.is_value
+            self._rename_member(node, scope, target, is_value=is_value)
         elif target != first.path:
             self._respell(node, scope, first.path, target)
 
@@ -165,8 +176,10 @@ class FileRewriter:
         advice = self.table.advice(found.path, f"{found.receiver}.{node.attr.value}", node.attr.value)
         self.say(node, f"{found.path} is gone.", advice)
 
-    def _rename_member(self, node: cst.Attribute, scope: Scope, new: str) -> None:
-        if new.endswith("().get") and node not in self.module.called:
+    def _rename_member(self, node: cst.Attribute, scope: Scope, new: str, *, is_value: bool) -> None:
+        if is_value and node not in self.module.called:
+            self.edit(node, lambda updated: fill(f"(lambda: {{self}}.{new})", {"self": updated.value}, []))
+        elif new.endswith("().get") and node not in self.module.called:
             self.edit(node, lambda updated: fill(f"(lambda: {{self}}.{new}())", {"self": updated.value}, []))
         elif "(" in new:
             self.edit(node, lambda updated: fill(f"{{self}}.{new}", {"self": updated.value}, []))

@@ -69,9 +69,14 @@ class OwnCallable:
 
 @dataclass(frozen=True)
 class Many:
-    """A container."""
+    """A container.
+
+    :param of: what is in it; of a dictionary, its values
+    :param keys: of a dictionary, its keys
+    """
 
     of: frozenset[Atom]
+    keys: frozenset[Atom] | None = None
 
 
 Atom = Ref | Obj | Bound | OwnModuleRef | OwnRef | OwnObj | OwnCallable | Many
@@ -91,8 +96,18 @@ def many(of: Iterable[Atoms]) -> Atoms:
 
 
 def elements(of: Atoms) -> Atoms:
-    """Return what is in containers."""
+    """Return what iterating over containers gives."""
+    return union(each.of if each.keys is None else each.keys for each in of if isinstance(each, Many))
+
+
+def items(of: Atoms) -> Atoms:
+    """Return what indexing containers gives."""
     return union(each.of for each in of if isinstance(each, Many))
+
+
+def dictionary(keys: Atoms, values: Atoms) -> Atoms:
+    """Return a dictionary."""
+    return frozenset({Many(values, keys)}) if keys or values else NOTHING
 
 
 def instance(of: Ref | OwnRef) -> Atom:

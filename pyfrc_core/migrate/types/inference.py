@@ -23,8 +23,10 @@ from .atoms import (
     OwnObj,
     OwnRef,
     Ref,
+    dictionary,
     elements,
     instance,
+    items,
     many,
     of_type,
     union,
@@ -121,13 +123,18 @@ class Inference:
             return many(self.infer(each.value, scope) for each in node.elements)
         if isinstance(node, cst.Dict):
             keys = [each.key for each in node.elements if isinstance(each, cst.DictElement)]
-            return many(self.infer(each, scope) for each in (*keys, *(each.value for each in node.elements)))
-        if isinstance(node, cst.ListComp | cst.SetComp | cst.GeneratorExp | cst.DictComp):
-            parts = [node.key, node.value] if isinstance(node, cst.DictComp) else [node.elt]
-            return many(self.infer(each, scope.module.comprehensions.get(each, scope)) for each in parts)
+            return dictionary(
+                union(self.infer(each, scope) for each in keys),
+                union(self.infer(each.value, scope) for each in node.elements),
+            )
+        if isinstance(node, cst.DictComp):
+            inner = scope.module.comprehensions.get(node.key, scope)
+            return dictionary(self.infer(node.key, inner), self.infer(node.value, inner))
+        if isinstance(node, cst.ListComp | cst.SetComp | cst.GeneratorExp):
+            return many([self.infer(node.elt, scope.module.comprehensions.get(node.elt, scope))])
         if isinstance(node, cst.Subscript):
             found = self.infer(node.value, scope)
-            return elements(found) | self._results(found, "__getitem__")
+            return items(found) | self._results(found, "__getitem__")
         if isinstance(node, cst.Lambda):
             return frozenset({OwnCallable(self._functions[node])}) if node in self._functions else NOTHING
         return NOTHING
@@ -177,6 +184,8 @@ class Inference:
             inner = [each.slice.value for each in node.slice if isinstance(each.slice, cst.Index)]
             if name == "Callable":
                 return NOTHING
+            if name.lower() in ("dict", "mapping", "mutablemapping", "defaultdict") and len(inner) == 2:
+                return dictionary(self.annotated(inner[0], scope), self.annotated(inner[1], scope))
             found = union(self.annotated(each, scope) for each in inner)
             return found if name in _SINGLE else frozenset({Many(found)}) if found else NOTHING
         return frozenset(instance(each) for each in self.infer(node, scope) if isinstance(each, Ref | OwnRef))
@@ -294,10 +303,11 @@ class Inference:
         if isinstance(node.func, cst.Attribute):
             owner = self.infer(node.func.value, scope)
             kept = frozenset(each for each in owner if isinstance(each, Many))
-            if kept and node.func.attr.value in _ITEMS:
-                return kept
-            if kept and node.func.attr.value in _ITEM:
-                return elements(kept)
+            name = node.func.attr.value
+            if kept and name in _ITEMS:
+                return kept if name == "copy" else many([items(kept), *([elements(kept)] if name == "items" else [])])
+            if kept and name in _ITEM:
+                return items(kept)
         return union(self._result(each) for each in called)
 
     def _result(self, called: Atom) -> Atoms:
