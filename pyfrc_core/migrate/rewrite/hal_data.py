@@ -5,6 +5,7 @@ from __future__ import annotations
 import libcst as cst
 
 from ..types.scopes import Scope
+from ..types.values import values
 from .edits import changed, in_parentheses
 from .file import FileRewriter
 
@@ -64,8 +65,8 @@ class HalData:
         if node.value == "hal_data":
             return True
         seen.add(node.value)
-        values = self._file.inference.values(node, scope)
-        return bool(values) and all(self._is_hal_data(each, scope, seen) for each in values)
+        found = values(self._file.inference, node, scope)
+        return bool(found) and all(self._is_hal_data(each, scope, seen) for each in found)
 
 
 def _index(node: cst.BaseExpression) -> cst.Index | None:
