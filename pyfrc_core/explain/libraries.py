@@ -13,6 +13,7 @@ from ..errors import nearest, text_of
 from ..project.robot_files import RobotFiles
 from ..season import CURRENT
 from .explanation import Explanation
+from .other_season import in_2027
 from .places import class_named, frames_of, line_of_class, users_class
 
 _STACK_LINE = re.compile(r'File "([^"]+)", line (\d+)')
@@ -303,8 +304,8 @@ def _explained(row: KnownError, found: re.Match[str], error: BaseException, file
     if place := _FILE_AND_LINE.fullmatch(words.get("place", "")):
         words["place"] = f"{files.relative(place['file'])}:{place['line']}"
     line = line_of_class(cls, files, row.at.format_map(words)) if cls is not None and here is None else ""
-    remedy = _MADE_AGAIN if before and before == here else row.remedy.format_map(words)
-    return Explanation(row.text.format_map(words), remedy, line)
+    remedy = _MADE_AGAIN if before and before == here else in_2027(row.remedy).format_map(words)
+    return Explanation(in_2027(row.text).format_map(words), remedy, line)
 
 
 def _since(text: str, files: RobotFiles) -> str:
