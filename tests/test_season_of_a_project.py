@@ -202,7 +202,7 @@ def test_a_project_from_before_them_needs_the_oldest(tmp_path: Path) -> None:
     pyproject = tmp_path / "pyproject.toml"
     pyproject.write_text(asks_for("2025.3.2"), "utf-8")
     refuse_other_season("2026.2.2", load_season_settings(pyproject))
-    with pytest.raises(ProjectError, match=r'"wpilib>=2026[.]2[.]2,<2027"; or, if its code is for 2027'):
+    with pytest.raises(ProjectError, match=r'"wpilib>=2026[.]2[.]2,<2027"; or, .+: pyfrc migrate$'):
         refuse_other_season("2027.0.0a7", load_season_settings(pyproject))
 
 

@@ -98,11 +98,13 @@ def refuse_other_season(installed: str | None, settings: Sequence[SeasonSetting]
             where=wanted.where,
             remedy=f'Install the pyfrc of that season, or write: robotpy_version = "{installed}"',
         )
+    here = year_of(installed) or 0
+    rewrite = f", or rewrite it for {here}: pyfrc migrate" if wanted.year < here else ""
     raise ProjectError(
         f"{wanted.text}, but wpilib {installed} is installed here",
         where=wanted.where,
         remedy=f'Install the project\'s: pip install "{SEASONS[wanted.year].requirement}"; '
-        f'or, if its code is for {year_of(installed)}, write: robotpy_version = "{installed}"',
+        f'or, if its code is for {here}, write: robotpy_version = "{installed}"{rewrite}',
     )
 
 
