@@ -387,8 +387,7 @@ CODE = {
         speeds = ChassisSpeeds.fromFieldRelativeSpeeds(1, 0, 0, Rotation2d())
         """,
         """
-        from wpimath import ChassisVelocities, Rotation2d
-        from wpimath import SwerveModuleVelocity
+        from wpimath import ChassisVelocities, Rotation2d, SwerveModuleVelocity
 
         def turn(state: SwerveModuleVelocity, angle: Rotation2d):
             state = state.optimize(angle)
@@ -504,6 +503,11 @@ OWN = {
 
         def switch(which: "Mine | wpilib.DigitalOutput"):
             which.set(True)
+    """,
+    "imports of one module": """
+        from math import cos
+        from math import sin
+        import wpilib
     """,
     "an object that is not known": """
         def read(sensor):

@@ -43,6 +43,12 @@ class Imports:
             if isinstance(line, cst.SimpleStatementLine) and any(each.comment for each in line.leading_lines)
             for statement in line.body
         }
+        self._beside_others = {
+            statement
+            for line in module.tree.body
+            if isinstance(line, cst.SimpleStatementLine) and (len(line.body) > 1 or line.trailing_whitespace.comment)
+            for statement in line.body
+        }
         self._bound = {name for scope in _scopes(module) for name in scope.bindings}
 
     # Spelling
@@ -130,7 +136,29 @@ class Imports:
             if new is not None and (len(new) != 1 or new[0] is not node):
                 found[node] = new
         self._add_wanted(found)
+        self._merge(found)
         return found
+
+    def _merge(self, found: dict[cst.CSTNode, list[cst.BaseSmallStatement]]) -> None:
+        """Join imports from modules that are one now, where they stand on lines of their own without comments."""
+        first: dict[str, tuple[cst.BaseSmallStatement, int]] = {}
+        rewritten = set(found)
+        for top in self._top:
+            if top in self._commented or top in self._beside_others:
+                continue
+            kept: list[cst.BaseSmallStatement] = []
+            for each in found.get(top, [top]):
+                module = dotted(each.module) if isinstance(each, cst.ImportFrom) and _is_plain(each) else ""
+                if module in first and top in rewritten:
+                    home, index = first[module]
+                    others = kept if home is top else found.setdefault(home, [home])
+                    others[index] = _joined(others[index], each)
+                    continue
+                if module:
+                    first.setdefault(module, (top, len(kept)))
+                kept.append(each)
+            if kept != [top]:
+                found[top] = kept
 
     def _import(self, node: cst.Import, seen: set[tuple[str, str]]) -> list[cst.BaseSmallStatement]:
         aliases, changed = [], False
@@ -283,6 +311,21 @@ def _import_module(module: str, local: cst.BaseExpression | None) -> cst.Import:
 
 def _import_names(module: str, names: Iterable[str]) -> cst.ImportFrom:
     return cst.ImportFrom(chain_name(module), [cst.ImportAlias(cst.Name(each)) for each in sorted(names)])
+
+
+def _is_plain(node: cst.ImportFrom) -> bool:
+    """Return whether an import is a plain list of names on one line."""
+    return not (isinstance(node.names, cst.ImportStar) or node.relative or node.lpar is not None)
+
+
+def _joined(one: cst.BaseSmallStatement, other: cst.BaseSmallStatement) -> cst.BaseSmallStatement:
+    names: dict[str, cst.ImportAlias] = {}
+    for each in (one, other):
+        assert isinstance(each, cst.ImportFrom)
+        assert not isinstance(each.names, cst.ImportStar)
+        names |= {cst.Module([]).code_for_node(alias).rstrip(", "): alias for alias in each.names}
+    aliases = [alias.with_changes(comma=cst.MaybeSentinel.DEFAULT) for _, alias in sorted(names.items())]
+    return one.with_changes(names=aliases)
 
 
 def _without_last_comma(aliases: list[cst.ImportAlias]) -> list[cst.ImportAlias]:
