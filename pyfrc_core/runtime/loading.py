@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib.util
 import re
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -16,7 +18,8 @@ from ..processes.crash_report import reported_exit
 from ..processes.lent_streams import lent_streams
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_by_any_name
-from ..wpi import timing
+from ..wpi import robots, timing
+from ..wpi.opmodes import DECORATED
 from .checks.hang_detector import importing, watching_exit
 from .checks.misspelled_methods import refuse_unawaited_methods
 from .exceptions import TestFroze
@@ -39,7 +42,9 @@ def load_robot(project: Project) -> type[Any]:
     exit_watched = watching_exit(project.files, project.settings.test.hang_seconds)
     with timing.standing_at_zero(), refused(project.files), exit_watched:
         module = import_file(project, project.main_file)
-    robot_class = choose_robot_class(project, module)
+        robot_class = choose_robot_class(project, module)
+        if robots.can_have_opmodes(robot_class):
+            _import_opmodes(project)
     refuse_unawaited_methods(project)
     return robot_class
 
@@ -61,21 +66,41 @@ def import_file(project: Project, file: Path, name: str | None = None) -> Module
         raise ProjectError("this is not a Python file", where=where)
     module = importlib.util.module_from_spec(specification)
     sys.modules[name] = module
+    _run_code(project, file, name, partial(specification.loader.exec_module, module))
+    return module
+
+
+def _import_opmodes(project: Project) -> None:
+    """Import the files of opmodes that WPILib imports when it makes the robot: there, it goes on after an error."""
+    directory = project.main_file.parent / "opmodes"
+    if re.search(r"\bauto_discover\s*=\s*False", project.main_file.read_text("utf-8", "replace")):
+        return
+    for file in sorted(directory.rglob("*.py")):
+        if DECORATED.search(file.read_text("utf-8", "replace")):
+            parts = file.relative_to(directory.parent).with_suffix("").parts
+            name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+            _run_code(project, file, name, partial(importlib.import_module, name))
+
+
+def _run_code(project: Project, file: Path, name: str, run: Callable[[], object]) -> None:
+    """Run the code of a module while it is imported.
+
+    :raises RobotCodeError: when it fails, naming the user's line
+    """
     refuse_keyboard_input(project.files)
     try:
         with lent_streams(), importing(project.files, project.settings.test.hang_seconds), reported_exit(project.files):
-            specification.loader.exec_module(module)
+            run()
     except (SyntaxError, UnicodeDecodeError, ValueError) as error:
-        del sys.modules[name]
+        sys.modules.pop(name, None)
         _refuse_wrong_encoding(project, file, error)
         raise _import_error(project, file, error) from error
     except RobotCodeError:  # it names its place
-        del sys.modules[name]
+        sys.modules.pop(name, None)
         raise
     except BaseException as error:
-        del sys.modules[name]
+        sys.modules.pop(name, None)
         raise _import_error(project, file, error) from error
-    return module
 
 
 def _import_error(project: Project, file: Path, error: BaseException) -> RobotCodeError:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any, NamedTuple, Protocol
 
 #: The robot's modes that have opmodes, by WPILib's numbers for them.
 MODES = {1: "autonomous", 2: "teleop", 3: "test"}
+#: Finds an opmode's class in the text of a file.
+DECORATED = re.compile(r"^\s*@(\w+\.)*(autonomous|teleop|utility)\b", re.MULTILINE)
 _WPILIBS_NAMES = {"teleoperated": "teleop", "utility": "test"}
 
 

@@ -8,6 +8,7 @@ from .code_warning import CodeWarning
 from .foreign_paths import find_foreign_paths
 from .missing_super import find_missing_super
 from .misspelled_methods import find_misspelled_methods
+from .undecorated_opmodes import find_undecorated_opmodes
 
 if TYPE_CHECKING:
     from ...project import Project
@@ -15,4 +16,9 @@ if TYPE_CHECKING:
 
 def find_code_warnings(project: Project) -> list[CodeWarning]:
     """Return the mistakes in the project's imported modules."""
-    return [*find_misspelled_methods(project), *find_missing_super(project), *find_foreign_paths(project)]
+    return [
+        *find_misspelled_methods(project),
+        *find_missing_super(project),
+        *find_undecorated_opmodes(project),
+        *find_foreign_paths(project),
+    ]

@@ -7,6 +7,7 @@ when it is made, and its callbacks are put into the schedule of the run's loop.
 
 from __future__ import annotations
 
+import re
 import weakref
 from collections.abc import Callable
 from datetime import timedelta
@@ -19,6 +20,7 @@ from ...patch_table import Patch
 from ...time.timed_loop import Periodic, TimedLoop
 from ..active_run import active_run
 
+_TRIED_WITHOUT_ROBOT = re.compile(r"__init__\(\) missing \d+ required positional argument")
 _MICROSECOND = timedelta(microseconds=1)
 
 
@@ -128,7 +130,15 @@ def patches() -> list[Patch]:
 
         def make() -> Any:
             __tracebackhide__ = True
-            return _made(factory())
+            try:
+                opmode = factory()
+            except TypeError as error:
+                # WPILib calls the class with the robot, and after any TypeError without it: that hides the first one.
+                first = error.__context__
+                if isinstance(first, TypeError) and _TRIED_WITHOUT_ROBOT.search(str(error)):
+                    raise first from None
+                raise
+            return _made(opmode)
 
         if "factory" in kwargs:
             real(robot, *args, **{**kwargs, "factory": make})

@@ -1,0 +1,94 @@
+"""Mistakes in opmodes that WPILib hides: the user's line comes first."""
+
+from __future__ import annotations
+
+import pytest
+from conftest import MakeProject
+
+ROBOT = """
+    import wpilib
+
+
+    class MyRobot(wpilib.OpModeRobot):
+        pass
+
+
+    @wpilib.teleop
+    class Drive(wpilib.PeriodicOpMode):
+        def __init__(self, robot):
+            {constructor}
+"""
+
+
+@pytest.mark.parametrize(
+    ("constructor", "line", "message"),
+    [
+        ("self.robot = robot", 9, "class Drive does not call super().__init__()"),
+        ('super().__init__(); self.speed = "fast" + 1', 11, "TypeError: can only concatenate str"),
+        ("super().__init__(); self.speed = robot.speed", 11, "AttributeError: 'MyRobot' object has no attribute"),
+    ],
+)
+def test_a_constructor_that_fails(constructor: str, line: int, message: str, make_project: MakeProject) -> None:
+    # WPILib calls the constructor again, without the robot, after a TypeError.
+    project = make_project({"robot.py": ROBOT.replace("{constructor}", constructor)})
+    result = project.run("test", "--builtin", "--", "-k", "opmode")
+    assert result.code == 1
+    assert f"\nrobot.py:{line}: {message}" in result.stdout, result.output
+
+
+@pytest.mark.parametrize(
+    ("code", "message"),
+    [
+        ("SPEED = 1 / 0", "opmodes/drive.py:4: ZeroDivisionError: division by zero"),
+        ("def speed()", "opmodes/drive.py:4: SyntaxError: expected ':'"),
+    ],
+)
+@pytest.mark.parametrize("command", ["test --builtin", "sim --ui none --mode teleop --seconds 1", "fuzz --runs 2"])
+def test_a_file_that_cannot_be_imported(command: str, code: str, message: str, make_project: MakeProject) -> None:
+    opmode = f"import wpilib\n\n\n{code}\n\n\n@wpilib.teleop\nclass Drive(wpilib.PeriodicOpMode):\n    pass\n"
+    robot = "import wpilib\n\n\nclass MyRobot(wpilib.OpModeRobot):\n    pass\n"
+    project = make_project({"robot.py": robot, "opmodes/__init__.py": "", "opmodes/drive.py": opmode})
+    result = project.run(*command.split())
+    assert result.code in (1, 2)
+    assert message in result.output, result.output
+
+
+def test_an_opmode_without_a_decorator(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": """
+                import wpilib
+                from wpilib import PeriodicOpMode
+
+
+                class MyRobot(wpilib.OpModeRobot):
+                    def __init__(self):
+                        super().__init__()
+                        self.add_opmode(ByHand, wpilib.RobotState.get_robot_mode(), "by hand")
+
+
+                class Forgotten(PeriodicOpMode):
+                    pass
+
+
+                class ByHand(wpilib.OpMode):
+                    pass
+
+
+                class Base(wpilib.PeriodicOpMode):
+                    pass
+
+
+                @wpilib.teleop
+                class Drive(Base):
+                    pass
+            """,
+            "opmodes/auto.py": "import wpilib\n\n\nclass Auto(wpilib.OpMode):\n    pass\n",
+        }
+    )
+    result = project.run("doctor", "--no-robot")
+    never = [line for line in result.output.splitlines() if "WPILib never runs" in line]
+    assert [line.partition("program: ")[2].partition(": nothing")[0] for line in never] == [
+        "opmodes/auto.py:4: WPILib never runs Auto",
+        f"{project.place('robot.py', 'class Forgotten')}: WPILib never runs Forgotten",
+    ]
