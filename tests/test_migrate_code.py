@@ -355,6 +355,20 @@ CODE = {
         commands2.CommandScheduler.get_instance().run()
         """,
     ),
+    "arguments that are gone": (
+        """
+        from wpimath.estimator import DifferentialDrivePoseEstimator
+        from wpimath.geometry import Pose2d, Rotation2d
+        from wpimath.kinematics import DifferentialDriveKinematics
+        kinematics = DifferentialDriveKinematics(0.5)
+        estimator = DifferentialDrivePoseEstimator(kinematics, Rotation2d(), 0, 0, Pose2d())
+        """,
+        """
+        from wpimath import DifferentialDriveKinematics, DifferentialDrivePoseEstimator, Pose2d, Rotation2d
+        kinematics = DifferentialDriveKinematics(0.5)
+        estimator = DifferentialDrivePoseEstimator(Rotation2d(), 0, 0, Pose2d())
+        """,
+    ),
     "dictionaries": (
         """
         import wpilib
@@ -595,6 +609,12 @@ BY_HAND = {
     "one of several": (
         "import wpilib\nthings = [wpilib.Talon(0), wpilib.DigitalOutput(1)]\nthings[0].set(1)  # here\n",
         "set can be several things here",
+    ),
+    "other arguments": (
+        "from wpimath.trajectory import TrapezoidProfile\n"
+        "profile = TrapezoidProfile(TrapezoidProfile.Constraints(1, 1))\n"
+        "left = profile.timeLeftUntil(3)  # here\n",
+        "takes other arguments",
     ),
     "a list of lights": (
         "import wpilib\nlights = [wpilib.AddressableLED.LEDData() for _ in range(9)]\n"

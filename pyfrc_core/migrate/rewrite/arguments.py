@@ -37,6 +37,8 @@ class Arguments:
                 self._hid(node, scope, self._corrections["hid_arguments"][path])
             for position in self._corrections["channel_arguments"].get(path, ()):
                 self._channel(node, scope, position)
+            if path in self._corrections["other_arguments"]:
+                self._file.say(node, f"{path} takes other arguments.", self._corrections["other_arguments"][path])
             if path in self._corrections["no_lists"] and node.args:
                 types = self._file.inference.infer(node.args[0].value, scope)
                 if any(isinstance(each, Many) for each in types):

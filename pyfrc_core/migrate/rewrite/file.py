@@ -210,7 +210,7 @@ class FileRewriter:
             node = node.value if isinstance(node, cst.Attribute) else node.func
         self.handled.add(node)
         if isinstance(node, cst.Name):
-            self._count(node, scope, self.imports.consumed)
+            self.imports.count(node.value, scope, self.imports.consumed)
         return node
 
     def consume_all(self, node: cst.CSTNode, scope: Scope) -> None:
@@ -219,18 +219,6 @@ class FileRewriter:
             self.consume(node, scope)
         for child in node.children:
             self.consume_all(child, scope)
-
-    def _count(self, node: cst.Name, scope: Scope, counts: dict[cst.ImportAlias, int]) -> None:
-        for binding in scope.find(node.value):
-            statement = binding.node
-            if binding.kind != "from" or not isinstance(statement, cst.ImportFrom):
-                continue
-            if isinstance(statement.names, cst.ImportStar):
-                continue
-            for alias in statement.names:
-                local = alias.asname.name if alias.asname else alias.name
-                if isinstance(local, cst.Name) and local.value == node.value:
-                    counts[alias] = counts.get(alias, 0) + 1
 
     def name(self, node: cst.Name, scope: Scope) -> None:
         """Rewrite a name that an import gives."""
@@ -244,7 +232,7 @@ class FileRewriter:
             return
         old = refs[0].path
         new = self.table.new_path(old)
-        self._count(node, scope, self.imports.uses)
+        self.imports.count(node.value, scope, self.imports.uses)
         if new is None:
             self.say(node, f"{old} is gone.", self.table.advice(old))
             return

@@ -70,6 +70,7 @@ class Imports:
         # A function is called by its module's name: `telemetry.log` says more than `log`.
         if self._is_from(root, scope) and first[0].isupper():
             if self._gives(first, f"{module}.{first}", scope):
+                self.count(first, scope, self.uses)
                 return rest
             if first not in self._bound:
                 self._wanted_names.setdefault(module, set()).add(first)
@@ -83,6 +84,17 @@ class Imports:
         if not bindings:  # a star import gives it
             return "*" in self._module.scope.bindings
         return any(each.kind == "from" and each.path not in self._table.modules for each in bindings)
+
+    def count(self, name: str, scope: Scope, counts: dict[cst.ImportAlias, int]) -> None:
+        """Count a use of a name that a `from` import gives."""
+        for binding in scope.find(name):
+            statement = binding.node
+            if not isinstance(statement, cst.ImportFrom) or isinstance(statement.names, cst.ImportStar):
+                continue
+            for alias in statement.names:
+                local = alias.asname.name if alias.asname else alias.name
+                if isinstance(local, cst.Name) and local.value == name:
+                    counts[alias] = counts.get(alias, 0) + 1
 
     def _gives(self, name: str, path: str, scope: Scope) -> bool:
         """Return whether the name already is an import of the path."""
