@@ -1,6 +1,8 @@
 # `make demo` and `make test` install everything that they need, on a fresh machine with Python 3.10 or newer.
 PYTHON ?= python3
 VENV ?= .venv
+# Which of the extras in pyproject.toml has the tools for pyfrc's tests.
+DEV ?= dev
 RUN := $(VENV)/bin/python -m
 # Two more than the number of processors, because many tests wait for other programs.
 WORKERS ?= $(shell expr 2 + $$(getconf _NPROCESSORS_ONLN))
@@ -8,7 +10,7 @@ WORKERS ?= $(shell expr 2 + $$(getconf _NPROCESSORS_ONLN))
 # Without compiled modules, each of many processes compiles the tests and pytest's plugins again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test check check-page docs clean
+.PHONY: demo test test-2027 check check-page docs clean
 
 demo: $(VENV)/installed  ## create a robot project in demo/, run its tests, deploy it to a virtual robot, change it, roll back
 	test -d demo || $(RUN) pyfrc init demo
@@ -17,6 +19,9 @@ demo: $(VENV)/installed  ## create a robot project in demo/, run its tests, depl
 
 test: $(VENV)/installed-dev  ## run pyfrc's own tests; ARGS are passed to pytest
 	$(RUN) pytest -n $(WORKERS) --dist worksteal $(ARGS)
+
+test-2027:  ## run the tests that season 2027 has, with its WPILib in .venv-2027; needs Python 3.11 or newer, and glibc 2.39 on Linux
+	$(MAKE) test VENV=.venv-2027 DEV=dev-2027
 
 check: $(VENV)/installed-dev  ## check style, types, and which room imports which
 	$(RUN) ruff check .
@@ -47,7 +52,7 @@ $(VENV)/installed: pyproject.toml | $(VENV)/bin/python
 
 $(VENV)/installed-dev: pyproject.toml | $(VENV)/bin/python
 	@echo "Installing pyfrc, WPILib and the tools for pyfrc's tests in $(VENV), from the network: this may take a few minutes."
-	$(RUN) pip install --quiet --editable ".[dev]"
+	$(RUN) pip install --quiet --editable ".[$(DEV)]"
 	touch $@ $(VENV)/installed
 
 clean:

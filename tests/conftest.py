@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import forked
 import pytest
 from hypothesis import HealthCheck, settings
+from spelling import motors_of, spell_copy, spelled
 from started_commands import StartedCommand, start_command
 
 from pyfrc_core.collector import collector_paused
@@ -64,8 +65,8 @@ _STDERR = pytest.StashKey[int]()
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-#: Guards of tests that need what not every machine has.
-pytest_plugins = ["skips"]
+#: Guards of tests that need what not every machine has, and of those that only one season has.
+pytest_plugins = ["skips", "seasons"]
 
 _BANNER = re.compile(r"^=+ .+ =+$")
 _BLOCK = re.compile(r"^_{2,} (.+?) _{2,}$")
@@ -213,13 +214,18 @@ class RobotProject:
     path: Path
     #: Where the runs' temporary files go; empty again when they have tidied up.
     temporary: Path
+    #: Whether its files have the season's spelling already.
+    as_written: bool = False
 
     def write(self, files: Mapping[str, str]) -> None:
         """Write the files, named relative to the project, their text without its common indentation."""
+        motors = motors_of(files.values())
         for name, text in files.items():
             file = self.path / name
             file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(dedent(text).lstrip("\n"), encoding="utf-8")
+            text = dedent(text).lstrip("\n")
+            spell = file.suffix == ".py" and not self.as_written
+            file.write_text(spelled(text, motors) if spell else text, encoding="utf-8")
 
     def copy(self, robot: Path, *left_out: str) -> None:
         """Copy a sample robot's files: running a robot leaves files in its project.
@@ -228,10 +234,15 @@ class RobotProject:
         """
         ignore = shutil.ignore_patterns("__pycache__", ".pytest_cache", ".pyfrc", "ctre_sim", *left_out)
         shutil.copytree(robot, self.path, dirs_exist_ok=True, ignore=ignore)
+        if not self.as_written:
+            spell_copy(self.path)
 
     def line(self, name: str, text: str) -> int:
         """The number of the one line of a file with `text` in it."""
-        lines = (self.path / name).read_text(encoding="utf-8").splitlines()
+        text, lines = (
+            text if self.as_written else spelled(text),
+            (self.path / name).read_text(encoding="utf-8").splitlines(),
+        )
         numbers = [number for number, line in enumerate(lines, 1) if text in line]
         assert len(numbers) == 1, f"{text!r} is in the lines {numbers} of {name}"
         return numbers[0]
@@ -341,8 +352,9 @@ def sampled(values: Iterable[Any], *daily: Any) -> list[Any]:
 MakeProject = Callable[[Mapping[str, str]], RobotProject]
 
 
-def _new_project(directory: Path, files: Mapping[str, str]) -> RobotProject:
-    project = RobotProject(directory / "robot-project", directory / "temporary")
+def new_project(directory: Path, files: Mapping[str, str], as_written: bool = False) -> RobotProject:
+    """Make a robot project of files in this directory."""
+    project = RobotProject(directory / "robot-project", directory / "temporary", as_written)
     project.path.mkdir()
     project.temporary.mkdir()
     project.write(files)
@@ -352,13 +364,13 @@ def _new_project(directory: Path, files: Mapping[str, str]) -> RobotProject:
 @pytest.fixture
 def make_project(tmp_path: Path) -> MakeProject:
     """Makes a robot project of files; for one test."""
-    return lambda files: _new_project(tmp_path, files)
+    return lambda files: new_project(tmp_path, files)
 
 
 @pytest.fixture(scope="session")
 def make_shared_project(tmp_path_factory: pytest.TempPathFactory) -> MakeProject:
     """Makes a robot project of files, for a fixture that several tests share."""
-    return lambda files: _new_project(tmp_path_factory.mktemp("shared"), files)
+    return lambda files: new_project(tmp_path_factory.mktemp("shared"), files)
 
 
 @pytest.fixture

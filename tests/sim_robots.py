@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 
+from pyfrc_core.season import CURRENT
 from pyfrc_core.sim import Simulation
 
 #: Wall seconds after which a test gives up. Decides nothing else: a busy machine may take its time.
@@ -86,6 +88,10 @@ FILES = {
         teleop = 2
     """,
 }
+
+if CURRENT.year >= 2027:  # which has no choosers
+    FILES["robot.py"] = re.sub(r"self\.chooser\.getSelected\(\)", "0.0", FILES["robot.py"])
+    FILES["robot.py"] = re.sub(r"(?m)^.*[Cc]hooser.*\n", "", FILES["robot.py"])
 
 
 def wait(simulation: Simulation, condition: Callable[[], bool]) -> None:

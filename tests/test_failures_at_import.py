@@ -112,6 +112,7 @@ def test_verbose_shows_the_traceback_of_a_robot_that_cannot_be_imported(make_pro
     assert "NameError" in result.stderr
 
 
+@pytest.mark.season_2026  # where tests are collected for opmodes, it is one error of each file
 def test_plain_pytest_tells_a_robot_that_cannot_be_imported_in_a_line(make_project: MakeProject) -> None:
     project = make_project(
         {

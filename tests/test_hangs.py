@@ -268,6 +268,7 @@ def test_ctrl_c_says_where_the_test_stands(make_project: MakeProject) -> None:
     assert f"interrupted: {place}" in rest
 
 
+@pytest.mark.season_2026
 def test_a_loop_of_the_robots_own_ends_with_its_notifier(make_project: MakeProject) -> None:
     robot = """
         from pathlib import Path

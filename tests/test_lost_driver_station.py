@@ -155,6 +155,7 @@ TESTS = """
 """
 
 
+@pytest.mark.season_2026
 def test_a_lost_driver_station_in_tests_and_in_their_replay(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, "tests/test_lost.py": TESTS})
     result = project.run("test", "--no-isolation", "--record", "recordings")

@@ -16,13 +16,10 @@ ROBOT = """
     class MyRobot(wpilib.TimedRobot):
         def __init__(self):
             super().__init__()
-            self.log = []
+            self.log = [("made", self.now())]
             self.each_loop = lambda: None
             self.addPeriodic(lambda: self.fast.append(self.now()), 0.005, 0.002)
             self.fast = []
-
-        def robotInit(self):
-            self.log.append(("init", self.now()))
 
         def now(self):
             return round(wpilib.Timer.getFPGATimestamp(), 6)
@@ -99,7 +96,7 @@ def test_loops_and_callbacks_keep_their_rates(make_project) -> None:
             loops = []
             robot.each_loop = lambda: loops.append(robot.now())
             control.run_test(lambda tm: tm < 0.1)
-            assert robot.log == [("init", 0.0)]
+            assert robot.log == [("made", 0.0)]
             assert loops == [0.02, 0.04, 0.06, 0.08]
             assert robot.fast[:4] == [0.007, 0.012, 0.017, 0.022]
 
@@ -132,11 +129,6 @@ def test_loops_and_callbacks_keep_their_rates(make_project) -> None:
                 stepTiming(0.1)
             assert loops == [True] * 5
 
-        def test_loop_start_time(control, robot):
-            starts = []
-            robot.each_loop = lambda: starts.append(robot.getLoopStartTime())
-            control.run_test(lambda tm: tm < 0.06)
-            assert starts == [20000, 40000]
         """,
     )
 
@@ -179,6 +171,22 @@ def test_waiting_in_the_loop_lets_everything_else_go_on(make_project) -> None:
                 control.run_test(step)
             assert "swallowed" not in robot.log
         """,
+    )
+
+
+@pytest.mark.season_2026  # 2027 has no robotInit, and counts in nanoseconds
+def test_the_init_and_the_starts_of_loops(make_project) -> None:
+    passes(
+        make_project,
+        """
+        def test_it(control, robot):
+            starts = []
+            robot.each_loop = lambda: starts.append(robot.getLoopStartTime())
+            control.run_test(lambda tm: tm < 0.06)
+            assert starts == [20000, 40000]
+            assert robot.init == 0.0
+        """,
+        ROBOT + "\n        def robotInit(self):\n            self.init = self.now()\n",
     )
 
 
@@ -357,6 +365,7 @@ DRIVES = """
             self.motor.set(-self.stick.getRawAxis(1))
 """
 
+OWN_BODY = "its own, by wpilib's body"
 LOOPS = {
     "wpilib's": f"""
     import wpilib
@@ -386,7 +395,7 @@ LOOPS = {
         def endCompetition(self):
             self.running = False
     """,
-    "its own, by wpilib's body": f"""
+    OWN_BODY: f"""
     import wpilib
 
     class MyRobot(wpilib.IterativeRobotBase):{DRIVES}
@@ -405,7 +414,9 @@ LOOPS = {
 }
 
 
-@pytest.mark.parametrize("loop", LOOPS)
+@pytest.mark.parametrize(
+    "loop", [*(loop for loop in LOOPS if loop != OWN_BODY), pytest.param(OWN_BODY, marks=pytest.mark.season_2026)]
+)
 def test_whose_loop_it_is_shows_nowhere_outside(loop: str, make_project) -> None:
     passes(make_project, STEPPED_IN_BOTH_STYLES, LOOPS[loop])
 

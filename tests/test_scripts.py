@@ -26,6 +26,22 @@ ROBOT = """
             self.stick = wpilib.Joystick(0)
             self.motor = wpilib.PWMSparkMax(0)
             self.switch = wpilib.DigitalInput(4)
+
+        def teleopPeriodic(self):
+            self.motor.set(self.stick.getY())
+            if self.stick.getRawButton(3) and self.stick.getRawButton(2):
+                raise RuntimeError("both at once")
+    """
+
+# Season 2027 has no choosers; other tests have its opmodes and tunables.
+CHOOSING = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.stick = wpilib.Joystick(0)
+            self.motor = wpilib.PWMSparkMax(0)
+            self.switch = wpilib.DigitalInput(4)
             self.chooser = wpilib.SendableChooser()
             self.chooser.setDefaultOption("Left", 0.25)
             self.chooser.addOption("Right", 0.75)
@@ -44,8 +60,6 @@ ROBOT = """
 
         def teleopPeriodic(self):
             self.motor.set(self.stick.getY())
-            if self.stick.getRawButton(3) and self.stick.getPOV() == 90:
-                raise RuntimeError("both at once")
     """
 
 
@@ -113,8 +127,9 @@ TODAYS_WAYS = """
     """
 
 
+@pytest.mark.season_2026
 def test_whatever_a_test_does_is_recorded(make_project) -> None:
-    project = make_project({"robot.py": ROBOT, "tests/test_it.py": TODAYS_WAYS})
+    project = make_project({"robot.py": CHOOSING, "tests/test_it.py": TODAYS_WAYS})
     assert project.run("test", "--record", "recordings").code == 0
     script = project.path / "recordings" / "tests_test_it.py.test_it.jsonl"
     replayed = project.run("replay", script)
@@ -203,7 +218,7 @@ FAILING = """
 
         def on_step(tm):
             hal_data["joysticks"][0]["buttons"][3] = tm > 0.5
-            hal_data["joysticks"][0]["povs"][0] = 90 if tm > 0.7 else -1
+            hal_data["joysticks"][0]["buttons"][2] = tm > 0.7
             return tm < 1
 
         control.run_test(on_step)
@@ -249,6 +264,7 @@ def test_where_a_changed_robot_first_differs_is_told(make_project) -> None:
 # -- scripts written by hand ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.season_2026
 def test_a_script_can_say_all_that_comes_from_outside(make_project) -> None:
     script = text(
         {"t": 0, "set": {"mode": "disabled autonomous", "nt:/SmartDashboard/gain": 3}},
@@ -259,7 +275,7 @@ def test_a_script_can_say_all_that_comes_from_outside(make_project) -> None:
     )
     project = make_project(
         {
-            "robot.py": ROBOT,
+            "robot.py": CHOOSING,
             "script.jsonl": script,
             "tests/test_it.py": """
                 def test_it(control, robot, robot_path, hal_data):

@@ -87,14 +87,13 @@ def test_an_object_keeps_its_number(numbered: type) -> None:
         "commands2.Subsystem",
         "wpilib.DigitalInput",
         "wpilib.Field2d",
-        "wpilib.PWMSparkMax",
         "wpilib.TimedRobot",
-        "navx.AHRS",
-        "rev.SparkMax",
+        *(pytest.param(each, marks=pytest.mark.season_2026) for each in ("navx.AHRS", "rev.SparkMax")),
     ],
 )
 def test_it_is_the_base_of_wpilibs_and_vendors_classes(names: str) -> None:
     module, _, name = names.partition(".")
     cls = getattr(pytest.importorskip(module), name)
-    assert issubclass(cls, patches()[0].owner)
-    assert cls.__hash__ is patches()[0].owner.__hash__, "sets of these have another order in each run"
+    assert any(issubclass(cls, each.owner) and cls.__hash__ is each.owner.__hash__ for each in patches()), (
+        "sets of these have another order in each run"
+    )

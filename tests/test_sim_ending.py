@@ -130,6 +130,7 @@ def test_what_was_driven_is_written_however_it_ends(name: str, make_project) -> 
     assert list(made.temporary.iterdir()) == []
 
 
+@pytest.mark.season_2026
 def test_the_data_log_of_a_robot_that_dies_at_once(make_project) -> None:
     """What WPILib holds back for one large write is lost with the process."""
     from wpiutil.log import DataLogReader

@@ -35,6 +35,7 @@ def test_a_practice_match(project) -> None:
     assert "distance driven: 0.0 ft" in result.stdout
 
 
+@pytest.mark.season_2026
 def test_what_is_recorded_is_replayed_and_drawn(project) -> None:
     pytest.importorskip("PIL")
     project.write({"drive.jsonl": SCRIPT})
@@ -142,7 +143,7 @@ def test_what_is_not_installed_is_said(name: str, package: str, monkeypatch: pyt
 
 
 def test_a_robot_that_fails(project, make_project) -> None:
-    broken = FILES["robot.py"].replace("speed = self.chooser.getSelected()", "speed = self.missing")
+    broken = FILES["robot.py"].replace("self.left.set(speed)", "self.left.set(self.missing)")
     made = make_project(FILES | {"robot.py": broken})
     result = made.run("sim", "--ui", "none", "--mode", "auto", "--record", "crash.jsonl")
     assert result.code == 1, result.output

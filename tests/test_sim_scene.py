@@ -202,6 +202,7 @@ def test_a_field_of_no_size_says_where(tmp_path: Path) -> None:
         field(tmp_path, '{"pyfrc": {"field": {"w": 0}}}')
 
 
+@pytest.mark.season_2026
 def test_the_seasons_tags(tmp_path: Path) -> None:
     pytest.importorskip("robotpy_apriltag")
     project = Project(tmp_path / "robot.py")

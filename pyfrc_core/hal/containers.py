@@ -299,6 +299,8 @@ class ValueList(LiveList):
 
     def _position(self, index: Any) -> int:
         length = self._length()
+        if not isinstance(index, int) and hasattr(index, "__index__"):  # as XboxController.Button.A of 2027
+            index = index.__index__()
         if not isinstance(index, int) or not -length <= index < length:
             raise self._wrong(index)
         return index + length if index < 0 else index

@@ -4,9 +4,10 @@ Python hashes an object by its address in memory, unless its class says otherwis
 the hashes determine the order of a set. commands2 keeps the commands of a race group in a set: of ``a.until(b)``, some
 runs executed the command first and others the condition, and a command that ended one packet earlier was the result.
 
-All classes of WPILib's bindings, of vendors' C++ libraries and of commands2 derive from one class of pybind11's, which
-is given a hash that counts. The numbers begin again with each run, so the same program gives its objects the same ones.
-Objects of other classes (a plain ``class Module:``) keep the hashes that depend on their addresses.
+All classes of WPILib's bindings and of vendors' C++ libraries derive from one class of pybind11's, which gets a hash
+that counts. So do those of commands2; since 2027 they derive from another class, which gets it, too. The numbers begin
+again with each run, so the same program gives its objects the same ones. Objects of other classes (a plain
+``class Module:``) keep the hashes that depend on their addresses.
 """
 
 from __future__ import annotations
@@ -33,8 +34,8 @@ _counter = itertools.count()
 
 
 def patches() -> list[Patch]:
-    """Return the patch of the class that all classes of WPILib's bindings derive from."""
-    return [Patch(robots.OF_ALL_BINDINGS, "__hash__", hash_by_number)]
+    """Return the patches of the classes that WPILib's and commands2's derive from."""
+    return [Patch(each, "__hash__", hash_by_number) for each in robots.DERIVED_FROM]
 
 
 def hash_by_number(self: Any) -> int:

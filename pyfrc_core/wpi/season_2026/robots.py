@@ -43,8 +43,8 @@ BASES: tuple[type[Any], ...] = (wpilib.RobotBase, wpilib.IterativeRobotBase, wpi
 #: The functions that make a robot and run it, which robot code of earlier years calls.
 RUN_THE_PROGRAM: tuple[tuple[Any, str], ...] = ((wpilib, "run"),)
 
-#: The class that all classes of WPILib's bindings derive from.
-OF_ALL_BINDINGS: type[Any] = wpilib.RobotBase.__mro__[-2]  # the last one is `object`
+#: The class that all classes of WPILib's bindings and of commands2 derive from; the last one of all is `object`.
+DERIVED_FROM: tuple[type[Any], ...] = (wpilib.RobotBase.__mro__[-2],)
 
 # -- kinds of robots ---------------------------------------------------------------------------------------------------
 

@@ -11,6 +11,7 @@ from typing import Any, TypeGuard
 from weakref import WeakKeyDictionary
 
 import hal
+import telemetry
 import wpilib
 
 from ...compat.private_name import PrivateName
@@ -39,8 +40,8 @@ BASES: tuple[type[Any], ...] = (
 #: The functions that make a robot and run it, which robot code of earlier years calls.
 RUN_THE_PROGRAM: tuple[tuple[Any, str], ...] = ()
 
-#: The class that all classes of WPILib's bindings derive from.
-OF_ALL_BINDINGS: type[Any] = wpilib.RobotBase.__mro__[-2]  # the last one is `object`
+#: The classes that all classes of WPILib's bindings (the last one of all is `object`) and of commands2 derive from.
+DERIVED_FROM: tuple[type[Any], ...] = (wpilib.RobotBase.__mro__[-2], telemetry.TelemetryLoggable)
 
 # -- kinds of robots ---------------------------------------------------------------------------------------------------
 

@@ -1,9 +1,10 @@
 """What the buttons and the autonomous command group do to the arm."""
 
 import pytest
+from wpilib import XboxController
 from wpilib.simulation import PWMSim
 
-A, B, X = 1, 2, 3
+A, B, X = XboxController.Button.kA, XboxController.Button.kB, XboxController.Button.kX
 
 
 def test_autonomous_steps_take_their_time(control, robot, hal_data):

@@ -1,0 +1,63 @@
+"""Which tests run in season 2027: those of its own, and those of some files that are about both seasons.
+
+The robots in them are written in that season's spelling (`spelling`).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from pyfrc_core.season import CURRENT
+
+#: The files whose tests run in season 2027, too, but for those with the mark ``season_2026``. None uses WPILib outside
+#: of robots' files.
+IN_2027 = frozenset(
+    {
+        "collector",
+        "crash_reports",
+        "determinism",
+        "failures",
+        "failures_at_import",
+        "fuzz_hints",
+        "fuzz_lines",
+        "fuzz_plan",
+        "fuzz_shrink",
+        "fuzz_states",
+        "hal_paths",
+        "hangs",
+        "isolation",
+        "lost_driver_station",
+        "motion",
+        "robot_time",
+        "scripts",
+        "set_order",
+        "sim_ending",
+        "sim_headless",
+        "sim_scene",
+        "sim_session",
+        "visionsim",
+    }
+)
+
+TESTS = Path(__file__).parent
+
+
+def pytest_ignore_collect(collection_path: Path) -> bool | None:
+    """Leave out the files that are not for the installed season, and the directories that have none."""
+    if CURRENT.year < 2027 or TESTS not in collection_path.parents:
+        return None
+    if collection_path.parent == TESTS:
+        ours = collection_path.name == "season_2027" or collection_path.stem.removeprefix("test_") in IN_2027
+        return None if ours else True
+    return None
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what only WPILib 2026 has."""
+    if CURRENT.year < 2027:
+        return
+    others = [item for item in items if item.get_closest_marker("season_2026")]
+    config.hook.pytest_deselected(items=others)
+    items[:] = [item for item in items if not item.get_closest_marker("season_2026")]
