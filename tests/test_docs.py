@@ -189,6 +189,13 @@ def test_the_guide_to_2027_lists_every_option() -> None:
     assert set(re.findall(r"`(--\w+)`", table)) == options - {"--project", "--verbose", "--quiet"}
 
 
+def test_the_robot_of_2026_on_the_page_of_2027_passes(make_project) -> None:
+    examples = files("docs/2027_from_2026.md")
+    ours = {name.removeprefix("robot_2026/"): text for name, text in examples.items() if name.startswith("robot_2026/")}
+    result = make_project(ours).run("test", "--", "-v")
+    assert list(result.outcomes().values()) == ["PASSED"], result.output
+
+
 COMING_FROM = ("docs/from_pyfrc_2019.md", "docs/from_todays_pyfrc.md")
 
 
