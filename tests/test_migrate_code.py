@@ -369,6 +369,35 @@ CODE = {
         estimator = DifferentialDrivePoseEstimator(Rotation2d(), 0, 0, Pose2d())
         """,
     ),
+    "choosers in tests": (
+        """
+        from wpilib.simulation import SendableChooserSim, XboxControllerSim
+
+        def test_it(control):
+            SendableChooserSim("/SmartDashboard/Auto Mode/").setSelected("Stay")
+        """,
+        """
+        from ntcore.util import SelectableControl
+        from wpilib.simulation import XboxControllerSim
+
+        def test_it(control):
+            SelectableControl("Auto Mode").set_selected("Stay")
+        """,
+    ),
+    "an Xbox controller by numbers": (
+        """
+        import wpilib
+        driver, stick = wpilib.XboxController(0), wpilib.Joystick(1)
+        turn = driver.getRawAxis(4) + stick.getRawAxis(4)
+        fire = driver.getRawButton(6) or stick.getRawButton(6)
+        """,
+        """
+        import wpilib
+        driver, stick = wpilib.XboxController(0), wpilib.Joystick(1)
+        turn = driver.get_hid().get_raw_axis(2) + stick.get_raw_axis(4)
+        fire = driver.get_hid().get_raw_button(10) or stick.get_raw_button(5)
+        """,
+    ),
     "dictionaries": (
         """
         import wpilib

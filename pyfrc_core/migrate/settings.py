@@ -115,9 +115,8 @@ class Settings:
                 return f"{found['name']}{found['extras'] or ''}=={self._version}"
             line = text.count("\n", 0, found.start()) + 1
             vendor = next((what for module, what in self._vendors.items() if module in package), "")
-            if vendor or package.startswith("pyfrc"):
-                remedy = vendor or "Write the version of pyfrc that has season 2027."
-                self._report.add(name, line, f"{found[0]} is for 2026.", remedy)
+            if vendor:
+                self._report.add(name, line, f"{found[0]} is for 2026.", vendor)
             return found[0]
 
         return _REQUIREMENT.sub(replaced, text)

@@ -31,12 +31,16 @@ class Arguments:
         for path in paths:
             if path in self._corrections["buttons"]:
                 self._button(node, scope, self._corrections["buttons"][path])
+            if path in self._corrections["axes"] and self._is_xbox(node, scope):
+                self._xbox_number(node.args[self._corrections["axes"][path]], "axes")
             if path in self._corrections["pov_arguments"]:
                 self._direction(node, self._corrections["pov_arguments"][path])
             if path in self._corrections["hid_arguments"]:
                 self._hid(node, scope, self._corrections["hid_arguments"][path])
             for position in self._corrections["channel_arguments"].get(path, ()):
                 self._channel(node, scope, position)
+            if path in self._corrections["chooser_names"] and node.args:
+                self._chooser(node.args[0], self._corrections["chooser_names"][path])
             if path in self._corrections["other_arguments"]:
                 self._file.say(node, f"{path} takes other arguments.", self._corrections["other_arguments"][path])
             if path in self._corrections["no_lists"] and node.args:
@@ -68,6 +72,9 @@ class Arguments:
             return
         arg = node.args[position]
         value = arg.value
+        if isinstance(value, cst.Integer) and self._is_xbox(node, scope):
+            self._xbox_number(arg, "buttons")
+            return
         if isinstance(value, cst.Integer):
             number = cst.Integer(str(int(value.evaluated_value) - 1)) if value.evaluated_value else value
             self._file.edit(arg, changed(value=number))
@@ -84,6 +91,22 @@ class Arguments:
         self._file.say(
             node, "Buttons count from 0 now: 1 is subtracted here.", "Better subtract it from the constant.", done=True
         )
+
+    def _is_xbox(self, node: cst.Call, scope: Scope) -> bool:
+        """Return whether a call is one of an Xbox controller, or gets one as its first argument."""
+        asked = [node.func.value] if isinstance(node.func, cst.Attribute) else []
+        asked += [arg.value for arg in node.args[:1]]
+        types = [each for part in asked for each in self._file.inference.infer(part, scope)]
+        return any(isinstance(each, Obj) and each.path in self._corrections["xbox"]["classes"] for each in types)
+
+    def _xbox_number(self, arg: cst.Arg, kind: str) -> None:
+        numbers = self._corrections["xbox"][kind]
+        number = numbers.get(str(arg.value.evaluated_value)) if isinstance(arg.value, cst.Integer) else None
+        if number is not None:
+            self._file.edit(arg, changed(value=cst.Integer(str(number))))
+        else:
+            now = ", ".join(f"{old} is {new}" for old, new in numbers.items() if str(new) != old)
+            self._file.say(arg, f"The {kind} of an Xbox controller have other numbers.", f"{now}.")
 
     def _direction(self, node: cst.Call, position: int) -> None:
         if len(node.args) <= position or not node.args:
@@ -120,6 +143,16 @@ class Arguments:
             self._file.edit(arg, lambda updated: updated.with_changes(value=updated.value.args[0].value, keyword=None))
         else:
             self._file.say(node, "This takes the number of a channel now, not a DigitalInput.", "Pass the number.")
+
+    def _chooser(self, arg: cst.Arg, prefix: str) -> None:
+        """Pass the name of a chooser instead of its path."""
+        text = arg.value
+        path = text.evaluated_value if isinstance(text, cst.SimpleString) else None
+        if isinstance(text, cst.SimpleString) and isinstance(path, str) and path.startswith(prefix):
+            name = path.removeprefix(prefix).rstrip("/")
+            self._file.edit(arg, changed(value=cst.SimpleString(f"{text.quote}{name}{text.quote}")))
+        else:
+            self._file.say(arg, "This takes the name of a Selectable now.", f"Write it without {prefix}.")
 
     def _hid(self, node: cst.Call, scope: Scope, position: int) -> None:
         """Pass the GenericHID of a controller, which is none itself any more."""

@@ -21,6 +21,14 @@ class HalData:
         """Count a button from 0: `hal_data["joysticks"][0]["buttons"][1]` becomes `...["buttons"][0]`."""
         if not self._file.first_time:
             return
+        index = _index(node)
+        if index is not None and self._is_part(node.value, scope, "axes") and not _is_first(index.value):
+            self._file.say(
+                node,
+                "The axes of a gamepad have other numbers.",
+                "Of an Xbox controller, 2 is 4, 3 is 5, 4 is 2 and 5 is 3; a button's number may differ, too.",
+                done=True,
+            )
         if self._is_buttons(node, scope):
             if node not in self._with_number:
                 self._file.say(
@@ -45,12 +53,15 @@ class HalData:
             self._file.say(node, "Buttons count from 0 in hal_data, too: 1 is subtracted here.", done=True)
 
     def _is_buttons(self, node: cst.BaseExpression, scope: Scope) -> bool:
+        return self._is_part(node, scope, "buttons")
+
+    def _is_part(self, node: cst.BaseExpression, scope: Scope, key: str) -> bool:
         index = _index(node)
         return (
             isinstance(node, cst.Subscript)
             and index is not None
             and isinstance(index.value, cst.SimpleString)
-            and index.value.evaluated_value == "buttons"
+            and index.value.evaluated_value == key
             and self._is_hal_data(node.value, scope, set())
         )
 
@@ -75,3 +86,8 @@ def _index(node: cst.BaseExpression) -> cst.Index | None:
         return None
     index = node.slice[0].slice
     return index if isinstance(index, cst.Index) and index.star is None else None
+
+
+def _is_first(number: cst.BaseExpression) -> bool:
+    """Return whether a number is that of the left stick, which has not changed."""
+    return isinstance(number, cst.Integer) and number.evaluated_value < 2
