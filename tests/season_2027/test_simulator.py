@@ -97,6 +97,7 @@ def test_a_practice_match_runs_the_opmode_of_each_mode(make_project: MakeProject
     ("arguments", "said"),
     [
         (("--mode", "auto", "--opmode", "Right"), "no opmode 'Right': the robot has published 'Forward', 'Left'"),
+        (("--mode", "auto", "--opmode", "Drive"), "'Drive' is not for it"),
         (("--ui", "none", "--opmode", "Left"), "without a window, --opmode needs --mode"),
         (("--mode", "auto", "--opmode", "Left", "--script", "run.jsonl"), "--script are mutually exclusive"),
     ],

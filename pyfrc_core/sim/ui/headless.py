@@ -70,6 +70,23 @@ class Summary:
         return found
 
 
+def _refuse_opmodes_of_other_modes(simulation: Simulation, mode: ChosenMode) -> None:
+    """Refuse ``--opmode`` when no opmode with one of its names is for the mode that the robot is put through."""
+    names = simulation.options.opmodes
+    if not names:
+        return
+    simulation.wait_for(lambda: simulation.snapshot is not None or simulation.status.state == "failed")
+    published = () if simulation.snapshot is None else simulation.snapshot.opmodes
+    chosen = {each.mode: each.name for each in published if each.name in names}
+    if not chosen or mode in chosen:  # a name that the robot has not published is refused by its process
+        return
+    there = ", ".join(repr(each.name) for each in published if each.mode == mode) or "none"
+    raise UsageError(
+        f"--mode runs opmodes for {mode}, and {min(chosen.values())!r} is not for it",
+        remedy=f"Choose one of those that the robot has published for it: {there}.",
+    )
+
+
 def _text_of(failure: Failure) -> str:
     return f"failed at {failure.time:.2f} s: {failure.headline}"
 
@@ -170,6 +187,7 @@ class Headless(FrontEnd):
         if self._mode == "practice":
             simulation.practice()
         elif self._mode is not None and self._mode != "disabled":
+            _refuse_opmodes_of_other_modes(simulation, _CHOSEN[self._mode])
             simulation.choose_mode(_CHOSEN[self._mode])
             simulation.enable()
         if end is None:

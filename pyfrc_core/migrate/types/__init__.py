@@ -1,0 +1,1 @@
+"""What each expression of a project is: of WPILib, by its path, or the team's own."""
