@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import libcst as cst
 
-from .atoms import OwnModuleRef, OwnObj, OwnRef
-from .scopes import Binding, Module, Scope
-
-if TYPE_CHECKING:
-    from .inference import Inference
+from .atoms import Atoms, OwnModuleRef, OwnObj, OwnRef
+from .scopes import Binding, Module, OwnClass, Scope
 
 
-def values(inference: Inference, node: cst.BaseExpression, scope: Scope) -> list[cst.CSTNode]:
+class Types(Protocol):
+    """What is asked of `inference.Inference`."""
+
+    @property
+    def modules(self) -> Mapping[str, Module]: ...
+    def infer(self, node: cst.CSTNode, scope: Scope) -> Atoms: ...
+    def lineage(self, own: OwnClass) -> tuple[list[OwnClass], list[str]]: ...
+    def own_bindings(self, own: OwnClass, name: str) -> list[Binding]: ...
+
+
+def values(inference: Types, node: cst.BaseExpression, scope: Scope) -> list[cst.CSTNode]:
     """Return the expressions that are assigned to a name, or to an attribute of the team's classes and modules."""
     bindings: list[Binding] = []
     if isinstance(node, cst.Name):
@@ -30,7 +37,7 @@ def values(inference: Inference, node: cst.BaseExpression, scope: Scope) -> list
     return [each.node for each in (*bindings, *imported) if each.kind == "value" and not each.unpacked]
 
 
-def _from_stars(inference: Inference, name: str, scope: Scope) -> list[Binding]:
+def _from_stars(inference: Types, name: str, scope: Scope) -> list[Binding]:
     stars = scope.module.scope.bindings.get("*", ())
     return [each for star in stars for each in _at(inference.modules, f"{star.path}.{name}")]
 
