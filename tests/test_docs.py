@@ -159,6 +159,8 @@ def test_the_examples_in_the_simulation_guide_work(project) -> None:
     pytest.importorskip("PIL")
     document = "docs/simulation.md"
     for command in commands(document):
+        if "--opmode" in command:  # of WPILib 2027: in season_2027/test_simulator.py
+            continue
         result = project.run(*shlex.split(command)[1:])
         assert result.code == 0, result.output
     assert (project.path / ".runs/path.png").is_file()

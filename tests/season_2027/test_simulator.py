@@ -117,7 +117,7 @@ def test_the_guides_example_works(make_project: MakeProject) -> None:
         .partition("\n## ")[0]
     )
     (robot,) = re.findall(r"```python\n(.*?)```", guide, re.DOTALL)
-    project = make_project({"robot.py": robot})
+    project = make_project({"leaving/robot.py": robot})
     commands = re.findall(r"^\$ pyfrc (.*)", guide, re.MULTILINE)
     assert len(commands) == 2
     for command in commands:
