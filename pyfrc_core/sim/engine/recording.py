@@ -48,13 +48,15 @@ class Recording:
     def add(self, update: Update) -> None:
         """Add what has happened since the last update."""
         self.is_open = False
+        # What was chosen while time stood comes after that moment, as in the script.
+        chosen_us = update.time_us + (update.time_us == self.length_us and self._stations.last is not None)
         self.length_us = max(self.length_us, update.time_us)
         for step in self._changing[: update.steps_from - self._changing_from]:
             self._steps.append(step.at_us, step)
         self._changing, self._changing_from = update.steps, update.steps_from
         self.add_lines(update.lines, update.network_lines)
         if self._stations.last != update.station:
-            self._stations.append(update.time_us, update.station)
+            self._stations.append(chosen_us, update.station)
 
     def add_lines(self, lines: Iterable[str], network_lines: Iterable[str]) -> None:
         """Add what the robot did, as in `Update`."""
@@ -106,7 +108,7 @@ class Recording:
         again = Recording(self.script(), known=False)
         again.length_us = self.length_us
         again.is_open = True
-        again._stations = self._stations.until(self.length_us)
+        again._stations = self._stations.until(self.length_us + 1)
         return again
 
     @property
