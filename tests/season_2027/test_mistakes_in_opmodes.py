@@ -92,3 +92,62 @@ def test_an_opmode_without_a_decorator(make_project: MakeProject) -> None:
         "opmodes/auto.py:4: WPILib never runs Auto",
         f"{project.place('robot.py', 'class Forgotten')}: WPILib never runs Forgotten",
     ]
+
+
+def test_methods_that_wpilib_never_calls(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": """
+                import wpilib
+
+
+                class MyRobot(wpilib.OpModeRobot):
+                    def robot_init(self): ...
+
+                    def teleop_periodic(self): ...
+
+                    def autonomous_periodic(self): ...
+
+
+                @wpilib.teleop
+                class Drive(wpilib.PeriodicOpMode):
+                    def __init__(self, robot):
+                        super().__init__()
+                        robot.autonomous_periodic()
+
+                    def strat(self): ...
+
+                    def test_periodic(self): ...
+
+                    def ends(self): ...
+
+                    def shoot(self): ...
+
+
+                @wpilib.autonomous
+                class Auto(wpilib.OpMode):
+                    def perodic(self): ...
+
+                    def end(self):
+                        self.send()
+
+                    def send(self): ...
+            """
+        }
+    )
+    output = project.run("doctor", "--no-robot").output
+    for method, message, remedy in (
+        ("robot_init", "does not call MyRobot.robot_init", "Move its lines to __init__, after super().__init__()."),
+        (
+            "teleop_",
+            "does not call MyRobot.teleop_periodic",
+            "Move its lines to periodic of an opmode, a class with @wpilib.teleop.",
+        ),
+        ("strat", "never calls Drive.strat: did you mean start?", "Rename it to start."),
+        ("test_", "does not call Drive.test_periodic", "Move its lines to periodic."),
+        ("ends", "never calls Drive.ends: did you mean end?", "Rename it to end."),
+        ("perodic", "never calls Auto.perodic: did you mean periodic?", "Rename it to periodic."),
+    ):
+        where = project.place("robot.py", f"def {method}")
+        assert f"{where}: WPILib {message}\n          {remedy}" in output, output
+    assert output.count(": WPILib ") == 6, output

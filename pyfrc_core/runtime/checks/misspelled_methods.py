@@ -73,6 +73,8 @@ def _in_class(cls: type, project: Project) -> Iterator[CodeWarning]:
     known = {name for base in library for name in vars(base)}
     own = {name for base in cls.__mro__ if base not in library and base is not object for name in vars(base)}
     missing = {name for name in known if _is_called(name)} - own
+    not_called = {name: place for base in library for name, place in names.NOT_CALLED.get(base.__name__, {}).items()}
+    is_opmode = any(base.__name__ == "OpMode" for base in library)
     for name, method in list(vars(cls).items()):
         if not isinstance(method, FunctionType) or not project.files.is_robot_code(method.__code__.co_filename):
             continue
@@ -84,11 +86,11 @@ def _in_class(cls: type, project: Project) -> Iterator[CodeWarning]:
             )
         if name in known or name.startswith("__"):
             continue
-        if (instead := names.GONE.get(_plain(name))) is not None:
+        if (instead := not_called.get(_plain(name))) is not None and not _is_referred_to(name, project):
             where = _place(method.__code__, project)
             yield CodeWarning(where, f"WPILib does not call {cls.__name__}.{name}", f"Move its lines to {instead}.")
             continue
-        meant = _nearest(name, missing)
+        meant = _nearest(name, missing, in_short_names=1 if is_opmode else 0)
         if meant is not None and not _is_referred_to(name, project):
             spelling, whose = names.OTHER_SPELLING
             season = f" ({whose})" if spelling.search(name) else ""
@@ -112,10 +114,13 @@ def _place(code: CodeType, project: Project) -> str:
     return f"{project.files.relative(code.co_filename)}:{code.co_firstlineno}"
 
 
-def _nearest(name: str, known: set[str]) -> str | None:
-    """Return the most probable correct name, if there is one."""
+def _nearest(name: str, known: set[str], in_short_names: int) -> str | None:
+    """Return the most probable correct name, if there is one.
+
+    :param in_short_names: how many mistakes a name of a few letters, such as ``end``, may have
+    """
     plain = _plain(name)
-    allowed = {each: 2 if len(each) >= 12 else 1 if len(each) >= 7 else 0 for each in known}
+    allowed = {each: 2 if len(each) >= 12 else 1 if len(each) >= 7 else in_short_names for each in known}
     distances = {each: _distance(plain, each.replace("_", "").lower()) for each in known}
     close = [each for each in sorted(known) if distances[each] <= allowed[each]]
     return min(close, key=distances.__getitem__, default=None)
@@ -147,7 +152,7 @@ def _distance(one: str, other: str) -> int:
 
 def _is_referred_to(name: str, project: Project) -> bool:
     """Return whether the project uses this name anywhere besides its definition."""
-    reference = re.compile(rf"(?<!def )\b{re.escape(name)}\b")
+    reference = re.compile(rf"(?<!def )(?<!super\(\)\.)\b{re.escape(name)}\b")
     for module in loaded_modules.look():
         file = str(module.__file__)
         if project.files.is_robot_code(file):

@@ -78,5 +78,15 @@ SYNONYMS = (
 
 #: What another season's spelling of a name has, and whose it is.
 OTHER_SPELLING = re.compile("[A-Z]"), "camelCase names are those of WPILib 2026"
-#: The methods of earlier seasons that are not called any more, in lower case, and where their lines go.
-GONE = {"robotinit": "__init__, after super().__init__()"}
+_MODES_OF_OPMODES = ("autonomous", "teleop", "utility")
+_INSTEAD = {"init": "start", "periodic": "periodic", "exit": "end"}
+#: The methods that are not called in classes that derive from one of this name: in lower case, and where their lines go.
+NOT_CALLED = {
+    "RobotBase": {"robotinit": "__init__, after super().__init__()"},
+    "OpMode": {mode + when: name for mode in _MODES_OF_OPMODES for when, name in _INSTEAD.items()},
+    "OpModeRobotBase": {
+        mode + when: f"{name} of an opmode, a class with @wpilib.{mode}"
+        for mode in _MODES_OF_OPMODES
+        for when, name in _INSTEAD.items()
+    },
+}
