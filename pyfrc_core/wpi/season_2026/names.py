@@ -81,5 +81,5 @@ SYNONYMS = (
 
 #: What another season's spelling of a name has, and whose it is.
 OTHER_SPELLING = re.compile("(?<=[^_])_(?=[^_])"), "snake_case names are those of WPILib 2027"
-#: The methods that are not called in classes that derive from one of this name: in lower case, and where their lines go.
+#: The methods that are not called in classes derived from one of this name, in lower case, and where their lines go.
 NOT_CALLED: Mapping[str, Mapping[str, str]] = {}

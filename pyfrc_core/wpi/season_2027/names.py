@@ -80,7 +80,7 @@ SYNONYMS = (
 OTHER_SPELLING = re.compile("[A-Z]"), "camelCase names are those of WPILib 2026"
 _MODES_OF_OPMODES = ("autonomous", "teleop", "utility")
 _INSTEAD = {"init": "start", "periodic": "periodic", "exit": "end"}
-#: The methods that are not called in classes that derive from one of this name: in lower case, and where their lines go.
+#: The methods that are not called in classes derived from one of this name, in lower case, and where their lines go.
 NOT_CALLED = {
     "RobotBase": {"robotinit": "__init__, after super().__init__()"},
     "OpMode": {mode + when: name for mode in _MODES_OF_OPMODES for when, name in _INSTEAD.items()},
