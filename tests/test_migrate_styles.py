@@ -75,9 +75,31 @@ THEIRS = [
 blocks = st.lists(st.one_of(st.sampled_from(OWN), st.sampled_from(THEIRS)), min_size=1, max_size=8)
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
-@given(st.sampled_from(IMPORTS), blocks, st.sampled_from(["\n", "\r\n"]), st.sampled_from(["    ", "\t", "  "]))
+files = given(st.sampled_from(IMPORTS), blocks, st.sampled_from(["\n", "\r\n"]), st.sampled_from(["    ", "\t", "  "]))
+
+
+def examples(count: int) -> settings:
+    return settings(max_examples=count, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+
+
+@examples(20)
+@files
 def test_odd_styles(
+    style: tuple[str, str, str, str], parts: list[str | tuple[str, str]], newline: str, indent: str
+) -> None:
+    check_style(style, parts, newline, indent)
+
+
+@pytest.mark.slow
+@examples(200)
+@files
+def test_many_odd_styles(
+    style: tuple[str, str, str, str], parts: list[str | tuple[str, str]], newline: str, indent: str
+) -> None:
+    check_style(style, parts, newline, indent)
+
+
+def check_style(
     style: tuple[str, str, str, str], parts: list[str | tuple[str, str]], newline: str, indent: str
 ) -> None:
     imports, encoder, motor, rotation = style

@@ -17,6 +17,7 @@ from shlex import quote
 from typing import TYPE_CHECKING
 
 from .._version import requirement
+from ..config.packages import install_line
 from ..season import CURRENT, SEASONS
 from ..terminal_text import one_line
 from .connection import Connection
@@ -109,7 +110,7 @@ def _our_wpilib() -> str:
 
 
 #: The commands in order. The second needs the internet, the third the robot.
-COMMANDS = ("python -m pip install robotpy", "python -m robotpy sync", "python -m robotpy deploy")
+COMMANDS = (install_line("robotpy"), "python -m robotpy sync", "python -m robotpy deploy")
 
 _SECTION = 'docs/deploy.md, "A freshly imaged robot", has every step.'
 

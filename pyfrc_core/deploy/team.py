@@ -70,8 +70,10 @@ def choose_target(project: Project | None, choice: RobotChoice, ask: Questions |
 
     :param project: None outside of a project, if the options name a robot
     :param ask: None if the user cannot be asked
-    :raises UsageError: if no robot is named and the user cannot be asked, or a team number is invalid
+    :raises UsageError: if no robot is named and the user cannot be asked, a team number is invalid, or pyfrc cannot
+        deploy to the season's controller
     """
+    controller_of(CURRENT)  # refuses a controller that pyfrc cannot deploy to, before any question
     target = find_target(project, robot=choice.robot, team=choice.team, ask=ask.text if ask else None)
     if target.robot is not None and parse_address(target.robot).is_name and not choice.resolve:
         raise UsageError(

@@ -59,6 +59,9 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
             f"{name}() is called on the class {cls}, and not on an object of it",
             f"Create an object in robotInit, as in: self.it = {cls}(...). Then call: self.it.{name}(...)",
         )
+    unknown = [each.arg for each in call.keywords if each.arg and not _has_parameter(forms, each.arg)]
+    if unknown:
+        return Explanation(f"{name}() has no argument {unknown[0]}", f"It takes: {takes}")
     got = _written(call)
     values = _values(found["got"], len(call.args) + len(call.keywords))
     none = next((at for at, value in enumerate(values) if value == "None"), None)
@@ -89,6 +92,10 @@ def _got_none(name: str, written: str, takes: str = "") -> Explanation:
         return Explanation(f"{name}() got None", f"Pass a value.{form}")
     asked = f"Does {written} return something?" if written.endswith(")") else f"Has anything set {written} before?"
     return Explanation(f"{name}() got None, from {written}", f"{asked}{form}")
+
+
+def _has_parameter(forms: list[list[str]], name: str) -> bool:
+    return any(each.startswith(f"{name}: ") for form in forms for each in form)
 
 
 def _parameters(text: str) -> list[str]:

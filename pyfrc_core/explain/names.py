@@ -98,7 +98,10 @@ GONE = {
 }
 
 #: The libraries whose names may be in the table.
-_KNOWN = ("wpilib", "commands2", "rev", "phoenix6", "phoenix5", "navx", "ntcore", "wpimath", "magicbot", "hal")
+_KNOWN = (
+    *("wpilib", "wpilib_drivers", "commands2", "rev", "phoenix6", "phoenix5", "navx", "ntcore", "wpimath", "magicbot"),
+    *("hal", "telemetry", "tunables"),
+)
 
 
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:

@@ -33,18 +33,39 @@ _CONTROLLERS = (
     *("Koors40", "PWMSparkFlex", "PWMSparkMax", "PWMTalonFX", "PWMTalonSRX", "PWMVenom", "PWMVictorSPX", "Spark"),
     *("Talon", "VictorSP"),
 )
-_DASHBOARDS = ("LiveWindow", "NTSendable", "Sendable", "SendableChooser", "Shuffleboard", "SmartDashboard")
+_DASHBOARDS = ("LiveWindow", "NTSendable", "Sendable", "Shuffleboard", "SmartDashboard")
+_IMUS = ("ADIS16448_IMU", "ADIS16470_IMU", "ADXRS450_Gyro", "AnalogGyro", "BuiltInAccelerometer")
 #: Names of 2026 that another module has in 2027, or what replaces them.
 _NAMES_OF_2026 = {
     **{name: f"wpilib_drivers.{name}" for name in _CONTROLLERS},
     **dict.fromkeys(_DASHBOARDS, _TELEMETRY),
     **{name: f"wpiutil.{name}" for name in ("Alert", "Color", "Color8Bit")},
     **{name: f"wpilog.{name}" for name in ("DataLogBackgroundWriter", "DataLogWriter")},
+    **dict.fromkeys(_IMUS, "wpilib.OnboardIMU"),
+    **dict.fromkeys(("AnalogTrigger", "AnalogTriggerOutput"), "wpilib.AnalogInput and a comparison"),
+    **dict.fromkeys(("AsynchronousInterrupt", "SynchronousInterrupt"), "wpilib.EdgeCounter, or a look in each turn"),
+    "DigitalGlitchFilter": "wpimath.Debouncer",
+    "Relay": "wpilib_drivers.PWMSparkMax or a wpilib.DigitalOutput and a driver (SystemCore has no relay ports)",
+    "SPI": "wpilib.I2C, or a sensor on CAN or USB (SystemCore has no SPI)",
+    "getTime": "wpilib.Timer.get_timestamp()",
+    "run": "the class alone, without this line (pyfrc sim, or python -m robotpy sim, starts it)",
     "Counter": "wpilib.EdgeCounter or wpilib.Tachometer",
     "PS4Controller": "wpilib.DualShock4Controller or wpilib.NiDsPS4Controller",
     "PS5Controller": "wpilib.DualSenseController or wpilib.NiDsPS5Controller",
+    "SendableChooser": "tunables.Selectable",
     "Servo": "wpilib.ExpansionHubServo",
 }
+#: Methods of 2026, and of those who remember them halfway: what they are called where a class of 2027 has that.
+_METHODS_OF_2026 = {
+    **dict.fromkeys(("set", "setSpeed", "set_speed"), "set_throttle"),
+    "get": "get_throttle",
+    "stop": "stop_motor",
+    **dict.fromkeys(("isTest", "is_test"), "is_utility"),
+    **dict.fromkeys(("isTestEnabled", "is_test_enabled"), "is_utility_enabled"),
+    **dict.fromkeys(("getFPGATimestamp", "get_fpga_timestamp"), "get_monotonic_timestamp"),
+}
+#: The classes among which 2027 has divided what `DriverStation` had.
+_OF_DRIVER_STATION = ("RobotState", "MatchState", "DriverStationBackend")
 #: Modules and names that 2027 has, and 2026 has not.
 _MODULES_OF_2027 = frozenset({"telemetry", "tunables", "wpilib_drivers", "wpilog"})
 _OPMODES = ("OpMode", "OpModeRobot", "OpModeRobotBase", "PeriodicOpMode", "autonomous", "teleop", "utility")
@@ -62,6 +83,7 @@ _LIBRARIES = (
     "rev",
     "robotpy_apriltag",
     "wpilib",
+    "wpilib_drivers",
     "wpilog",
     "wpimath",
     "wpiutil",
@@ -78,9 +100,27 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         if owner.__module__ == "builtins":
             return _of_module(error.name, str(getattr(error.obj, "__name__", "")), files)
         base = next((each for each in owner.__mro__ if _is_library(each.__module__)), None)
-        if base is not None and (instead := _respelled(error.name, dir(base))):
+        if base is not None and (instead := _of_class(error.name, base)):
             return _explanation(2026, f"{owner.__name__} has no {error.name}", files, instead)
     return None
+
+
+def _of_class(name: str, cls: type) -> str | None:
+    """Return what replaces a name of a class of 2026."""
+    if CURRENT.year < 2027:
+        return None
+    known = dir(cls)
+    if instead := _respelled(name, known):
+        return instead
+    if (renamed := _METHODS_OF_2026.get(name)) in known:
+        return renamed
+    if cls.__name__ != "DriverStation":
+        return None
+    wpilib = sys.modules.get("wpilib")
+    for successor in _OF_DRIVER_STATION:
+        if instead := _of_class(name, getattr(wpilib, successor)):
+            return f"wpilib.{successor}.{instead}"
+    return f"wpilib.{name}" if name in dir(wpilib) else None
 
 
 def in_2027(text: str) -> str:
@@ -109,6 +149,8 @@ def _of_module(name: str, module: str, files: RobotFiles) -> Explanation | None:
         return None
     if CURRENT.year < 2027:
         return _explanation(2027, text, files) if name in _NAMES_OF_2027 else None
+    if f"{module}.{name}" in _MODULES_OF_2026:
+        return _module(f"{module}.{name}", files)
     instead = _NAMES_OF_2026.get(name) or _respelled(name, dir(sys.modules.get(module)))
     return _explanation(2026, text, files, instead) if instead else None
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..compat.cpython_private import get_frame
 from ..errors import RobotCodeError
+from ..wpi import names
 
 if TYPE_CHECKING:
     from ..project.robot_files import RobotFiles
@@ -33,6 +34,5 @@ def _input(prompt: object = "", /) -> str:
     raise RobotCodeError(
         "input() waits for a keyboard, and a robot has none",
         where=f"{_files[0].relative(filename)}:{caller.f_lineno}",
-        remedy="Ask the driver station instead: a wpilib.SendableChooser or SmartDashboard to choose, "
-        "a joystick or gamepad to drive.",
+        remedy=f"Ask the driver station instead: a {names.CHOICES} to choose, a joystick or gamepad to drive.",
     )

@@ -88,6 +88,7 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "set() got None, from speed()",
             "Does speed() return something?\n  It takes: set(value: number)",
         ),
+        ("wpilib.PWMSparkMax(1).set(speed=1)", "set() has no argument speed", "It takes: set(value: number)"),
         (
             "x = wpilib.XboxController(0)\nwpilib.PWMSparkMax(1).set(x.getLeftY)",
             "set() got the function x.getLeftY, and not its value",

@@ -247,3 +247,28 @@ def test_methods_that_are_never_called_are_named(make_project: MakeProject) -> N
     assert "Move its lines to __init__, after super().__init__()." in result.output
     assert "MyRobot.robotPeriodic: did you mean robot_periodic? (camelCase names are those of" in result.output
     assert "robot.py:14: WPILib never calls Drive.perodic: did you mean periodic?" in result.output
+
+
+@pytest.mark.parametrize(("called", "named"), [("robot_init", False), ("is_enabled", True)])
+def test_a_constructor_may_call_what_wpilib_does_not_call(called: str, named: bool, make_project: MakeProject) -> None:
+    """So does a robot that `pyfrc migrate` has written. To be called by another method of its name is not enough."""
+    robot = """
+        import wpilib
+
+
+        class MyRobot(wpilib.TimedRobot):
+            def __init__(self):
+                super().__init__()
+                self.CALLED()
+
+            def robot_init(self):
+                pass
+
+
+        class Practice(MyRobot):
+            def robot_init(self):
+                super().robot_init()
+    """
+    project = make_project({"robot.py": robot.replace("CALLED", called)})
+    output = project.run("doctor", "--no-robot", "--robot-class", "MyRobot").output
+    assert ("WPILib does not call MyRobot.robot_init" in output) is named

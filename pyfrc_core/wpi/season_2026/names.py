@@ -46,6 +46,9 @@ REFRESH = "wpilib.DriverStation.refreshData()"
 #: All methods that robot code overrides, besides those of the modes.
 OVERRIDDEN = _OF_ALL_ROBOTS | OF_A_COMMAND | {"periodic", "runsWhenDisabled", "getInterruptionBehavior"}
 
+#: What lets drivers choose on a dashboard.
+CHOICES = "wpilib.SendableChooser or SmartDashboard"
+
 #: The tables of NetworkTables whose entries are settings, and those that only WPILib itself writes.
 SETTINGS = ("/SmartDashboard/", "/Shuffleboard/", "/Preferences/")
 WRITTEN_BY_WPILIB = ("/FMSInfo/", "/LiveWindow/")

@@ -45,6 +45,9 @@ REFRESH = "wpilib.DriverStationBackend.refresh_data()"
 #: All methods that robot code overrides, besides those of the modes.
 OVERRIDDEN = _OF_ALL_ROBOTS | OF_A_COMMAND | OF_AN_OPMODE | {"runs_when_disabled", "get_interruption_behavior"}
 
+#: What lets drivers choose on a dashboard.
+CHOICES = "tunables.Selectable"
+
 #: The tables of NetworkTables whose entries are settings, and those that only WPILib itself writes.
 SETTINGS = ("/Tunables/", "/Preferences/")
 WRITTEN_BY_WPILIB = ("/DriverStation/", "/Robot/", "/Telemetry/")
