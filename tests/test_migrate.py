@@ -293,4 +293,4 @@ def test_without_libcst_there_is_a_sentence(project: RobotProject, tmp_path: Pat
     (tmp_path / "hidden/libcst.py").write_text("raise ImportError\n")
     result = project.run("migrate", env={"PYTHONPATH": str(tmp_path / "hidden")}, cold=True)
     assert result.code == 1
-    assert 'python -m pip install "pyfrc[migrate]"' in result.stderr
+    assert 'python -m pip install "pyfrc[migrate]>=' in result.stderr

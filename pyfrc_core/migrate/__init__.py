@@ -8,6 +8,7 @@ layout. Nothing imports WPILib, so that a machine with either season can migrate
 
 from __future__ import annotations
 
+from .._version import requirement
 from ..errors import PyfrcError
 
 
@@ -20,5 +21,6 @@ def need_libcst() -> None:
         import libcst  # noqa: F401
     except ImportError:
         raise PyfrcError(
-            "pyfrc migrate needs the package libcst", remedy='Install it with: python -m pip install "pyfrc[migrate]"'
+            "pyfrc migrate needs the package libcst",
+            remedy=f'Install it with: python -m pip install "{requirement("migrate")}"',
         ) from None
