@@ -357,14 +357,24 @@ class _PracticeMatch:
         self._periods = MatchPeriods(settings)
         station.choose_first_opmodes()
 
+    def _period_at(self, now: float) -> tuple[station.Mode, float] | None:
+        """Return the mode of this time and the seconds left in it; None when the match is over.
+
+        At its end, a robot with opmodes is disabled for one packet: the last opmode has an `end` to run.
+        """
+        period = self._periods.at(to_us(now))
+        if period is None and self._mode != "disabled" and station.published_opmodes():
+            return "disabled", 0.0
+        return period
+
     def changes_mode(self, now: float) -> bool:
         """Return whether `on_step` will change the mode."""
-        period = self._periods.at(to_us(now))
+        period = self._period_at(now)
         return period is not None and period[0] != self._mode
 
     def on_step(self, now: float) -> bool:
         """Set the mode of this time; return whether the match continues."""
-        period = self._periods.at(to_us(now))
+        period = self._period_at(now)
         if period is None:
             return False
         mode, left = period

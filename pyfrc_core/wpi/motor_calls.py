@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -15,13 +16,13 @@ class MotorCalls:
 
     Attributes:
         listener: called with each call, before it has an effect
-        members: the motors of each group and drive that was created, by its id: objects of WPILib's are not hashable
-            in all versions
+        members: weak references to the motors of each group and drive that was created, by its id: objects of WPILib's
+            are not hashable in all versions, and opmodes may make new ones of the same channels
     """
 
     def __init__(self) -> None:
         self.listener: OnMotorCall = lambda motor, name, numbers, is_power: None
-        self.members: dict[int, list[Any]] = {}
+        self.members: dict[int, list[weakref.ref[Any]]] = {}
 
 
 def with_derived(base: type[object]) -> Iterator[type[Any]]:
@@ -42,7 +43,9 @@ def of_drive(real: Callable[..., object], name: str, calls: MotorCalls) -> Calla
     return drive
 
 
-def noting_members(real: Callable[..., None], members: dict[int, list[Any]], motor: type[Any]) -> Callable[..., None]:
+def noting_members(
+    real: Callable[..., None], members: dict[int, list[weakref.ref[Any]]], motor: type[Any]
+) -> Callable[..., None]:
     """Return the constructor of a group or drive that notes its motors.
 
     :param motor: the class of motor controllers
@@ -50,7 +53,7 @@ def noting_members(real: Callable[..., None], members: dict[int, list[Any]], mot
 
     def __init__(self: object, *args: object, **kwargs: object) -> None:
         real(self, *args, **kwargs)
-        members[id(self)] = [each for each in (*args, *kwargs.values()) if isinstance(each, motor)]
+        members[id(self)] = [weakref.ref(each) for each in (*args, *kwargs.values()) if isinstance(each, motor)]
 
     return __init__
 

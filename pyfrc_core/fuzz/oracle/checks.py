@@ -84,7 +84,7 @@ class _Oracle:
         self._ends_run = ends_run
         calls.listener = self._on_motor_call
         self._inert_motors = InertMotors(run.hal_data, calls.members)
-        self._left_running = MotorsLeftRunning(self._inert_motors.in_group)
+        self._left_running = MotorsLeftRunning(self._inert_motors.motors_of, self._inert_motors.in_group)
         self._mode = ""
         self._mode_since_us = run.clock.now_us
         #: When the robot was last in the selected mode.
@@ -145,7 +145,9 @@ class _Oracle:
         if mode != self._mode:
             self._mode, self._mode_since_us = mode, self._run.clock.now_us
             self._agrees = False
-            self._left_running.on_mode(mode, self._run.clock.now_us)
+        opmode = "" if mode == "disabled" else station.opmode_name()
+        if (mode, opmode) != self._left_running.during:
+            self._left_running.on_mode(mode, opmode, self._run.clock.now_us)
 
     def after_packet(self) -> None:
         """Check the run after a packet; robot code may be in the middle of a longer call."""
@@ -187,8 +189,9 @@ class _Oracle:
         for motor in self._left_running.found(self._run.clock.now_us):
             place = f"{self._files.relative(motor.code.co_filename)}:{motor.line}" if motor.code else ""
             what = (
-                f"the motor still runs at {motor.power:.2f}, as autonomous has set it here, "
-                f"{STOPS_WITHIN_US / 1e6:g} s after the beginning of teleop: no code has set it since"
+                f"the motor still runs at {motor.power:.2f}, as {motor.period} has set it here, "
+                f"{STOPS_WITHIN_US / 1e6:g} s after the beginning of {self._left_running.period}: "
+                "no code has set it since"
             )
             self._misbehaved(what, "motors_left_running", (place, motor.code.co_name if motor.code else ""))
 

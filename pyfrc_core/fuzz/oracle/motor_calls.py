@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import starmap
@@ -27,7 +28,7 @@ class InertMotors:
     :param members: see `motor_controllers.MotorCalls`
     """
 
-    def __init__(self, hal_data: HalData, members: Mapping[int, Sequence[Any]]) -> None:
+    def __init__(self, hal_data: HalData, members: Mapping[int, Sequence[weakref.ref[Any]]]) -> None:
         self._hal_data = hal_data
         self._members = members
 
@@ -40,9 +41,15 @@ class InertMotors:
             members = self._members.get(id(motor))
             if members is None:  # created before it could be watched
                 return not any(output["initialized"] for output in self._hal_data["pwm"])
-            return all(self.is_inert(member) for member in members)
+            return all(self.is_inert(member()) for member in members)
         return not motor_controllers.is_pwm(motor)
+
+    def motors_of(self, motor: object) -> list[object]:
+        """Return the motors of a drive or a group, as far as they are known; of a motor controller, itself."""
+        if not motor_controllers.is_group(motor):
+            return [motor]
+        return [each for member in self._members.get(id(motor), ()) for each in self.motors_of(member())]
 
     def in_group(self, motor: object) -> bool:
         """Return whether a motor belongs to a drive or a group."""
-        return any(motor is member for members in self._members.values() for member in members)
+        return any(motor is member() for members in self._members.values() for member in members)
