@@ -105,6 +105,9 @@ def test_a_practice_match_has_the_first_opmode_of_each_mode(make_project: MakePr
                     def start(self):
                         self.robot.log.append((type(self).__name__, wpilib.RobotState.is_autonomous()))
 
+                    def end(self):
+                        self.robot.ended = type(self).__name__
+
 
                 @wpilib.autonomous(group="B")
                 class Alpha(Logs):
@@ -130,6 +133,7 @@ def test_a_practice_match_has_the_first_opmode_of_each_mode(make_project: MakePr
                     control.set_practice_match()
                     control.run_test()
                     assert robot.log == [("Beta", True), ("Drive", False)]
+                    assert robot.ended == "Drive"  # the match ends disabled
 
 
                 def test_chosen(control, robot):

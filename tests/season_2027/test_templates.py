@@ -61,3 +61,10 @@ def test_create_physics_finds_its_drivetrain(make_project: MakeProject, template
     assert result.code == 0, result.output
     assert "The project's tests pass." in result.stdout
     assert "No stick moved" not in result.stdout
+
+
+def test_no_opmode_lets_the_drive_time_out(make_project: MakeProject) -> None:
+    project = make_project({})
+    assert project.run("init", "--template", "opmode").code == 0
+    result = project.run("sim", "--ui", "none", "--mode", "practice", "--opmode", "Stay", "--seconds", "25")
+    assert (result.code, re.search("not updated often enough", result.output)) == (0, None), result.output

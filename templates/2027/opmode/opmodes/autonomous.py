@@ -34,4 +34,13 @@ class LeaveLine(wpilib.PeriodicOpMode):
 
 @wpilib.autonomous(name="Stay", description="Stand still, for matches in which our partners need the space")
 class Stay(wpilib.PeriodicOpMode):
-    """The smallest opmode."""
+    """The smallest opmode. A drive wants to be told what to do all the time, even if that is nothing."""
+
+    def __init__(self, robot: MyRobot) -> None:
+        """Called when the opmode is selected, while the robot is disabled."""
+        super().__init__()
+        self.robot = robot
+
+    def periodic(self) -> None:
+        """Called every 20 ms while the robot is enabled."""
+        self.robot.drive.stop_motor()
