@@ -14,7 +14,7 @@ from ..project.robot_files import RobotFiles
 from ..season import CURRENT
 from .explanation import Explanation
 from .other_season import in_2027
-from .places import class_named, frames_of, line_of_class, users_class
+from .places import class_named, frames_of, is_in_opmode, line_of_class, users_class, users_frame
 
 _STACK_LINE = re.compile(r'File "([^"]+)", line (\d+)')
 _FILE_AND_LINE = re.compile(r"(?P<file>[^\s()]+\.py):(?P<line>\d+)")
@@ -24,6 +24,11 @@ _OWN_CHANNEL = "Each device needs a channel of its own: change one of the two to
 _MADE_AGAIN = (
     "This line runs more than once, and makes the device each time. Make it once, in the __init__ of the robot, and "
     "use it here."
+)
+#: Instead, if it was another opmode that made it.
+_MADE_BY_TWO = (
+    "Two opmodes make it. If it is one device, make it once, in the __init__ of the robot, and use it in both; else "
+    "change one of the two to the number that it is wired to."
 )
 _FIRST_STATE = "Write @state(first=True) above the state with which it begins, and @state above the others."
 
@@ -297,18 +302,23 @@ def _explained(row: KnownError, found: re.Match[str], error: BaseException, file
         words["expected"] = getattr(vars(cls).get(words["name"]), "__name__", "TheClass") if cls else "TheClass"
     cls = cls or users_class(error, files)
     words["cls"] = cls.__name__ if cls is not None else words.get("name", "")
-    before, here = _since(str(error), files), files.innermost_line(error.__traceback__, tests=False)
+    first, here = _made_first(str(error), files), files.innermost_line(error.__traceback__, tests=False)
+    before = f"{files.relative(first[0])}:{first[1]}" if first is not None else ""
     words["since"] = f", since {before}" if before else ""
     for name in ("type", "got"):
         words[name] = words.get(name, "").replace("._wpilib.", ".").rpartition(".")[2]
     if place := _FILE_AND_LINE.fullmatch(words.get("place", "")):
         words["place"] = f"{files.relative(place['file'])}:{place['line']}"
     line = line_of_class(cls, files, row.at.format_map(words)) if cls is not None and here is None else ""
-    remedy = _MADE_AGAIN if before and before == here else in_2027(row.remedy).format_map(words)
+    remedy = in_2027(row.remedy).format_map(words)
+    if before and before == here:
+        remedy = _MADE_AGAIN
+    elif first is not None and is_in_opmode(*first) and (now := users_frame(error, files)) is not None:
+        remedy = _MADE_BY_TWO if is_in_opmode(now[0].f_code.co_filename, now[1]) else remedy
     return Explanation(in_2027(row.text).format_map(words), remedy, line)
 
 
-def _since(text: str, files: RobotFiles) -> str:
-    """Return where a device was created before, from the stack that WPILib adds to its message."""
-    ours = [(file, line) for file, line in _STACK_LINE.findall(text) if files.is_project_file(file)]
-    return f"{files.relative(ours[-1][0])}:{ours[-1][1]}" if ours else ""
+def _made_first(text: str, files: RobotFiles) -> tuple[str, int] | None:
+    """Return the file and line where a device was created before, from the stack that WPILib adds to its message."""
+    ours = [(file, int(line)) for file, line in _STACK_LINE.findall(text) if files.is_project_file(file)]
+    return ours[-1] if ours else None

@@ -75,6 +75,23 @@ def line_of_class(cls: type[Any], files: RobotFiles, name: str = "") -> str:
     return files.relative(file)
 
 
+def is_in_opmode(file: str, line: int) -> bool:
+    """Return whether a line of the robot's code is in the class of an opmode."""
+    around = {
+        node.name
+        for node in ast.walk(parsed(file))
+        if isinstance(node, ast.ClassDef) and node.lineno <= line <= (node.end_lineno or 0)
+    }
+    modules = [each for each in list(sys.modules.values()) if getattr(each, "__file__", None) == file]
+    classes = [getattr(module, name, None) for module in modules for name in around]
+    return any(
+        base.__name__ == "OpMode" and base.__module__.startswith("wpilib")
+        for cls in classes
+        if isinstance(cls, type)
+        for base in cls.__mro__
+    )
+
+
 def users_frame(error: BaseException, files: RobotFiles) -> tuple[FrameType, int] | None:
     """Return the frame of the robot's code, or else of a test, nearest to where an error was raised, and its line."""
     found: dict[bool, tuple[FrameType, int]] = {}

@@ -102,3 +102,42 @@ def test_reports_of_wpilib_come_with_the_robots_lines(make_project: MakeProject)
     assert "axis 13 out of range" in result.output
     assert 'robot.py", line 6, in teleop_periodic' in result.output
     assert "pyfrc_core" not in result.output
+
+
+def test_a_device_of_two_opmodes_belongs_to_the_robot(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": """
+                import wpilib
+                import wpilib_drivers
+
+                KEPT = []
+
+
+                class MyRobot(wpilib.OpModeRobot):
+                    pass
+
+
+                @wpilib.teleop
+                class Drive(wpilib.PeriodicOpMode):
+                    def __init__(self, robot):
+                        super().__init__()
+                        KEPT.append(wpilib_drivers.PWMSparkMax(3))
+
+
+                @wpilib.autonomous
+                class Go(wpilib.PeriodicOpMode):
+                    def __init__(self, robot):
+                        super().__init__()
+                        KEPT.append(wpilib_drivers.PWMSparkMax(3))  # the same one
+            """,
+            "tests/test_it.py": "from pyfrc.tests import test_practice\n",
+        }
+    )
+    result = project.run("test")
+    assert result.code == 1, result.output
+    assert (
+        "robot.py:22: PWM channel 3 is used already, since robot.py:15\n"
+        "  Two opmodes make it. If it is one device, make it once, in the __init__ of the robot, and use it in both; "
+        "else change one of the two to the number that it is wired to.\n"
+    ) in result.stdout
