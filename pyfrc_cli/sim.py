@@ -27,8 +27,9 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
 )
 @click.option(
     "--mode",
-    type=click.Choice(["practice", "auto", "teleop", "test", "disabled"]),
-    help="Without a page or a window: the mode that the robot is put through.",
+    type=click.Choice(["practice", "auto", "teleop", "test", "utility", "disabled"]),
+    callback=lambda context, option, mode: "test" if mode == "utility" else mode,
+    help="Without a page or a window: the mode that the robot is put through. Utility is 2027's name of test.",
 )
 @click.option(
     "--opmode",

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeVar, cast, overload
 
 from ..config.settings import MatchSettings
-from ..errors import UsageError
 from ..invariants.watch import watch_invariants
 from ..runtime.clock import to_us
 from ..runtime.exceptions import TestEnded
@@ -20,7 +19,7 @@ from ..runtime.scripts.inputs_file import load_inputs
 from ..runtime.scripts.player import Player
 from ..runtime.seeds import seed_generators
 from ..wpi import station
-from ..wpi.opmodes import mode_name
+from ..wpi.opmodes import find_opmode
 from .fake_time import FakeTime
 
 if TYPE_CHECKING:
@@ -108,19 +107,7 @@ class TestController:
         :param mode: 'autonomous', 'teleop' or 'utility', if opmodes of several modes have this name
         :raises UsageError: when the robot has not published such an opmode, or several
         """
-        name, mode = (opmode, mode) if isinstance(opmode, str) else (opmode.name, opmode.mode)
-        mode = mode_name(mode)
-        published = station.published_opmodes()
-        found = [each for each in published if each.name == name and mode in ("", each.mode)]
-        if len(found) == 1:
-            station.select_opmode(found[0])
-            return
-        there = ", ".join(f"{each.name!r} ({each.mode})" for each in published) or "none"
-        if found:
-            raise UsageError(
-                f"several opmodes are named {name!r}: the robot has published {there}", remedy="Give mode="
-            )
-        raise UsageError(f"there is no opmode {name!r}: the robot has published {there}")
+        station.select_opmode(find_opmode(station.published_opmodes(), opmode, mode))
 
     def set_practice_match(self) -> None:
         """Run a practice match. Call it before `run_test`. A robot with opmodes gets the first one of each mode.
@@ -262,6 +249,7 @@ class TestController:
         enabled: bool,
         autonomous: bool | None = None,
         opmode: str | OpmodeOfTests | None = None,
+        mode: str = "",
         assert_alive: bool = True,
     ) -> float:
         """Run the robot for some time in a mode, with driver-station packets. Give either `autonomous` or `opmode`.
@@ -270,6 +258,7 @@ class TestController:
         :param enabled: whether the robot is enabled
         :param autonomous: whether the mode is autonomous; else it is teleoperated
         :param opmode: the opmode to select, as with `set_opmode`
+        :param mode: the mode of that opmode, if opmodes of several modes have its name
         :param assert_alive: fail when the robot program is not running, before or afterwards
         :returns: the seconds by which robot time has advanced
         :raises ValueError: when `seconds` is negative
@@ -279,10 +268,10 @@ class TestController:
             assert self.robot_is_alive, "the robot program is not running: step inside `with control.run_robot():`"
         if seconds < 0:
             raise ValueError(f"time cannot go back: step_timing(seconds={seconds!r})")
-        if (autonomous is None) == (opmode is None):
-            raise TypeError("step_timing() takes either autonomous or opmode")
+        if (autonomous is None) == (opmode is None) or (mode and opmode is None):
+            raise TypeError("step_timing() takes either autonomous, or opmode and perhaps its mode")
         if opmode is not None:
-            self.set_opmode(opmode)
+            self.set_opmode(opmode, mode)
             station.set_enabled(enabled)
         elif autonomous:
             self.set_autonomous(enabled)

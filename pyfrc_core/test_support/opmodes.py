@@ -16,6 +16,7 @@ from ..runtime.loading import load_robot
 from ..runtime.patches.install import patches
 from ..runtime.robot import RobotRun
 from ..wpi import station
+from .options import READY_MADE_TESTS
 
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
@@ -75,6 +76,20 @@ def value_of(parameter: Any) -> OpmodeOfTests:
 def _place(metafunc: pytest.Metafunc) -> str:
     file, line, _ = metafunc.definition.location
     return f"{file}:{(line or 0) + 1}"
+
+
+def hint_without_opmode(item: pytest.Item) -> list[tuple[str, str]]:
+    """Return a section for the report of a failed test that has chosen none of the robot's opmodes."""
+    if getattr(getattr(item, "function", None), "__module__", "").startswith(READY_MADE_TESTS):
+        return []
+    run = (getattr(item, "funcargs", None) or {}).get("_robot_run")
+    if not isinstance(run, RobotRun) or not run.started or station.has_chosen_opmode():
+        return []
+    published = station.published_opmodes()
+    if not published:
+        return []
+    text = "No opmode was selected in this test, so none has run: control.step_timing(..., opmode={!r}) selects one."
+    return [("pyfrc", text.format(published[0].name))]
 
 
 def published_opmodes(project: Project) -> tuple[Opmode, ...]:

@@ -345,6 +345,8 @@ class PyFrcPlugin(WatchedTests):
                 report.longrepr = f"{file}:{(line or 0) + 1}: there is no fixture {error.argname!r}\n  {known}"
             if never_run:
                 report.sections.append(_NEVER_RUN)
+            elif isinstance(error, AssertionError) and not hasattr(report, BUG):
+                report.sections += opmodes.hint_without_opmode(item)
             report.sections.append(seed_section(self.options))
         return report
 

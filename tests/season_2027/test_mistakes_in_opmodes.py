@@ -151,3 +151,94 @@ def test_methods_that_wpilib_never_calls(make_project: MakeProject) -> None:
         where = project.place("robot.py", f"def {method}")
         assert f"{where}: WPILib {message}\n          {remedy}" in output, output
     assert output.count(": WPILib ") == 6, output
+
+
+OPMODES = """
+    import wpilib
+
+
+    class MyRobot(wpilib.OpModeRobot):
+        pass
+
+
+    @wpilib.teleop
+    class Drive(wpilib.PeriodicOpMode):
+        pass
+
+
+    @wpilib.autonomous(name="Go")
+    class GoForward(wpilib.PeriodicOpMode):
+        pass
+
+
+    @wpilib.utility(name="Go")
+    class GoSlowly(wpilib.PeriodicOpMode):
+        pass
+"""
+
+
+def test_an_opmode_that_a_test_cannot_choose(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": OPMODES,
+            "tests/test_robot.py": """
+                import pytest
+
+                import robot as code
+
+
+                @pytest.mark.parametrize("opmode, mode, message", [
+                    ("drive", "", "there is no opmode 'drive': .*'Drive' .teleop.*Did you mean 'Drive'?"),
+                    ("Drive", "autonomous", "the opmode 'Drive' is for teleop, not for autonomous"),
+                    ("Go", "", "opmodes 'Go' for .*Choose one: mode='.* or mode='"),
+                    (code.Drive, "", "an opmode is chosen by its name, not by the class Drive"),
+                ])
+                def test_wrong(control, robot, opmode, mode, message):
+                    with control.run_robot():
+                        with pytest.raises(Exception, match="(?s)" + message):
+                            control.step_timing(seconds=1, opmode=opmode, mode=mode, enabled=True)
+
+
+                def test_mode(control, hal_data, robot):
+                    with control.run_robot():
+                        control.step_timing(seconds=1, opmode="Go", mode="utility", enabled=True)
+                        assert (control.get_mode(), hal_data["control"]["opmode"]) == ("test", "Go")
+            """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 0, result.output
+
+
+def test_a_failed_test_that_has_chosen_no_opmode(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": OPMODES,
+            "tests/test_robot.py": """
+                def test_none(control, robot):
+                    with control.run_robot():
+                        control.step_timing(seconds=1, autonomous=True, enabled=True)
+                        assert False, "none"
+
+
+                def test_one(control, robot):
+                    with control.run_robot():
+                        control.step_timing(seconds=1, opmode="Drive", enabled=True)
+                        assert False, "one"
+            """,
+        }
+    )
+    output = project.run("test").stdout
+    assert output.count("No opmode was selected in this test") == 1, output
+    assert output.index("No opmode was selected") < output.index("AssertionError: one")
+
+
+def test_two_opmodes_of_one_name(make_project: MakeProject) -> None:
+    second = '@wpilib.teleop(name="Drive")\nclass Again(wpilib.PeriodicOpMode):\n    pass\n'
+    project = make_project({"robot.py": OPMODES, "opmodes/again.py": f"import wpilib\n\n\n{second}"})
+    result = project.run("sim", "--ui", "none", "--mode", "utility", "--seconds", "1")
+    assert "modes: test 1.0 s" in result.output
+    assert result.output.count("only one of") == 1, result.output
+    first = project.place("robot.py", "class Drive")
+    message = f"{first}: WPILib runs only one of the opmodes 'Drive' for teleop: another one is at opmodes/again.py:5"
+    assert message in result.output, result.output

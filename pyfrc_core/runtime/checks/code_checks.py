@@ -8,7 +8,7 @@ from .code_warning import CodeWarning
 from .foreign_paths import find_foreign_paths
 from .missing_super import find_missing_super
 from .misspelled_methods import find_misspelled_methods
-from .undecorated_opmodes import find_undecorated_opmodes
+from .opmodes_never_run import find_opmodes_never_run
 
 if TYPE_CHECKING:
     from ...project import Project
@@ -19,6 +19,6 @@ def find_code_warnings(project: Project) -> list[CodeWarning]:
     return [
         *find_misspelled_methods(project),
         *find_missing_super(project),
-        *find_undecorated_opmodes(project),
+        *find_opmodes_never_run(project),
         *find_foreign_paths(project),
     ]

@@ -216,6 +216,11 @@ def opmode_name() -> str:
     return ""
 
 
+def has_chosen_opmode() -> bool:
+    """Return whether an opmode was chosen for any mode: there are none before 2027."""
+    return False
+
+
 def choose_first_opmodes() -> None:
     """Choose the first opmode of each mode: there are none before 2027."""
 

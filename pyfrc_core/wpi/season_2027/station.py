@@ -34,7 +34,7 @@ from wpilib.simulation import DriverStationSim
 
 from ...errors import UsageError
 from ..opmodes import MODES as MODES_OF_OPMODES
-from ..opmodes import Opmode, OpmodeOfTests
+from ..opmodes import Opmode, OpmodeOfTests, no_opmode
 
 #: The four modes that `TestController.get_mode` returns; "test" is WPILib's utility mode.
 Mode: TypeAlias = Literal["disabled", "autonomous", "teleop", "test"]
@@ -311,8 +311,7 @@ def select_opmode_named(name: str) -> None:
         published = published_opmodes()
         found = [each for each in published if each.name == name]
         if not found:
-            there = ", ".join(repr(each.name) for each in published) or "none"
-            raise UsageError(f"there is no opmode {name!r}: the robot has published {there}")
+            raise no_opmode(name, published)
         _choose(next((each for each in found if each.mode == MODES_OF_OPMODES.get(mode)), found[0]))
     DriverStationSim.set_opmode(_chosen.get(mode, 0))
 
@@ -321,6 +320,11 @@ def select_opmode(opmode: Opmode) -> None:
     """Select an opmode with the next packet, and its mode."""
     _choose(opmode)
     set_mode(autonomous=opmode.mode == "autonomous", test=opmode.mode == "test", enabled=sends_enabled())
+
+
+def has_chosen_opmode() -> bool:
+    """Return whether an opmode was chosen for any mode."""
+    return bool(_chosen)
 
 
 def choose_first_opmodes() -> None:
