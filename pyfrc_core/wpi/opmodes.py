@@ -56,25 +56,24 @@ def find_opmode(published: Collection[Opmode], opmode: str | OpmodeOfTests, mode
     :param mode: the mode that it is for, if it is a name
     :raises UsageError: when there is no such opmode, or several
     """
-    if not isinstance(opmode, str):
-        if isinstance(opmode, type) or not hasattr(opmode, "mode"):
-            what = f"the class {opmode.__name__}" if isinstance(opmode, type) else f"{type(opmode).__name__}"
-            raise UsageError(f"an opmode is chosen by its name, not by {what}", remedy=f"{_there(published)}.")
-        opmode, mode = opmode.name, opmode.mode
+    if not isinstance(opmode, str) and (isinstance(opmode, type) or not hasattr(opmode, "mode")):
+        what = f"the class {opmode.__name__}" if isinstance(opmode, type) else type(opmode).__name__
+        raise UsageError(f"an opmode is chosen by its name, not by {what}", remedy=f"{_there(published)}.")
+    name, mode = (opmode, mode) if isinstance(opmode, str) else (opmode.name, opmode.mode)
     mode = mode_name(mode)
-    named = [each for each in published if each.name == opmode]
+    named = [each for each in published if each.name == name]
     found = [each for each in named if mode in ("", each.mode)]
     if len(found) == 1:
         return found[0]
     modes = [_WORDS.get(each.mode, each.mode) for each in named]
     if found:
         raise UsageError(
-            f"there are opmodes {opmode!r} for {' and '.join(modes)}",
+            f"there are opmodes {name!r} for {' and '.join(modes)}",
             remedy=f"Choose one: {' or '.join(f'mode={each!r}' for each in modes)}.",
         )
     if named:
-        raise UsageError(f"the opmode {opmode!r} is for {' and '.join(modes)}, not for {_WORDS.get(mode, mode)}")
-    raise no_opmode(opmode, published)
+        raise UsageError(f"the opmode {name!r} is for {' and '.join(modes)}, not for {_WORDS.get(mode, mode)}")
+    raise no_opmode(name, published)
 
 
 def no_opmode(name: str, published: Collection[Opmode]) -> UsageError:
