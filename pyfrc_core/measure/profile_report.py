@@ -148,7 +148,7 @@ def _moments(overruns: Sequence[Overrun]) -> str:
 def _lines(slowest: Sequence[tuple[str, str, int]]) -> Iterator[str]:
     if slowest:
         yield ""
-        yield "The lines that took longest, in milliseconds, by samples (too many where C++ code is called), and in waits:"
+        yield "The lines that took longest, in milliseconds, by samples (too many where C++ is called), and in waits:"
         rows = [("line", "function", "time")]
         yield from table([*rows, *((place, function, f"{ns / 1e6:.1f}") for place, function, ns in slowest)], left=2)
 
