@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from conftest import MakeProject, RobotProject
+from skips import missing_programs, require
 
 pytest.importorskip("libcst")
 
@@ -161,6 +162,7 @@ def test_what_is_to_do_stands_in_the_file_on_wish_once(project: RobotProject) ->
 
 
 def test_changes_that_are_in_no_commit_are_refused(project: RobotProject) -> None:
+    require("changes that are in no commit", missing_programs("git"))
     for command in (["init", "-q"], ["add", "."]):
         subprocess.run(["git", *command], cwd=project.path, check=True)
     result = project.run("migrate")
