@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .project_options import project_option
 from .verbosity import hint, verbosity
 
 if TYPE_CHECKING:
@@ -17,13 +18,7 @@ if TYPE_CHECKING:
 
 
 @click.command("migrate", context_settings={"help_option_names": ["-h", "--help"]})
-@click.option(
-    "--project",
-    "directory",
-    metavar="DIR",
-    type=click.Path(path_type=Path),
-    help="The robot project. Default: the current directory, or the nearest one above it with a robot.py.",
-)
+@project_option
 @click.option("--check", is_flag=True, help="Write nothing: report what would change, and what you must do.")
 @click.option("--diff", is_flag=True, help="Write nothing: print the changes.")
 @click.option("--comments", is_flag=True, help="Write what you must do into the files, too, as comments: # 2027: ...")
@@ -65,9 +60,11 @@ def command(directory: Path | None, check: bool, diff: bool, comments: bool, unc
 
 
 def _print(done: Migration, written: bool) -> None:
+    from pyfrc_core.wording import counted
+
     count = len(done.after)
     by_hand, to_check = done.report.by_hand(), done.report.to_check()
-    hint(f"{'Rewrote' if written else 'Would rewrite'} {_files(count)} (Python files: {done.files}).")
+    hint(f"{'Rewrote' if written else 'Would rewrite'} {counted(count, 'file')} (Python files: {done.files}).")
     if to_check:
         hint(f"\nRewritten, but look at them ({len(to_check)}):", bold=True)
         for remark in to_check:
@@ -78,10 +75,6 @@ def _print(done: Migration, written: bool) -> None:
             click.echo(f"  {remark}")
     elif count:
         hint("\nNothing is left to do by hand. Run the tests with 2027: pyfrc test")
-
-
-def _files(count: int) -> str:
-    return f"{count} file{'' if count == 1 else 's'}"
 
 
 def _as_json(done: Migration) -> dict[str, object]:

@@ -15,6 +15,16 @@ if TYPE_CHECKING:
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+#: The option ``--project``.
+project_option = click.option(
+    "--project",
+    "directory",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="The robot project. Default: the current directory, or the nearest one above it with a robot.py.",
+)
+
+
 def project_options(command: Function) -> Function:
     """Add ``--project``, ``--main`` and ``--robot-class``."""
     for option in (
@@ -29,13 +39,7 @@ def project_options(command: Function) -> Function:
             type=click.Path(path_type=Path),
             help="The file with your robot class, if it is not called robot.py.",
         ),
-        click.option(
-            "--project",
-            "directory",
-            metavar="DIR",
-            type=click.Path(path_type=Path),
-            help="The robot project. Default: the current directory, or the nearest one above it with a robot.py.",
-        ),
+        project_option,
     ):
         command = option(command)
     return command

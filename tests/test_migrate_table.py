@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from pyfrc_core.migrate.names.packages import Class, Packages
-from pyfrc_core.migrate.names.spelling import snake_case
 from pyfrc_core.migrate.names.table import HERE, corrections, table
+from pyfrc_core.season.spelling import snake_case
 
 
 @pytest.fixture(scope="module")

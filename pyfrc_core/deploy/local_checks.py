@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import getpass
 import socket
-import subprocess
 import tempfile
 import threading
 from collections.abc import Mapping
@@ -18,6 +17,7 @@ from ..errors import PyfrcError, RobotCodeError
 from ..processes import spawn
 from ..processes.call import run_in_subprocess
 from ..project import MAIN_FILE, Project
+from ..project.git import git_output
 from ..wording import counted
 from .errors import RefusedError
 from .manifest import Manifest, ascii_path, build_manifest, listed, listed_paths
@@ -282,16 +282,5 @@ def _user() -> str:
 
 def _git(root: Path, *arguments: str) -> str | None:
     """Return the output of git, or None without git, a checkout or a commit."""
-    try:
-        done = subprocess.run(
-            ["git", "-C", str(root), *arguments],
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            encoding="utf-8",
-            errors="replace",
-            timeout=_GIT_SECONDS,
-            check=True,
-        )
-    except (OSError, subprocess.SubprocessError):
-        return None
-    return done.stdout.strip()
+    output = git_output(root, *arguments, seconds=_GIT_SECONDS)
+    return None if output is None else output.strip()

@@ -15,6 +15,7 @@ from ..config.robotpy import load_season_settings
 from ..errors import SettingsError
 from ..project.robot_files import RobotFiles
 from ..season import CURRENT, SEASONS
+from ..season.spelling import snake_case
 from .explanation import Explanation
 from .places import imported_name
 
@@ -129,11 +130,7 @@ def in_2027(text: str) -> str:
         return text
     for module, successor in sorted(_MODULES_OF_2026.items(), reverse=True):
         text = text.replace(f"{module}.", f"{successor}.")
-    return re.sub(r"\b[a-z]{2,}\d?(?:[A-Z][A-Za-z0-9]*)+\b", lambda found: _snake(found[0]), text)
-
-
-def _snake(name: str) -> str:
-    return re.sub(r"(?<=[a-z0-9])([A-Z])", r"_\1", name).lower()
+    return re.sub(r"\b[a-z]{2,}\d?(?:[A-Z][A-Za-z0-9]*)+\b", lambda found: snake_case(found[0]), text)
 
 
 def _module(module: str, files: RobotFiles) -> Explanation | None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import os
 import shutil
-import subprocess
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,8 @@ from tempfile import NamedTemporaryFile
 
 from ..config.robotpy import load_robot_packages
 from ..errors import UsageError
+from ..project.environments import is_environment
+from ..project.git import git_output
 from ..season.season_2027 import SEASON_2027
 from .names.table import table
 from .project import Progress, Source, rewrite_all
@@ -117,7 +118,7 @@ def python_files(root: Path) -> list[Path]:
         directories[:] = [
             each
             for each in sorted(directories)
-            if not each.startswith(".") and each not in _NOT_OURS and not (here / each / "pyvenv.cfg").exists()
+            if not each.startswith(".") and each not in _NOT_OURS and not is_environment(here / each)
         ]
         found += [here / each for each in sorted(files) if each.endswith(".py") and not (here / each).is_symlink()]
     return found
@@ -128,19 +129,8 @@ def refuse_uncommitted(root: Path) -> None:
 
     :raises UsageError: with what to do
     """
-    try:
-        done = subprocess.run(
-            ["git", "-C", str(root), "status", "--porcelain", "--", "."],
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            encoding="utf-8",
-            errors="replace",
-            timeout=_GIT_SECONDS,
-            check=True,
-        )
-    except (OSError, subprocess.SubprocessError):
-        return  # no checkout, or no Git
-    changed = [line[3:] for line in done.stdout.splitlines()]
+    status = git_output(root, "status", "--porcelain", "--", ".", seconds=_GIT_SECONDS)
+    changed = [line[3:] for line in (status or "").splitlines()]
     if changed:
         more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
         raise UsageError(

@@ -11,8 +11,10 @@ from ..errors import UsageError
 
 #: The robot's modes that have opmodes, by WPILib's numbers for them.
 MODES = {1: "autonomous", 2: "teleop", 3: "test"}
+#: The decorators of opmodes' classes: each is called like its mode.
+DECORATORS = ("autonomous", "teleop", "utility")
 #: Finds an opmode's class in the text of a file.
-DECORATED = re.compile(r"^\s*@(\w+\.)*(autonomous|teleop|utility)\b", re.MULTILINE)
+DECORATED = re.compile(rf"^\s*@(\w+\.)*({'|'.join(DECORATORS)})\b", re.MULTILINE)
 _WPILIBS_NAMES = {"teleoperated": "teleop", "utility": "test"}
 #: What users call a mode, where that is another word.
 _WORDS = {"test": "utility"}

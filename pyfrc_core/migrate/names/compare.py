@@ -19,8 +19,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from ...season.spelling import normalized, snake_case
 from .packages import Class, Entry, Function, Packages, Value
-from .spelling import normalized, snake_case
 
 _MOVED_PACKAGES = ("wpilib", "wpilib_drivers", "wpimath", "wpiutil", "wpilog")
 _HID = "wpilib.GenericHID"

@@ -15,7 +15,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from .spelling import snake_case
+from ...season.spelling import snake_case
 
 if sys.version_info >= (3, 11):
     import tomllib

@@ -9,7 +9,7 @@ from typing import cast
 import libcst as cst
 from libcst.metadata import CodeRange, MetadataWrapper, PositionProvider
 
-from ..names.spelling import snake_case
+from ...season.spelling import snake_case
 from ..names.table import Member, Table
 from ..report import Report
 from ..types.atoms import Atoms, Obj, OwnObj, OwnRef, Ref

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import libcst as cst
 
-from ..names.spelling import snake_case
+from ...season.spelling import snake_case
 from ..types.atoms import Obj, Ref
 from ..types.scopes import Scope, dotted
 from .edits import changed

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 from ...project.loaded_modules import loaded_modules
 from ...season import CURRENT
+from ...wpi.opmodes import DECORATORS
 from .code_warning import CodeWarning
 
 if TYPE_CHECKING:
     from ...project import Project
 
 _BASES = ("OpMode", "PeriodicOpMode")
-_MODES = ("autonomous", "teleop", "utility")
 
 
 def find_opmodes_never_run(project: Project) -> list[CodeWarning]:
@@ -58,7 +58,7 @@ def _published(node: ast.ClassDef) -> Iterator[tuple[str, str]]:
     """Yield mode and name of a decorated class, if its name is not computed."""
     for decorator in node.decorator_list:
         mode = _name(decorator.func if isinstance(decorator, ast.Call) else decorator)
-        if mode in _MODES:
+        if mode in DECORATORS:
             keywords = decorator.keywords if isinstance(decorator, ast.Call) else []
             name = next((each.value for each in keywords if each.arg == "name"), ast.Constant(node.name))
             if isinstance(name, ast.Constant):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from ..opmodes import DECORATORS
+
 #: The libraries whose classes robot classes derive from.
 LIBRARIES = ("wpilib", "commands2", "magicbot")
 
@@ -81,15 +83,14 @@ SYNONYMS = (
 
 #: What another season's spelling of a name has, and whose it is.
 OTHER_SPELLING = re.compile("[A-Z]"), "camelCase names are those of WPILib 2026"
-_MODES_OF_OPMODES = ("autonomous", "teleop", "utility")
 _INSTEAD = {"init": "start", "periodic": "periodic", "exit": "end"}
 #: The methods that are not called in classes derived from one of this name, in lower case, and where their lines go.
 NOT_CALLED = {
     "RobotBase": {"robotinit": "__init__, after super().__init__()"},
-    "OpMode": {mode + when: name for mode in _MODES_OF_OPMODES for when, name in _INSTEAD.items()},
+    "OpMode": {mode + when: name for mode in DECORATORS for when, name in _INSTEAD.items()},
     "OpModeRobotBase": {
         mode + when: f"{name} of an opmode, a class with @wpilib.{mode}"
-        for mode in _MODES_OF_OPMODES
+        for mode in DECORATORS
         for when, name in _INSTEAD.items()
     },
 }

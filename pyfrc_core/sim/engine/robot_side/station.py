@@ -13,13 +13,13 @@ from ....runtime.match import MatchPeriods
 from ....runtime.robot import RobotRun
 from ....runtime.scripts.joysticks import CONTROL, NEUTRAL
 from ....runtime.scripts.script import InputScript
-from ....runtime.scripts.targets import MODE
+from ....runtime.scripts.targets import MODE, OPMODE
 from ....wpi import station
 from ..commands import ChooseMode, ChooseOpmode, ChosenMode, EmergencyStop, Enable, Practice, chosen_mode
 from ..messages import StationState
 from ..snapshot import Opmode
 
-E_STOP, OPMODE = "control.eStop", "control.opmode"
+E_STOP = "control.eStop"
 
 
 class Station:
