@@ -1,4 +1,4 @@
-"""Write `table.json` anew from the packages of two seasons.
+"""Make `table.json` from the packages of two seasons.
 
 Run it with the site-packages directories of environments that have each season's packages; none of them is imported.
 After `--`, those of the new season:

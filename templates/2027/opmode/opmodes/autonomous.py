@@ -34,7 +34,7 @@ class LeaveLine(wpilib.PeriodicOpMode):
 
 @wpilib.autonomous(name="Stay", description="Stand still, for matches in which our partners need the space")
 class Stay(wpilib.PeriodicOpMode):
-    """The smallest opmode. A drive wants to be told what to do all the time, even if that is nothing."""
+    """The smallest opmode. A drive must be told what to do in each turn, even if that is nothing."""
 
     def __init__(self, robot: MyRobot) -> None:
         """Called when the opmode is selected, while the robot is disabled."""
