@@ -98,9 +98,13 @@ def commented(texts: list[str]) -> Edit:
     return edit
 
 
-def chain(path: str) -> cst.BaseExpression:
+def chain(path: str) -> cst.Name | cst.Attribute:
     """Return the expression `a.b.c`."""
-    return cst.parse_expression(path)
+    first, *rest = path.split(".")
+    node: cst.Name | cst.Attribute = cst.Name(first)
+    for each in rest:
+        node = cst.Attribute(node, cst.Name(each))
+    return node
 
 
 def fill(text: str, parts: Mapping[str, cst.BaseExpression], arguments: list[cst.Arg]) -> cst.BaseExpression:

@@ -8,6 +8,7 @@ import libcst as cst
 
 from ..names.table import Table
 from ..types.scopes import Module, Scope, dotted, import_source
+from .edits import chain
 
 _NEW_MODULES = ("telemetry", "tunables", "wpilib_drivers", "wpilog", "ntcore", "wpilib", "wpimath", "wpiutil", "hal")
 
@@ -22,6 +23,7 @@ class Imports:
         self._module = module
         self._table = table
         self._shared = shared
+        self._packages = {name.partition(".")[0] for name in table.modules}
         self._new_modules = sorted({*table.modules.values(), *_NEW_MODULES} - {""}, key=len, reverse=True)
         self._wanted_names: dict[str, set[str]] = {}
         self._wanted_modules: dict[str, str] = {}
@@ -30,6 +32,8 @@ class Imports:
         self.consumed: dict[cst.ImportAlias, int] = {}
         #: Names that a star import gave, by its statement, with their new paths.
         self.star_names: dict[str, set[str]] = {}
+        #: Statements to add where no import is to put them after.
+        self.at_top: list[cst.BaseSmallStatement] = []
         self._top = [
             statement
             for line in module.tree.body
@@ -179,22 +183,19 @@ class Imports:
             new = self._new_module(old)
             key = (new, dotted(alias.asname.name) if alias.asname and isinstance(alias.asname.name, cst.Name) else "")
             if node in self._top:
-                if key in seen and old.split(".")[0] in _packages(self._table) and node not in self._commented:
+                if key in seen and old.split(".")[0] in self._packages and node not in self._commented:
                     changed = True
                     continue
                 seen.add(key)
             if new != old:
                 changed = True
-                alias = alias.with_changes(name=chain_name(new))
+                alias = alias.with_changes(name=chain(new))
             aliases.append(alias)
         if not changed:
             return [node]
         if not aliases:
-            return [] if self._in_block(node) is False else [cst.Pass()]
+            return [] if node in self._top else [cst.Pass()]
         return [node.with_changes(names=_without_last_comma(aliases))]
-
-    def _in_block(self, node: cst.CSTNode) -> bool:
-        return node not in self._top
 
     def _new_module(self, old: str) -> str:
         if old not in self._table.modules:
@@ -243,7 +244,7 @@ class Imports:
             parentheses = {} if single or len(kept) == 1 else {"lpar": None, "rpar": None}
             if not single and node.lpar is not None and len(kept) > 1:
                 names = [each.with_changes(comma=cst.MaybeSentinel.DEFAULT) for each in names]
-            statements.append(node.with_changes(module=chain_name(module), names=names, **parentheses))
+            statements.append(node.with_changes(module=chain(module), names=names, **parentheses))
         statements += modules
         return statements if statements or node in self._top else [cst.Pass()]
 
@@ -261,7 +262,7 @@ class Imports:
             return [node]
         names = {path.rpartition(".")[2] for path in self.star_names.get(source, ()) if self.split(path)[0] == new}
         if self._shared or not names:
-            return [node.with_changes(module=chain_name(new))]
+            return [node.with_changes(module=chain(new))]
         return [_import_names(new, names)]
 
     def _add_wanted(self, found: dict[cst.CSTNode, list[cst.BaseSmallStatement]]) -> None:
@@ -297,32 +298,20 @@ class Imports:
                     return True
         return False
 
-    #: Statements to add where no import is to put them after.
-    at_top: list[cst.BaseSmallStatement] = []  # noqa: RUF012 - replaced, never changed
-
     def _is_ours(self, node: cst.Import | cst.ImportFrom) -> bool:
         if isinstance(node, cst.ImportFrom):
             return not node.relative and import_source(node, self._module) in self._table.modules
         return any(dotted(alias.name) in self._table.modules for alias in node.names)
 
 
-def chain_name(path: str) -> cst.Name | cst.Attribute:
-    """Return a module's path as an import statement has it."""
-    first, *rest = path.split(".")
-    node: cst.Name | cst.Attribute = cst.Name(first)
-    for each in rest:
-        node = cst.Attribute(node, cst.Name(each))
-    return node
-
-
 def _import_module(module: str, local: cst.BaseExpression | None) -> cst.Import:
     plain = local is None or (isinstance(local, cst.Name) and local.value == module)
     asname = None if plain or not isinstance(local, cst.Name) else cst.AsName(local)
-    return cst.Import([cst.ImportAlias(chain_name(module), asname)])
+    return cst.Import([cst.ImportAlias(chain(module), asname)])
 
 
 def _import_names(module: str, names: Iterable[str]) -> cst.ImportFrom:
-    return cst.ImportFrom(chain_name(module), [cst.ImportAlias(cst.Name(each)) for each in sorted(names)])
+    return cst.ImportFrom(chain(module), [cst.ImportAlias(cst.Name(each)) for each in sorted(names)])
 
 
 def _is_plain(node: cst.ImportFrom) -> bool:
@@ -342,10 +331,6 @@ def _joined(one: cst.BaseSmallStatement, other: cst.BaseSmallStatement) -> cst.B
 
 def _without_last_comma(aliases: list[cst.ImportAlias]) -> list[cst.ImportAlias]:
     return [*aliases[:-1], aliases[-1].with_changes(comma=cst.MaybeSentinel.DEFAULT)]
-
-
-def _packages(table: Table) -> set[str]:
-    return {module.partition(".")[0] for module in table.modules}
 
 
 def _scopes(module: Module) -> list[Scope]:
