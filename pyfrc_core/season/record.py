@@ -75,6 +75,30 @@ class Packages:
 
 
 @dataclass(frozen=True)
+class RobotDownloads:
+    """What `pyfrc sync` downloads for the season's robots, and how the season's own tool does it.
+
+    :param python:         the version of Python on the robots, of which this file is
+    :param python_url:     the address of its file
+    :param python_cache:   the directory in the season's cache where that file is kept
+    :param index:          WPILib's own package index of the season, beside the usual one
+    :param packages:       the package that needs all of WPILib, and has the optional components as extras
+    :param abi:            the tag of wheels for that Python
+    :param platforms:      the tags of wheels for the controller, the best first
+    :param marker_machine: what markers of requirements call the controller (``platform_machine``)
+    """
+
+    python: str
+    python_url: str
+    python_cache: str
+    index: str
+    packages: str
+    abi: str
+    platforms: tuple[str, ...]
+    marker_machine: str
+
+
+@dataclass(frozen=True)
 class Dashboards:
     """Where dashboards find in NetworkTables what robots show.
 
@@ -123,6 +147,7 @@ class Season:
     field: SeasonField
     controller: ControllerSoftware
     packages: Packages
+    downloads: RobotDownloads
     dashboards: Dashboards
     gamepad: GamepadOrder
     cli_plugins: str

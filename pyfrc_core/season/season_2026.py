@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from datetime import datetime, timezone
 
-from .record import ControllerSoftware, Dashboards, GamepadOrder, MatchLengths, Packages, Season, SeasonField
+from .record import (
+    ControllerSoftware,
+    Dashboards,
+    GamepadOrder,
+    MatchLengths,
+    Packages,
+    RobotDownloads,
+    Season,
+    SeasonField,
+)
 
 SEASON_2026 = Season(
     year=2026,
@@ -24,6 +33,17 @@ SEASON_2026 = Season(
         wpilib="2026.2.2",
         commands="robotpy-commands-v2~=2026.2",
         utilities="robotpy-wpilib-utilities~=2026.1",
+    ),
+    downloads=RobotDownloads(  # as robotpy-installer 2026.0.2 asks for them
+        python="3.14.2",
+        python_url="https://github.com/robotpy/roborio-python/releases/download/2026-3.14.2-r1/"
+        "python314_3.14.2-r1_cortexa9-vfpv3.ipk",
+        python_cache="opkg_cache",
+        index="https://wpilib.jfrog.io/artifactory/api/pypi/wpilib-python-release-2026/simple",
+        packages="robotpy",
+        abi="cp314",
+        platforms=("linux_roborio",),
+        marker_machine="roborio",
     ),
     dashboards=Dashboards(
         tables=("/SmartDashboard",),

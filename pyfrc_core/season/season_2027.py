@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from datetime import datetime, timezone
 
-from .record import ControllerSoftware, Dashboards, GamepadOrder, MatchLengths, Packages, Season, SeasonField
+from .record import (
+    ControllerSoftware,
+    Dashboards,
+    GamepadOrder,
+    MatchLengths,
+    Packages,
+    RobotDownloads,
+    Season,
+    SeasonField,
+)
 from .season_2026 import SEASON_2026
 
 #: WPILib is an alpha; the match and the field are 2026's until the kickoff.
@@ -26,6 +35,21 @@ SEASON_2027 = Season(
         commands="robotpy-commands-v2~=2027.0.0a7",
         utilities="robotpy-wpilib-utilities~=2027.0.0a7",
         drivers=("wpilib-drivers~=2027.0.0a7",),
+    ),
+    downloads=RobotDownloads(  # as robotpy-installer 2027.0.0a10 asks for them
+        python="3.14.3",
+        python_url="https://github.com/astral-sh/python-build-standalone/releases/download/20260310/"
+        "cpython-3.14.3+20260310-aarch64-unknown-linux-gnu-install_only_stripped.tar.gz",
+        python_cache="pkg_cache",
+        index="https://wpilib.jfrog.io/artifactory/api/pypi/wpilib-python-release-2027/simple",
+        packages="robotpy",
+        abi="cp314",
+        platforms=(
+            "linux_systemcore",
+            *(f"manylinux_2_{minor}_aarch64" for minor in range(38, 16, -1)),
+            "linux_aarch64",
+        ),
+        marker_machine="systemcore",
     ),
     dashboards=Dashboards(
         tables=("/Telemetry", "/Tunables"),

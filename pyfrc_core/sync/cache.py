@@ -1,0 +1,58 @@
+"""The season's cache on this computer, which the season's own tool uses too: ``~/wpilib/2027/robotpy``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..errors import PyfrcError
+from ..file_hash import hash_file
+from ..season import Season
+from .lock import LockedFile
+
+_REMEDY = "With internet: pyfrc sync. Without: pyfrc sync --from DIRECTORY, with one that pyfrc sync --to has filled."
+
+
+class NotSyncedError(PyfrcError):
+    """A file that the robot needs is not on this computer, or has another content than the lock says."""
+
+
+class Cache:
+    """A season's cache.
+
+    :param root: its directory
+    """
+
+    def __init__(self, root: Path, season: Season) -> None:
+        self.root = root
+        self._python = root / season.downloads.python_cache
+        self._packages = root / "pip_cache"
+
+    def path_of(self, locked: LockedFile) -> Path:
+        """Return where a file is or would be."""
+        return (self._python if locked.name == "python" else self._packages) / locked.file
+
+    def has(self, locked: LockedFile) -> bool:
+        """Return whether a file is there, with the locked size and hash."""
+        path = self.path_of(locked)
+        try:
+            return path.stat().st_size == locked.size and hash_file(path) == (locked.sha256, locked.size)
+        except OSError:
+            return False
+
+
+def cache_of(season: Season) -> Cache:
+    """Return a season's cache in the user's home directory."""
+    return Cache(Path.home() / "wpilib" / str(season.year) / "robotpy", season)
+
+
+def cached_file(locked: LockedFile, season: Season) -> Path:
+    """Return the path of a locked file in the season's cache. Its hash has been checked.
+
+    :raises NotSyncedError: if it is not there, or has another content
+    """
+    cache = cache_of(season)
+    path = cache.path_of(locked)
+    if cache.has(locked):
+        return path
+    wrong = "has another content than the lock says" if path.exists() else "is not on this computer yet"
+    raise NotSyncedError(f"{locked} for the robot {wrong} ({path})", remedy=_REMEDY)
