@@ -10,7 +10,7 @@ WORKERS ?= $(shell expr 2 + $$(getconf _NPROCESSORS_ONLN))
 # Without compiled modules, each of many processes compiles the tests and pytest's plugins again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-2027 check check-page docs clean
+.PHONY: demo test test-2027 check check-platforms check-page docs clean
 
 demo: $(VENV)/installed  ## create a robot project in demo/, run its tests, deploy it to a virtual robot, change it, roll back
 	test -d demo || $(RUN) pyfrc init demo
@@ -25,9 +25,14 @@ test-2027:  ## run the tests that season 2027 has, with its WPILib in .venv-2027
 
 check: $(VENV)/installed-dev  ## check style, types, and which room imports which
 	$(RUN) ruff check .
+	$(RUN) ruff check --quiet --preview --select PLW1514 .  # text files of unnamed encoding: on Windows, they are cp1252
 	$(RUN) ruff format --check .
 	$(RUN) mypy
 	$(VENV)/bin/lint-imports --no-logo
+
+check-platforms: $(VENV)/installed-dev  ## check the types as on Windows and on macOS: which names their Python lacks
+	$(RUN) mypy --platform win32 --cache-dir .mypy_cache/win32
+	$(RUN) mypy --platform darwin --cache-dir .mypy_cache/darwin
 
 check-page: node_modules/.package-lock.json  ## check the types and the style of the page's scripts, and run their unit tests; needs npm
 	npm run --silent check

@@ -146,7 +146,7 @@ def serving(robot: Path, *options: str) -> Iterator[tuple[subprocess.Popen[str],
 
 def processor_seconds(process: int) -> float:
     """Return the processor time that a process has used, without its children, in seconds."""
-    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 

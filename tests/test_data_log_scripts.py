@@ -69,7 +69,7 @@ def robot(log: str = LOGGING) -> dict[str, str]:
 
 
 def changes(trace: Path) -> list[dict[str, Any]]:
-    return [change for change in map(json.loads, trace.read_text().splitlines()) if "t" in change]
+    return [change for change in map(json.loads, trace.read_text(encoding="utf-8").splitlines()) if "t" in change]
 
 
 def outputs(trace: Path) -> list[tuple[float, str, Any]]:

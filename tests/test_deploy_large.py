@@ -233,12 +233,12 @@ def test_what_is_there_is_compiled_while_the_rest_is_received(tmp_path: Path) ->
 
 def test_a_compiler_that_is_not_needed_any_more_is_ended(tmp_path: Path) -> None:
     children = Path(f"/proc/self/task/{threading.get_native_id()}/children")
-    before = children.read_text()
+    before = children.read_text(encoding="utf-8")
     os.mkfifo(tmp_path / "a.py")  # reading it would block
     with Compiler(tmp_path, ["a.py"], debug=False) as compiler:
         compiler.add_next()
-        assert children.read_text() != before
-    assert children.read_text() == before
+        assert children.read_text(encoding="utf-8") != before
+    assert children.read_text(encoding="utf-8") == before
 
 
 @pytest.mark.parametrize("again", [False, True], ids=["once", "at each try"])

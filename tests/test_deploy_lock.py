@@ -19,7 +19,7 @@ from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 
 def is_held(lock: Path) -> bool:
-    with lock.open() as stream:
+    with lock.open(encoding="utf-8") as stream:
         try:
             fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:

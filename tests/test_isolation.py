@@ -592,7 +592,7 @@ def test_nothing_that_a_crashed_robot_has_started_is_left(make_project: MakeProj
     assert result.code == 1, result.output
     assert "os._exit(1)" in result.output
     stat = Path(f"/proc/{(project.path / 'camera').read_text()}/stat")
-    assert not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
+    assert not stat.exists() or stat.read_text(encoding="utf-8").rpartition(")")[2].split()[0] == "Z"
 
 
 @pytest.mark.slow

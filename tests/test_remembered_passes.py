@@ -125,9 +125,9 @@ def ran(made, *options: str, code: int = 0) -> set[str]:
 
 def edit(made, name: str, old: str, new: str) -> None:
     file: Path = made.path / name
-    text = file.read_text()
+    text = file.read_text(encoding="utf-8")
     assert old in text
-    file.write_text(text.replace(old, new))
+    file.write_text(text.replace(old, new), encoding="utf-8")
 
 
 def test_without_a_change_nothing_runs(project) -> None:

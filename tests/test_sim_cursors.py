@@ -113,7 +113,9 @@ def test_a_slow_and_a_quick_consumer_see_every_change(make_project, monkeypatch:
             slowly += some
         assert simulation.snapshot is not None
         values = dict(simulation.snapshot.values)
-    lines = [json.loads(line) for line in Path(made.path, "run.trace.jsonl").read_text().splitlines()[1:-1]]
+    lines = [
+        json.loads(line) for line in Path(made.path, "run.trace.jsonl").read_text(encoding="utf-8").splitlines()[1:-1]
+    ]
     assert times(seen) == [line["t"] for line in lines]
     assert slowly == seen == late
     assert isinstance(seen[0], RunBegan)

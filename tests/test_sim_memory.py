@@ -45,7 +45,7 @@ FILES = {
 def trace_hash(file: Path) -> str:
     """The hash of what a saved trace says that the robot did."""
     digest = hashlib.sha256()
-    for line in file.read_text().splitlines():
+    for line in file.read_text(encoding="utf-8").splitlines():
         if "t" in json.loads(line):
             digest.update(line.encode())
     return digest.hexdigest()

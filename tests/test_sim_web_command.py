@@ -118,7 +118,7 @@ def test_the_key_stands_in_no_command_line(make_project) -> None:
         assert urlsplit(running.address).query.removeprefix("token=") not in arguments
         file = Path(urlsplit(arguments.strip()).path)
         assert file.stat().st_mode & 0o777 == 0o600
-        assert f'url={running.address}"' in file.read_text()
+        assert f'url={running.address}"' in file.read_text(encoding="utf-8")
         with running.page() as page:
             page.quit()
             assert running.ended() == 0

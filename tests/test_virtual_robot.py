@@ -365,13 +365,13 @@ def test_silent_connections_stop_no_deploy(project: RobotProject, directory: Pat
 
 
 def parent_of(process: int) -> int:
-    return int(Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[1])
+    return int(Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[1])
 
 
 def listening_ports(process: int) -> set[int]:
     """Return the TCP ports at which a process listens."""
     links = {os.readlink(each) for each in Path(f"/proc/{process}/fd").iterdir()}  # noqa: PTH115
-    rows = [row.split() for row in Path("/proc/net/tcp").read_text().splitlines()[1:]]
+    rows = [row.split() for row in Path("/proc/net/tcp").read_text(encoding="utf-8").splitlines()[1:]]
     return {int(row[1].split(":")[1], 16) for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in links}
 
 

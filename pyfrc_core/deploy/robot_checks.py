@@ -28,7 +28,6 @@ from .targets import AdministratorTask, ControllerKind
 
 if TYPE_CHECKING:
     from .agent.layout import Layout
-    from .connection import Connection
     from .facts import RobotFacts
 
 NO_CHECK = "To deploy without this check: -n (--no-version-check)."

@@ -24,7 +24,7 @@ from .team import RobotChoice, choose_target
 
 if TYPE_CHECKING:
     from .agent_client import AgentClient
-    from .facts import Deployed, Plan, RobotFacts
+    from .facts import Deployed, Plan
 
 __all__ = ["DeployOptions", "deploy", "rollback", "show_console", "undeploy", "undeploy_other_languages"]
 

@@ -17,8 +17,15 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from multiprocessing.connection import Connection
 from typing import Any
+
+if sys.platform == "win32":
+    from multiprocessing import connection as connections
+    from typing import TypeAlias
+
+    Connection: TypeAlias = connections.Connection | connections.PipeConnection
+else:
+    from multiprocessing.connection import Connection as Connection
 
 
 def receive(connection: Connection) -> Any:

@@ -22,6 +22,8 @@ FORK_IS_SAFE = hasattr(os, "fork") and sys.platform not in ("win32", "darwin")
 
 # Seconds between two looks at whether a process has ended while another one holds its pipe open. Decides nothing else.
 _LOOK_SECONDS = 0.05
+# Robot code may replace the one in `time`.
+_sleep = time.sleep
 # A signal that comes just before Python begins to wait is handled after the wait, which only another signal ends.
 _SIGNAL_AGAIN_SECONDS = 0.25
 
@@ -43,11 +45,16 @@ class Fork:
     #: Seconds that `kill` leaves to a process between SIGTERM and SIGKILL; more than 0 while measurements are saved.
     grace_seconds = 0.0
 
+    _pid: int
+    _pipe: int
+
     def __init__(self, work: Callable[[Callable[[bytes], None]], object]) -> None:
         self.message = b""
         self.finished = False
         #: The exit code, when it has finished; a signal's number, negative.
         self.status = 0
+        if sys.platform == "win32":
+            raise NotImplementedError
         self._pipe, writing_end = os.pipe()
         os.set_blocking(self._pipe, False)
         flush_output()
@@ -80,14 +87,14 @@ class Fork:
         if self.finished:
             return
         # Asked before the pipe is read to its end: what an ended process wrote is there by now.
-        ended = self._reap(os.WNOHANG)
+        ended = self._reap(wait=False)
         while True:
             try:
                 data = os.read(self._pipe, 1 << 20)
             except BlockingIOError:
                 break
             if not data:
-                ended = ended or self._reap(0)
+                ended = ended or self._reap(wait=True)
                 break
             self.message += data
         if ended:
@@ -117,15 +124,17 @@ class Fork:
                 wait_for_any([self._pipe])
                 self.poll()
                 now = time.monotonic()
-        if not self.finished:
+        if not self.finished and sys.platform != "win32":
             self.send_signal(signal.SIGKILL)
-            self._reap(0)
+            self._reap(wait=True)
             self.finished = True
             os.close(self._pipe)
 
-    def _reap(self, how: int) -> bool:
+    def _reap(self, wait: bool) -> bool:
+        if sys.platform == "win32":
+            raise NotImplementedError
         try:
-            pid, status = os.waitpid(self._pid, how)
+            pid, status = os.waitpid(self._pid, 0 if wait else os.WNOHANG)
         except ChildProcessError:  # code of this process has waited for it: how it has ended is not known
             return True
         if pid:
@@ -135,6 +144,9 @@ class Fork:
 
 def wait_for_any(descriptors: Sequence[int]) -> None:
     """Return when one of these has something to read, or a short while has passed."""
+    if not descriptors:  # of new interpreters, whose messages are in files; Windows refuses to select from nothing
+        _sleep(_LOOK_SECONDS)
+        return
     # `poll`, where there is one, needs no descriptor of its own.
     with getattr(selectors, "PollSelector", selectors.DefaultSelector)() as selector:
         for descriptor in descriptors:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import subprocess
+import sys
 import tempfile
 import traceback
 from abc import ABC, abstractmethod
@@ -109,6 +110,8 @@ class ForkedWorker(Worker):
         self.finished, self.status, self._received = self._fork.finished, self._fork.status, self._fork.message
 
     def _crash_report(self) -> bytes:
+        if sys.platform == "win32":
+            raise NotImplementedError
         # Its offset is that of the other process, too.
         return os.pread(descriptor := self._crash_log.fileno(), os.fstat(descriptor).st_size, 0)
 

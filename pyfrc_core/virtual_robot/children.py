@@ -14,6 +14,8 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from ..processes.groups import kill_group
+
 #: The variable in the environment of a robot program.
 MARK = "PYFRC_VIRTUAL_ROBOT_PROGRAM"
 #: Seconds to wait for a process to end after SIGTERM.
@@ -51,23 +53,15 @@ def end(process: subprocess.Popen[bytes]) -> None:
     process.wait()
 
 
-def kill_group(process: subprocess.Popen[bytes]) -> None:
-    """Kill the remaining processes of a process group."""
-    if sys.platform == "win32":
-        if process.poll() is None:
-            subprocess.run(["taskkill", "/F", "/T", "/PID", str(process.pid)], capture_output=True, check=False)
-    else:
-        with suppress(ProcessLookupError, PermissionError):  # on macOS: the group has only zombies
-            os.killpg(process.pid, signal.SIGKILL)
-
-
 def kill_marked(mark: str) -> None:
     """Kill all processes with this value of `MARK` in their environment, except for this one (Linux only)."""
+    if sys.platform != "linux":
+        return
     wanted = f"{MARK}={mark}".encode()
     found = True
     while found:  # a process may have started another one meanwhile
         found = False
-        for entry in Path("/proc").iterdir() if sys.platform == "linux" else ():
+        for entry in Path("/proc").iterdir():
             if not entry.name.isdecimal() or int(entry.name) == os.getpid():
                 continue
             with suppress(OSError):  # it has ended, or belongs to another user

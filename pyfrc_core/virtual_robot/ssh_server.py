@@ -29,6 +29,7 @@ from paramiko.common import (
 )
 
 from ..deploy.connection import VIRTUAL_ROBOT_GREETING
+from ..processes.groups import kill_group
 from . import children
 from .console import close_server
 
@@ -47,7 +48,7 @@ def is_other_user(connection: socket.socket) -> bool:
         return False
     ends = [_as_in_table(*connection.getpeername()), _as_in_table(*connection.getsockname())]
     try:
-        rows = [line.split() for line in _TABLE.read_text().splitlines()]
+        rows = [line.split() for line in _TABLE.read_text(encoding="utf-8").splitlines()]
     except OSError:
         return False
     users = [int(row[7]) for row in rows if row[1:3] == ends]
@@ -99,7 +100,7 @@ class SshServer:
         for transport in transports:
             transport.close()
         for process in processes:
-            children.kill_group(process)
+            kill_group(process)
             process.wait()
 
     def _accept(self) -> None:

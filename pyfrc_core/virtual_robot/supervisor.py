@@ -13,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..deploy.agent.robot_paths import RobotPaths
+from ..processes.groups import kill_group
 from . import children
 
 _RUNNER = "pyfrc_core.virtual_robot.program"
@@ -85,7 +86,7 @@ class Supervisor:
             reader = threading.Thread(target=self._read, args=(process,), daemon=True)
             reader.start()
             code = process.wait()
-            children.kill_group(process)
+            kill_group(process)
             children.kill_marked(self._mark)
             reader.join(_FINAL_OUTPUT_SECONDS)  # child processes of the program may keep its output open
             with self._state:

@@ -6,6 +6,7 @@ import gc
 import multiprocessing
 import os
 import select
+import selectors
 import signal
 import subprocess
 import sys
@@ -98,6 +99,20 @@ def test_messages_then_the_exit_code(kind: type[Worker], begin: Begin) -> None:
     worker = begin(kind, send_three)
     assert finish(worker) == [0, 1, 2]
     assert worker.status == 7
+
+
+def test_interpreters_are_waited_for_where_nothing_can_be_selected_from(
+    begin: Begin, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On Windows, to select from no descriptors is an error."""
+
+    def select(*arguments: object) -> list[object]:
+        raise OSError(10022, "An invalid argument was supplied")
+
+    for name in ("PollSelector", "SelectSelector", "DefaultSelector"):
+        if hasattr(selectors, name):
+            monkeypatch.setattr(getattr(selectors, name), "select", select)
+    assert finish(begin(SpawnedWorker, send_three)) == [0, 1, 2]
 
 
 @only_forked

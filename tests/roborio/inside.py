@@ -74,7 +74,7 @@ class Program:
             env={"HOME": "/home/lvuser", "USER": "lvuser", "PATH": "/usr/local/bin:/usr/bin:/bin"},
         )
         os.close(its_end)
-        PID_FILE.write_text(f"{self.process.pid}\n")
+        PID_FILE.write_text(f"{self.process.pid}\n", encoding="utf-8")
 
     def ended(self) -> None:
         """Start it again at once, as lvrt does unless its settings say otherwise."""
@@ -100,7 +100,7 @@ class Program:
 def starts_programs() -> bool:
     """Whether the supervisor's settings have it start programs; scripts change them with nirtcfg."""
     try:
-        return "RTTarget.LaunchAppAtBoot=False" not in SUPERVISOR_SETTINGS.read_text().splitlines()
+        return "RTTarget.LaunchAppAtBoot=False" not in SUPERVISOR_SETTINGS.read_text(encoding="utf-8").splitlines()
     except FileNotFoundError:
         return True
 

@@ -103,7 +103,7 @@ class LocalChannel:
     def peak_memory(self) -> int:
         """The most that the agent, which is a process of ours and runs, has had in memory; bytes."""
         assert self._process is not None
-        status = Path(f"/proc/{self._process.pid}/status").read_text()
+        status = Path(f"/proc/{self._process.pid}/status").read_text(encoding="utf-8")
         return 1024 * int(status.partition("VmHWM:")[2].split()[0])
 
     def settimeout(self, seconds: float | None) -> None:

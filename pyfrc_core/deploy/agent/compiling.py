@@ -7,7 +7,6 @@ import json
 import os
 import py_compile
 import select
-import signal
 import sys
 from collections.abc import Collection, Sequence
 from contextlib import suppress
@@ -19,7 +18,7 @@ from typing import Any
 from .activity import Activity
 from .disk import files_below, link_or_copy
 from .robot_paths import Refusal
-from .system import end_with_parent
+from .system import KILL, end_with_parent
 
 #: Memory for the compiling process, in bytes. A robot with 256 MB runs its program meanwhile.
 _MEMORY = 38_000_000
@@ -153,7 +152,7 @@ class Compiler:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         if self._child is not None:
-            os.kill(self._child, signal.SIGKILL)
+            os.kill(self._child, KILL)
             self._end()
 
     def _compile(self, name: str) -> None:
@@ -185,7 +184,7 @@ def _limit_memory() -> None:
     import resource
 
     gc.freeze()  # keeps the agent's memory pages shared
-    lines = (line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines())
+    lines = (line.split(":", 1) for line in Path("/proc/self/status").read_text(encoding="utf-8").splitlines())
     sizes = {name: int(text.split()[0]) * 1024 for name, text in lines if name in ("VmData", "VmRSS")}
     most = sizes["VmData"] + max(_MEMORY - sizes["VmRSS"], _LEAST_MEMORY)
     resource.setrlimit(resource.RLIMIT_DATA, (most, most))

@@ -18,6 +18,7 @@ from .console import PORTS
 from .disk import text_of
 from .release_record import Boot
 from .robot_paths import Refusal, RobotPaths
+from .system import KILL, is_own, ticks_per_second
 from .virtual import VirtualRobotClient
 
 _SHELLS = ("/bin/bash", "/bin/sh")  # a script may need bash, and lack a first line that names it
@@ -60,7 +61,7 @@ class RealRobot:
         for entry in os.scandir("/proc"):
             if entry.name.isdigit() and int(entry.name) != os.getpid():
                 try:
-                    if entry.stat().st_uid != os.geteuid():
+                    if not is_own(entry.stat()):
                         continue
                     words = Path(entry.path, "cmdline").read_bytes().split(b"\0")
                 except OSError:
@@ -94,7 +95,7 @@ class RealRobot:
         sockets = {
             f"socket:[{row.split()[9]}]"
             for table in ("tcp", "tcp6")
-            for row in Path(f"/proc/{process}/net/{table}").read_text().splitlines()[1:]
+            for row in Path(f"/proc/{process}/net/{table}").read_text(encoding="utf-8").splitlines()[1:]
             if row.split()[1].endswith(f":{NETWORK_TABLES_PORT:04X}") and row.split()[3] == "0A"
         }
         for each in Path(f"/proc/{process}/fd").iterdir() if sockets else ():
@@ -117,7 +118,7 @@ class RealRobot:
         printed = self._run(command, meanwhile)
         survivors = self._wait_for_end(before, meanwhile)
         survived = bool(survivors)
-        for number in (signal.SIGTERM, signal.SIGKILL):
+        for number in (signal.SIGTERM, KILL):
             for process in survivors:
                 with suppress(ProcessLookupError):
                     os.kill(process, number)
@@ -186,14 +187,14 @@ def age_of(processes: Iterable[int]) -> float | None:
     ages = []
     for process in processes:
         with suppress(OSError, ValueError, IndexError):
-            uptime = float(Path("/proc/uptime").read_text().split()[0])
-            ages.append(max(0.0, uptime - _start_of(process) / os.sysconf("SC_CLK_TCK")))
+            uptime = float(Path("/proc/uptime").read_text(encoding="utf-8").split()[0])
+            ages.append(max(0.0, uptime - _start_of(process) / ticks_per_second()))
     return max(ages, default=None)
 
 
 def _start_of(process: int) -> int:
     """Return the start of a process, in clock ticks since the system's start."""
-    return int(Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[19])
+    return int(Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[19])
 
 
 def cpu_seconds(process: int) -> float:
@@ -201,8 +202,8 @@ def cpu_seconds(process: int) -> float:
 
     :raises OSError: if it has ended, or there is no ``/proc``
     """
-    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / ticks_per_second()
 
 
 def find_other_languages(paths: RobotPaths) -> list[str]:

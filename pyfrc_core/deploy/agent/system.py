@@ -22,6 +22,12 @@ _AT_FDCWD = -100
 _RENAMEAT2 = {"x86_64": 316, "armv7l": 382, "aarch64": 276}
 _SET_DEATH_SIGNAL = 1  # prctl
 
+#: The signal that ends any process at once; on Windows, `os.kill` does that for each signal.
+if sys.platform == "win32":
+    KILL = signal.SIGTERM
+else:
+    KILL = signal.SIGKILL
+
 
 def flush(directory: Path) -> None:
     """Wait until all data written to this file system is on the disk.
@@ -142,7 +148,17 @@ def end_with_parent() -> None:
 
     library = ctypes.CDLL(None)
     if hasattr(library, "prctl"):
-        library.prctl(_SET_DEATH_SIGNAL, signal.SIGKILL)
+        library.prctl(_SET_DEATH_SIGNAL, KILL)
+
+
+def ticks_per_second() -> int:
+    """Return the unit of times in ``/proc``.
+
+    :raises OSError: on Windows, which has no ``/proc``
+    """
+    if sys.platform == "win32":
+        raise OSError("there is no /proc")
+    return os.sysconf("SC_CLK_TCK")
 
 
 def user() -> str:
@@ -154,6 +170,11 @@ def user() -> str:
     import pwd
 
     return pwd.getpwuid(os.geteuid()).pw_name
+
+
+def is_own(file: os.stat_result) -> bool:
+    """Return whether a file, or a process by its entry in ``/proc``, belongs to the user of this process."""
+    return sys.platform == "win32" or file.st_uid == os.geteuid()
 
 
 def is_root() -> bool:

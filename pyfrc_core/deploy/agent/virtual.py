@@ -88,5 +88,5 @@ class VirtualRobotClient:
 
         with socket.create_connection(("127.0.0.1", self.control)) as connection:
             connection.sendall(f"{self.key} {name}\n".encode())
-            with connection.makefile() as response:
+            with connection.makefile(encoding="utf-8") as response:
                 return list(json.load(response))

@@ -95,8 +95,8 @@ class _Interruption:
             if self.over:
                 return
             self._message = message
-            if ident == threading.main_thread().ident and _SIGNAL is not None:
-                signal.pthread_kill(ident, _SIGNAL)  # interrupts a blocking call, too
+            if sys.platform != "win32" and ident == threading.main_thread().ident:
+                signal.pthread_kill(ident, signal.SIGVTALRM)  # interrupts a blocking call, too
                 return
             # Only a class can be raised in another thread, so the message travels in one.
             members = {"__str__": lambda self: message, "__module__": TestFroze.__module__}

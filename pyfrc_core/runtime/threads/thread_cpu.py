@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 import time
 from pathlib import Path
@@ -24,7 +25,7 @@ class ThreadTimes:
 
         When the thread has ended, it is infinite: a thread that has ended does not wait.
         """
-        if self._clock is None:
+        if self._clock is None or sys.platform == "win32":
             return _process_time()
         try:
             return time.clock_gettime(self._clock)

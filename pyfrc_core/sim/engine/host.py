@@ -16,11 +16,11 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
-from multiprocessing.connection import Client, Connection, wait
+from multiprocessing.connection import Client, wait
 from pathlib import Path
 from typing import Any, NoReturn
 
-from ...processes.channel import close_in_forks, end_of_output
+from ...processes.channel import Connection, close_in_forks, end_of_output
 from ...processes.crash_report import CrashLog
 from ...processes.exit import exit_by_signal, prepare_sudden_exit
 from ...processes.worker import work_and_exit

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import os
 import pickle
-import signal
 import subprocess
 import sys
 import threading
 from collections.abc import Callable
 from contextlib import suppress
-from multiprocessing.connection import Connection, Listener
+from multiprocessing.connection import Listener
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ...processes.channel import Channel, Outbox
+from ...processes.channel import Channel, Connection, Outbox
 from ...processes.crash_report import standstill_of
 from ...processes.fork import FORK_IS_SAFE
+from ...processes.groups import kill_group
 from ...processes.output_pipe import OutputPipe
 from ...processes.spawn import Interpreter
 from ...processes.standstill import Standstill
@@ -175,7 +175,7 @@ class RobotProcesses:
                 elif self._robot is not None:
                     self._robot.send(Quit())
                 host.wait(_HOST_PATIENCE)
-        _end_group(host)
+        kill_group(host)
         host.wait()
 
     def _tell_host(self, message: object) -> None:
@@ -236,7 +236,7 @@ class RobotProcesses:
         if reader is not None:
             reader.join()  # what the host has reported itself comes first
         if unexpected:
-            _end_group(host)
+            kill_group(host)
         self._exited(number, status)
 
     def _exited(self, number: int, status: int) -> None:
@@ -306,15 +306,6 @@ def _address(directory: str) -> str | None:
 def introduced(connection: Connection) -> object:
     """Return who has connected; a function, for tests that need this to be late."""
     return connection.recv()
-
-
-def _end_group(host: Interpreter) -> None:
-    """End a host, with whatever the robot has started."""
-    if os.name == "posix":
-        with suppress(ProcessLookupError, PermissionError):
-            os.killpg(host.pid, signal.SIGKILL)
-    else:
-        host.kill()
 
 
 def _thread(target: Callable[..., object], name: str, *arguments: Any) -> threading.Thread:

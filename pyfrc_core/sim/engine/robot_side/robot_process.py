@@ -9,7 +9,6 @@ import threading
 import traceback
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
-from multiprocessing.connection import Connection
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -17,6 +16,7 @@ from typing import Any
 from ....compat.unrepeatable import explain_unrepeatable
 from ....errors import PyfrcError
 from ....physics.engine import load_physics
+from ....processes.channel import Connection
 from ....processes.crash_report import CrashLog
 from ....processes.exit import before_sudden_exit
 from ....project import Project

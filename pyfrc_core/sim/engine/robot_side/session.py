@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from functools import partial
-from multiprocessing.connection import Connection
 from typing import Any
 
 from ....errors import PyfrcError
 from ....physics.core import PhysicsInterface
 from ....physics.pose import walls_of
+from ....processes.channel import Connection
 from ....runtime.checks.loop_limit import LoopLimit
 from ....runtime.checks.refresh import RefreshCheck
 from ....runtime.clock import INPUT, NO_LIMIT_US, OBSERVE, PACKET_US
