@@ -83,10 +83,16 @@ def _restart_with_fixed_seed() -> None:
 
 
 def become(command: list[str]) -> int:
-    """Replace this process by `command`; on Windows, run it and return its exit code."""
+    """Replace this process by `command`; on Windows, run it, with this process's streams, and return its exit code."""
     if sys.platform != "win32":
         os.execv(command[0], command)
     # Windows' exec returns to the shell while the new process still runs.
+    import signal
     import subprocess
 
-    return subprocess.call(command)
+    # Ctrl-C reaches every process of a terminal. The new one handles it, and may take its time to save files.
+    signal.signal(signal.SIGINT, lambda number, frame: None)
+    with subprocess.Popen(command) as process:
+        code = process.wait()
+    # Codes of crashes, such as 0xC0000005, are too large for `sys.exit`, which takes the signed number.
+    return code - (1 << 32) if code >= 1 << 31 else code
