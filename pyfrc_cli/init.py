@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 
 import click
 
 from pyfrc_core.scaffold import DEFAULT, TEMPLATES, create_project
+from pyfrc_core.shell import quoted
 
 from .verbosity import hint
 
@@ -54,9 +54,13 @@ def command(directory: Path, template: str, team: int | None) -> None:
     """
     for file in create_project(directory, Path(__file__).parent, template, team):
         hint(f"wrote {directory / file}")
-    place = "" if directory == Path() else f"cd {shlex.quote(str(directory))} && "
-    if missing := TEMPLATES[template].missing:
-        hint(f"\nIt needs packages that are not installed: {', '.join(missing)}")
-        hint(f"Install them with: {place}python -m pip install -r requirements.txt")
-    hint(f"\nTest it with: {place}pyfrc test")
-    hint(f"Drive it with: {place}pyfrc sim")
+    hint("")
+    missing = TEMPLATES[template].missing
+    if missing:
+        hint(f"It needs packages that are not installed: {', '.join(missing)}")
+    if directory != Path():
+        hint(f"Go there with: cd {quoted(str(directory))}")
+    if missing:
+        hint("Install them with: python -m pip install -r requirements.txt")
+    hint("Test it with: pyfrc test")
+    hint("Drive it with: pyfrc sim")

@@ -6,8 +6,6 @@ import importlib.util
 import os
 import sys
 
-GET_TKINTER = "Install it with your system's package manager: sudo apt install python3-tk, or brew install python-tk."
-
 #: What to do where no window can be shown.
 WITHOUT_DISPLAY = (
     "Use the page in a browser, also of another computer: pyfrc sim. For a window over SSH: ssh -X. "

@@ -70,7 +70,7 @@ def test_what_is_not_installed_is_told_with_how_to_install_it(tmp_path: Path, mo
     shown = CliRunner().invoke(command, [str(tmp_path / "robot")])
     assert shown.exit_code == 0, shown.output
     assert "packages that are not installed: no-such-package-for-robots~=1.0\n" in shown.output
-    assert f"cd {tmp_path / 'robot'} && python -m pip install -r requirements.txt" in shown.output
+    assert f"cd {tmp_path / 'robot'}\nInstall them with: python -m pip install -r requirements.txt\n" in shown.output
     assert "no-such-package-for-robots~=1.0\nclick>=1\n" in (tmp_path / "robot/requirements.txt").read_text("utf-8")
 
 

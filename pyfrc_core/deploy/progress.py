@@ -10,7 +10,6 @@ import io
 import json
 import os
 import re
-import shlex
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -19,6 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
+from ..shell import quoted
 from ..terminal_text import visible
 from .errors import RefusedError
 
@@ -276,7 +276,7 @@ def with_robot_option(text: str, robot: str | None, team: int | None) -> str:
     :param team: the team number from the command line; without both, the text stays unchanged
     """
     if robot is not None:
-        options = f"--robot {shlex.quote(robot)}"
+        options = f"--robot {quoted(robot)}"
     elif team is not None:
         options = f"--team {team}"
     else:

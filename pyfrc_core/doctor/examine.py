@@ -10,10 +10,11 @@ from pathlib import Path
 from .._version import requirement
 from ..browser import why_no_browser
 from ..config.robotpy import load_season_settings
-from ..display import GET_TKINTER, WITHOUT_DISPLAY, has_display, has_tkinter
+from ..display import WITHOUT_DISPLAY, has_display, has_tkinter
 from ..errors import PyfrcError, SettingsError
 from ..project import Project, find_project
 from ..season import SeasonSetting, installed_wpilib, season_of
+from ..shell import getting_tkinter
 from .check_result import CheckResult, hint, ok
 from .installed import find_installed
 from .packages import check_imports, check_pyfrc, check_python, check_wpilib
@@ -47,7 +48,7 @@ def check_window() -> Iterator[CheckResult]:
     if not has_display():
         yield hint("window", "pyfrc sim --ui tk cannot show one: there is no display", WITHOUT_DISPLAY)
     elif not has_tkinter():
-        yield hint("window", "pyfrc sim --ui tk cannot show one: this Python has no tkinter", GET_TKINTER)
+        yield hint("window", "pyfrc sim --ui tk cannot show one: this Python has no tkinter", getting_tkinter())
     else:
         yield ok("window", "there is a display, and tkinter")
 

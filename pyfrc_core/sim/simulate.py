@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from functools import partial
@@ -14,6 +13,7 @@ from ..interruption import ending_like_ctrl_c
 from ..project import Project
 from ..runtime.scripts.inputs_file import load_inputs
 from ..runtime.scripts.script import trace_beside
+from ..shell import quoted
 from ..text_files import check_writable
 from .engine.options import NT4_PORT, SimOptions
 from .engine.simulation import Simulation
@@ -105,7 +105,7 @@ def _what(project: Project, request: SimRequest) -> str:
     parts = ["pyfrc sim"]
     if request.mode is not None:
         parts.append(f"--mode {request.mode}")
-    parts += [f"--opmode {shlex.quote(name)}" for name in request.opmodes]
+    parts += [f"--opmode {quoted(name)}" for name in request.opmodes]
     if request.script is not None:
         parts.append(f"--script {place_in(project, request.script)}")
     if request.start_position is not None:

@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Literal
 
 from ...browser import is_ci, why_no_browser
-from ...display import GET_TKINTER, WITHOUT_DISPLAY, has_display, has_terminal
+from ...display import WITHOUT_DISPLAY, has_display, has_terminal
 from ...errors import UsageError
 from ...season import CURRENT
+from ...shell import getting_tkinter
 from ..engine.extensions import WINDOW
 from ..engine.output_log import OutputCursor
 from ..engine.simulation import Simulation
@@ -96,7 +97,7 @@ def _make_tk(request: SimRequest, say: Say) -> FrontEnd:
     except ImportError as missing:
         if missing.name not in ("tkinter", "_tkinter"):
             raise
-        raise UsageError("--ui tk needs tkinter, which this Python does not have", remedy=GET_TKINTER) from None
+        raise UsageError("--ui tk needs tkinter, which this Python does not have", remedy=getting_tkinter()) from None
     return TkFrontEnd()
 
 
