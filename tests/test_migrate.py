@@ -229,7 +229,8 @@ SETTINGS = {
         numpy>=1.26
     """,
     "sim/config.json": """
-        {"joysticks": {"0": {"axes": {"1": "drive"}, "buttons": {"1": "shoot", "10": "climb"}}}}
+        {"joysticks": {"0": {"axes": {"4": "turn"}, "buttons": {"1": "shoot", "5": "slowly"}},
+                       "1": {"axes": {"4": "lift"}, "buttons": {"1": "lift", "5": "climb"}}}}
     """,
     ".github/workflows/test.yml": """
         steps:
@@ -257,7 +258,8 @@ numpy>=1.26
 wpilib-drivers==2027.0.0a7
 """,
     "sim/config.json": """\
-{"joysticks": {"0": {"axes": {"1": "drive"}, "buttons": {"0": "shoot", "9": "climb"}}}}
+{"joysticks": {"0": {"axes": {"2": "turn"}, "buttons": {"0": "shoot", "9": "slowly"}},
+               "1": {"axes": {"4": "lift"}, "buttons": {"0": "lift", "4": "climb"}}}}
 """,
     ".github/workflows/test.yml": """\
 steps:

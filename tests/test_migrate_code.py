@@ -398,6 +398,103 @@ CODE = {
         fire = driver.get_hid().get_raw_button(10) or stick.get_raw_button(5)
         """,
     ),
+    "an Xbox controller in hal_data": (
+        """
+        import wpilib
+        DRIVER = 0
+        driver, stick = wpilib.XboxController(DRIVER), wpilib.Joystick(1)
+        def test_it(control, hal_data):
+            gamepad = hal_data["joysticks"][0]
+            gamepad["axes"][4] = hal_data["joysticks"][DRIVER]["axes"][1] = 0.5
+            gamepad["buttons"][5] = hal_data["joysticks"][0]["buttons"][1] = True
+            hal_data["joysticks"][1]["buttons"][5] = True
+        """,
+        """
+        import wpilib
+        DRIVER = 0
+        driver, stick = wpilib.XboxController(DRIVER), wpilib.Joystick(1)
+        def test_it(control, hal_data):
+            gamepad = hal_data["joysticks"][0]
+            gamepad["axes"][2] = hal_data["joysticks"][DRIVER]["axes"][1] = 0.5
+            gamepad["buttons"][9] = hal_data["joysticks"][0]["buttons"][0] = True
+            hal_data["joysticks"][1]["buttons"][4] = True
+        """,
+    ),
+    "the deadband that sticks have": (
+        """
+        from wpilib import Joystick, XboxController
+        from wpimath import applyDeadband
+
+        class Driver:
+            def __init__(self):
+                self.pad = XboxController(0)
+
+            def forward(self):
+                return -applyDeadband(self.pad.getLeftY(), 0.1) * 4
+        """,
+        """
+        from wpilib import Joystick, XboxController
+
+        class Driver:
+            def __init__(self):
+                self.pad = XboxController(0)
+
+            def forward(self):
+                return -self.pad.get_left_y() * 4
+        """,
+    ),
+    "deadbands of another size": (
+        """
+        from wpilib import Joystick, XboxController
+        from wpimath import applyDeadband
+        forward = applyDeadband(Joystick(1).getY(), 0.1) + applyDeadband(XboxController(0).getLeftX(), 0.2)
+        """,
+        """
+        from wpilib import Joystick, XboxController
+        from wpimath import apply_deadband
+        forward = apply_deadband(Joystick(1).get_y(), 0.1) + apply_deadband(XboxController(0).get_left_x(), 0.2)
+        """,
+    ),
+    "controllers on the dashboard": (
+        """
+        import wpilib
+        from wpimath.controller import PIDController
+
+        class Own(PIDController):
+            pass
+
+        wpilib.SmartDashboard.putData("turn", PIDController(1, 0, 0))
+        wpilib.SmartDashboard.putData("lift", Own(1, 0, 0))
+        """,
+        """
+        import wpilib
+        import tunables
+        from wpimath import PIDController
+
+        class Own(PIDController):
+            pass
+
+        tunables.publish("turn", PIDController(1, 0, 0))
+        tunables.publish("lift", Own(1, 0, 0))
+        """,
+    ),
+    "gyros that physics turns": (
+        """
+        from pyfrc.physics.core import PhysicsInterface
+
+        class PhysicsEngine:
+            def __init__(self, physics_controller: PhysicsInterface, robot):
+                physics_controller.add_device_gyro_channel("adxrs450_spi_0_angle")
+                physics_controller.add_device_gyro_channel("navX-Sensor[4]_Yaw")
+        """,
+        """
+        from pyfrc.physics.core import PhysicsInterface
+
+        class PhysicsEngine:
+            def __init__(self, physics_controller: PhysicsInterface, robot):
+                physics_controller.add_device_gyro_channel("navX-Sensor[4]_Yaw")
+        """,
+    ),
     "dictionaries": (
         """
         import wpilib

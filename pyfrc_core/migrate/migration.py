@@ -90,17 +90,18 @@ def migrate(
     first_time = version is None or not version.startswith("2027")
     sources = [Source(file, file.relative_to(root).as_posix(), file.read_bytes()) for file in python_files(root)]
     home = "" if code is None or code == root else code.relative_to(root).as_posix() + "/"
-    after = dict(
-        rewrite_all(sources, names, report, home=home, first_time=first_time, progress=progress, comments=comments)
+    rewritten = rewrite_all(
+        sources, names, report, home=home, first_time=first_time, progress=progress, comments=comments
     )
+    after = dict(rewritten.files)
     before = {each.name: each.text for each in sources if each.name in after}
     python = [after.get(each.name, each.text) for each in sources]
     settings = Settings(
         SEASON_2027.packages.wpilib,
-        dict(names.corrections["vendor_versions"]),
-        dict(names.corrections["vendors"]),
+        names.corrections,
         report,
         drivers=any(b"wpilib_drivers" in text for text in python),
+        xbox_ports=rewritten.xbox_ports,
     )
     for name, old, new in _settings_files(root, settings, (code or root) if first_time else None):
         if new != old:

@@ -14,12 +14,25 @@ from .rewrite import robot_init
 from .rewrite.calls import Calls, key_of
 from .rewrite.file import FileRewriter
 from .rewrite.finish import new_text, rewrite_annotation
+from .rewrite.gamepads import xbox_ports
 from .rewrite.hal_data import HalData
 from .rewrite.leftovers import Leftovers
 from .types.inference import Inference
 from .types.scopes import Module
 
 Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class Rewritten:
+    """What becomes of a project's Python files.
+
+    :param files: the new content of each that changes, by its name
+    :param xbox_ports: the ports of its Xbox controllers
+    """
+
+    files: Mapping[str, bytes]
+    xbox_ports: frozenset[int]
 
 
 @dataclass(frozen=True)
@@ -43,8 +56,8 @@ def rewrite_all(
     first_time: bool,
     progress: Progress = lambda doing, done, of: None,
     comments: bool = False,
-) -> Mapping[str, bytes]:
-    """Return the new content of each file that changes, by its name.
+) -> Rewritten:
+    """Return what becomes of the files.
 
     :param home: the directory with robot.py, whose modules import each other, with a `/`; "" for the project's own
     :param first_time: the project is still one of 2026
@@ -61,7 +74,7 @@ def rewrite_all(
             line = getattr(error, "raw_line", 1)
             report.add(source.name, line, "This is no valid Python, so the file stays as it is.", "Correct it first.")
     inference = Inference(table, list(modules.values()))
-    project = _Project(modules, table)
+    project = _Project(modules, table, inference)
     changed = {}
     for position, (name, module) in enumerate(modules.items()):
         progress("rewriting", position, len(modules))
@@ -71,13 +84,14 @@ def rewrite_all(
         if new != module.tree.bytes:
             changed[name] = new
     progress("rewriting", len(modules), len(modules))
-    return changed
+    return Rewritten(changed, project.xbox_ports)
 
 
 class _Project:
     """What is known of all files together."""
 
-    def __init__(self, modules: Mapping[str, Module], table: Table) -> None:
+    def __init__(self, modules: Mapping[str, Module], table: Table, inference: Inference) -> None:
+        self.xbox_ports = xbox_ports(modules.values(), inference, table)
         self.camel_names = table.camel_names()
         sites = [node for module in modules.values() for node, _ in module.sites]
         self.shared = {binding.path for module in modules.values() for binding in module.scope.bindings.get("*", ())}
@@ -98,7 +112,7 @@ class _Project:
 
 def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
     calls = Calls(file, project.dashboard_reads)
-    hal_data = HalData(file)
+    hal_data = HalData(file, project.xbox_ports)
     leftovers = Leftovers(file, project.own_names, project.camel_names)
     sites = file.module.sites
     for own in file.module.classes:

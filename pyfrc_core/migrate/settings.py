@@ -6,8 +6,11 @@ They are changed as text, so that comments and layout stay.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
+from typing import Any
 
 from .report import Report
+from .rewrite.gamepads import xbox_number
 
 #: The packages that WPILib for Python consists of; all have one version.
 _WPILIB = re.compile(
@@ -21,8 +24,9 @@ _REQUIREMENT = re.compile(
 _HEADER = re.compile(r"^\[tool\.robotpy\][ \t]*(#.*)?$", re.M)
 _VERSION = re.compile(r"^(robotpy_version[ \t]*=[ \t]*)([\"'])[^\"']*\2", re.M)
 _REQUIRES = re.compile(r"^requires[ \t]*=[ \t]*\[", re.M)
-_LABELS = re.compile(r'"buttons"\s*:\s*\{[^{}]*\}')
-_BUTTON = re.compile(r'"([1-9]\d*)"(\s*:)')
+_JOYSTICK = re.compile(r'"(?P<port>\d+)"\s*:\s*\{(?:[^{}]|\{[^{}]*\})*\}')
+_LABELS = re.compile(r'"(?P<kind>axes|buttons)"\s*:\s*\{[^{}]*\}')
+_NUMBER = re.compile(r'"(\d+)"(?=\s*:)')
 _PYTHON = re.compile(r"(python-version:\s*)([\"']?)3\.(\d+)\2(?=\s)")
 
 
@@ -30,19 +34,27 @@ class Settings:
     """The settings files of one project.
 
     :param version: of WPILib in the new season
-    :param versions: of vendors' packages that have one for the new season
-    :param vendors: what is known about vendors' packages, by the name of their module
+    :param corrections: what is known about vendors' packages, and the numbers of gamepads
     :param drivers: the robot needs the package of the PWM motor controllers
+    :param xbox_ports: where the robot has Xbox controllers
     """
 
     def __init__(
-        self, version: str, versions: dict[str, str], vendors: dict[str, str], report: Report, *, drivers: bool
+        self,
+        version: str,
+        corrections: Mapping[str, Any],
+        report: Report,
+        *,
+        drivers: bool,
+        xbox_ports: frozenset[int],
     ) -> None:
         self._version = version
-        self._versions = versions
-        self._vendors = vendors
+        self._corrections = corrections
+        self._versions: Mapping[str, str] = corrections["vendor_versions"]
+        self._vendors: Mapping[str, str] = corrections["vendors"]
         self._report = report
         self._drivers = drivers
+        self._xbox_ports = xbox_ports
 
     def pyproject(self, name: str, text: str) -> str:
         """Return the new text of pyproject.toml; of a project without one, the text is ""."""
@@ -95,12 +107,22 @@ class Settings:
         return _PYTHON.sub(python, self._requirements(name, text))
 
     def labels(self, text: str) -> str:
-        """Return the new text of sim/config.json, where labels have the numbers of buttons."""
+        """Return the new text of sim/config.json, where labels have the numbers of axes and buttons."""
 
-        def counted_from_0(labels: re.Match[str]) -> str:
-            return _BUTTON.sub(lambda found: f'"{int(found[1]) - 1}"{found[2]}', labels[0])
+        def joystick(found: re.Match[str]) -> str:
+            is_xbox = int(found["port"]) in self._xbox_ports
+            return _LABELS.sub(lambda labels: renumbered(labels, is_xbox=is_xbox), found[0])
 
-        return _LABELS.sub(counted_from_0, text)
+        def renumbered(labels: re.Match[str], *, is_xbox: bool) -> str:
+            return _NUMBER.sub(lambda found: f'"{new(labels["kind"], int(found[1]), is_xbox=is_xbox)}"', labels[0])
+
+        def new(kind: str, number: int, *, is_xbox: bool) -> int:
+            of_xbox = xbox_number(self._corrections, kind, number) if is_xbox else None
+            if of_xbox is not None:
+                return of_xbox
+            return max(0, number - 1) if kind == "buttons" else number
+
+        return _JOYSTICK.sub(joystick, text)
 
     def _requirements(self, name: str, text: str) -> str:
         """Return a text with the versions of 2026 of WPILib's packages replaced."""

@@ -9,9 +9,10 @@ import libcst as cst
 
 from ..types.atoms import Many, Obj, Ref
 from ..types.scopes import Scope
-from ..types.values import values
+from ..types.values import written_number
 from .edits import changed, fill, in_parentheses
 from .file import FileRewriter, Found
+from .gamepads import xbox_number
 
 _GENERIC_HID = "wpilib.interfaces.GenericHID"
 
@@ -47,6 +48,8 @@ class Arguments:
                 types = self._file.inference.infer(node.args[0].value, scope)
                 if any(isinstance(each, Many) for each in types):
                     self._file.say(node, f"{path} takes no list any more.", self._corrections["no_lists"][path])
+            if path in self._corrections["by_channel"] and node.args:
+                self._by_channel(node, scope, self._corrections["by_channel"][path])
             if path in self._corrections["channels"]:
                 self._limit(node, scope, self._corrections["channels"][path])
             if path in self._corrections["can_bus"]["classes"]:
@@ -100,11 +103,12 @@ class Arguments:
         return any(isinstance(each, Obj) and each.path in self._corrections["xbox"]["classes"] for each in types)
 
     def _xbox_number(self, arg: cst.Arg, kind: str) -> None:
-        numbers = self._corrections["xbox"][kind]
-        number = numbers.get(str(arg.value.evaluated_value)) if isinstance(arg.value, cst.Integer) else None
-        if number is not None:
-            self._file.edit(arg, changed(value=cst.Integer(str(number))))
+        number = arg.value.evaluated_value if isinstance(arg.value, cst.Integer) else -1
+        new = xbox_number(self._corrections, kind, number)
+        if new is not None:
+            self._file.edit(arg, changed(value=cst.Integer(str(new))))
         else:
+            numbers = self._corrections["xbox"][kind]
             now = ", ".join(f"{old} is {new}" for old, new in numbers.items() if str(new) != old)
             self._file.say(arg, f"The {kind} of an Xbox controller have other numbers.", f"{now}.")
 
@@ -169,23 +173,19 @@ class Arguments:
                 arg, lambda updated: updated.with_changes(value=fill("{self}.get_hid()", {"self": updated.value}, []))
             )
 
+    def _by_channel(self, node: cst.Call, scope: Scope, note: str) -> None:
+        channel = written_number(self._file.inference, node.args[0].value, scope)
+        if channel is not None:
+            self._file.say(node, f"Channel {channel} must be in use here.", note, done=True)
+
     def _limit(self, node: cst.Call, scope: Scope, count: int) -> None:
-        number = self._number(node.args[0].value, scope) if node.args else None
-        if number is not None and number >= count:
+        channel = written_number(self._file.inference, node.args[0].value, scope) if node.args else None
+        if channel is not None and channel >= count:
             self._file.say(
                 node,
-                f"Channel {number} does not exist on SystemCore.",
+                f"Channel {channel} does not exist on SystemCore.",
                 f"It has the channels 0 to {count - 1}: write the one that you wire it to.",
             )
-
-    def _number(self, node: cst.BaseExpression, scope: Scope) -> int | None:
-        """Return a number that is written here, or given to a name once."""
-        if isinstance(node, cst.Integer):
-            return int(node.evaluated_value)
-        found = values(self._file.inference, node, scope)
-        if len(found) == 1 and isinstance(found[0], cst.Integer):
-            return int(found[0].evaluated_value)
-        return None
 
     def _bus(self, node: cst.Call, scope: Scope) -> None:
         bus = self._corrections["can_bus"]["bus"]

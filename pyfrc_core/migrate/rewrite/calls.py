@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import libcst as cst
@@ -12,6 +12,7 @@ from ..types.scopes import Scope
 from .arguments import Arguments
 from .edits import changed, fill, renamed, replaced
 from .file import FileRewriter, Found
+from .gamepads import Sticks
 
 _BOTH = "wpilib.interfaces.GenericHID.RumbleType.kBothRumble"
 _ADD_TO_TAB = "wpilib.shuffleboard.ShuffleboardContainer.add"
@@ -28,6 +29,7 @@ class Calls:
         self._file = rewriter
         self._reads = dashboard_reads
         self._arguments = Arguments(rewriter)
+        self._sticks = Sticks(rewriter)
         self._corrections: Mapping[str, Any] = rewriter.table.corrections
 
     def call(self, node: cst.Call, scope: Scope) -> None:
@@ -50,6 +52,7 @@ class Calls:
             return
         if not self._file.first_time:
             return
+        self._sticks.call(node, scope, found.path)
         self._arguments.changed_meaning(node, scope, paths)
 
     def _called(self, node: cst.Call, scope: Scope) -> Found | None:
@@ -128,12 +131,12 @@ class Calls:
         if not 1 <= len(node.args) <= 2 or any(arg.keyword or arg.star for arg in node.args):
             return False
         types = self._file.inference.infer(node.args[-1].value, scope)
-        names = {type_name for each in types if (type_name := self._loggable(each))}
-        if len(names) != 1:
+        bases = {name: each for of in types for name, each in self._sendable(of)}
+        if len(bases) != 1:
             return False
-        name = names.pop()
+        ((name, ancestors),) = bases.items()
         arguments = "{args}" if len(node.args) == 2 else f'"{name}", {{0}}'
-        if name == "SendableChooser":
+        if ancestors.intersection(self._corrections["tunables"]["classes"]):
             self.replace(node, scope, f"<tunables.publish>({arguments})")
             return True
         self.replace(node, scope, f"<telemetry.log>({arguments})")
@@ -145,19 +148,18 @@ class Calls:
         )
         return True
 
-    def _loggable(self, of: Atom) -> str:
-        """Return the name that the dashboard shows of something that was a Sendable, or "" if it was none."""
+    def _sendable(self, of: Atom) -> Iterator[tuple[str, set[str]]]:
+        """Return the name that the dashboard shows of something that was a Sendable, and its class with all bases."""
         if isinstance(of, OwnObj):
             bases = self._file.inference.lineage(of.own)[1]
             name = of.own.name
         elif isinstance(of, Obj):
             bases, name = [of.path], of.path.rpartition(".")[2]
         else:
-            return ""
+            return
         every = {each for base in bases for each in self._file.table.ancestors(base)}
-        if not every & {"wpiutil.Sendable", "ntcore.NTSendable", "wpilib.SendableChooser"}:
-            return ""
-        return {"CommandScheduler": "Scheduler", "Field2d": "Field"}.get(name, name)
+        if every & {"wpiutil.Sendable", "ntcore.NTSendable", "wpilib.SendableChooser"}:
+            yield {"CommandScheduler": "Scheduler", "Field2d": "Field"}.get(name, name), every
 
     # Comparisons and statements
 
@@ -203,11 +205,13 @@ class Calls:
             return
         paths = self._paths(found)
         if any(path in self._corrections["not_needed"]["calls"] for path in paths):
-            self._file.consume(node.value.func, scope)
-            self._file.edit(node, lambda updated: cst.Pass(semicolon=updated.semicolon))
-            self._file.removed.add(node)
+            self._remove(node, scope)
             advice = self._file.table.advice(found.path) if found.path in self._corrections["gone"] else ""
             self._file.say(node, f"{found.path} is gone, and removed here.", advice, done=True)
+        gyros = self._corrections["not_needed"]["gyros"]
+        if found.path in gyros and (key_of(node.value) or "").startswith(gyros[found.path]):
+            self._remove(node, scope)
+            self._file.say(node, "OnboardIMU turns with the robot by itself: removed here.", done=True)
         if found.path == _ADD_TO_TAB and len(node.value.args) == 2:
             self._add_to_tab(node.value)
         func = node.value.func
@@ -229,6 +233,11 @@ class Calls:
                 return cst.Assign([cst.AssignTarget(target)], updated.value)
 
             self._file.edit(node, assigned)
+
+    def _remove(self, node: cst.Expr, scope: Scope) -> None:
+        self._file.consume(cst.ensure_type(node.value, cst.Call).func, scope)
+        self._file.edit(node, lambda updated: cst.Pass(semicolon=updated.semicolon))
+        self._file.removed.add(node)
 
     def _add_to_tab(self, node: cst.Call) -> None:
         self._file.handled.add(node.func)

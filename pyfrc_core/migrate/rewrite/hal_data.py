@@ -5,16 +5,21 @@ from __future__ import annotations
 import libcst as cst
 
 from ..types.scopes import Scope
-from ..types.values import values
+from ..types.values import values, written_number
 from .edits import changed, in_parentheses
 from .file import FileRewriter
+from .gamepads import xbox_number
 
 
 class HalData:
-    """The buttons that a file's tests and physics press in `hal_data`."""
+    """The axes and buttons that a file's tests and physics set in `hal_data`.
 
-    def __init__(self, rewriter: FileRewriter) -> None:
+    :param xbox_ports: where the project has an Xbox controller
+    """
+
+    def __init__(self, rewriter: FileRewriter, xbox_ports: frozenset[int]) -> None:
         self._file = rewriter
+        self._xbox_ports = xbox_ports
         self._with_number: set[cst.CSTNode] = set()
 
     def subscript(self, node: cst.Subscript, scope: Scope) -> None:
@@ -23,26 +28,22 @@ class HalData:
             return
         index = _index(node)
         if index is not None and self._is_part(node.value, scope, "axes") and not _is_first(index.value):
-            self._file.say(
-                node,
-                "The axes of a gamepad have other numbers.",
-                "Of an Xbox controller, 2 is 4, 3 is 5, 4 is 2 and 5 is 3; a button's number may differ, too.",
-                done=True,
-            )
+            self._axis(node, index, scope)
         if self._is_buttons(node, scope):
             if node not in self._with_number:
                 self._file.say(
                     node, "Buttons count from 0 in hal_data, too.", "Check what is done with this list.", done=True
                 )
             return
-        index = _index(node)
         if index is None or not self._is_buttons(node.value, scope):
             return
         self._with_number.add(node.value)
         number = index.value
         if isinstance(number, cst.Integer):
+            new = self._of_xbox(node.value, scope, "buttons", number.evaluated_value)
             if number.evaluated_value:
-                self._file.edit(index, changed(value=cst.Integer(str(number.evaluated_value - 1))))
+                new = number.evaluated_value - 1 if new is None else new
+                self._file.edit(index, changed(value=cst.Integer(str(new))))
         elif not isinstance(number, cst.Attribute):  # that is a constant of an enumeration
             self._file.edit(
                 index,
@@ -51,6 +52,39 @@ class HalData:
                 ),
             )
             self._file.say(node, "Buttons count from 0 in hal_data, too: 1 is subtracted here.", done=True)
+
+    def _axis(self, node: cst.Subscript, index: cst.Index, scope: Scope) -> None:
+        number = index.value
+        if isinstance(number, cst.Integer):
+            new = self._of_xbox(node.value, scope, "axes", number.evaluated_value)
+            if new is not None:
+                self._file.edit(index, changed(value=cst.Integer(str(new))))
+                return
+        self._file.say(
+            node,
+            "The axes of a gamepad have other numbers.",
+            "Of an Xbox controller, 2 is 4, 3 is 5, 4 is 2 and 5 is 3; a button's number may differ, too.",
+            done=True,
+        )
+
+    def _of_xbox(self, part: cst.BaseExpression, scope: Scope, kind: str, number: int) -> int | None:
+        """Return the new number of an axis or a button, if it is one of an Xbox controller.
+
+        :param part: the axes or the buttons of a joystick
+        """
+        if not isinstance(part, cst.Subscript) or self._port(part.value, scope) not in self._xbox_ports:
+            return None
+        return xbox_number(self._file.table.corrections, kind, number)
+
+    def _port(self, joystick: cst.CSTNode, scope: Scope) -> int | None:
+        """Return the port of a joystick of `hal_data`."""
+        if isinstance(joystick, cst.Name):
+            found = values(self._file.inference, joystick, scope)
+            joystick = found[0] if len(found) == 1 else joystick
+        if not isinstance(joystick, cst.Subscript) or not self._is_part(joystick.value, scope, "joysticks"):
+            return None
+        index = _index(joystick)
+        return None if index is None else written_number(self._file.inference, index.value, scope)
 
     def _is_buttons(self, node: cst.BaseExpression, scope: Scope) -> bool:
         return self._is_part(node, scope, "buttons")

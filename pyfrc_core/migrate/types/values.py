@@ -37,6 +37,14 @@ def values(inference: Types, node: cst.BaseExpression, scope: Scope) -> list[cst
     return [each.node for each in (*bindings, *imported) if each.kind == "value" and not each.unpacked]
 
 
+def written_number(inference: Types, node: cst.BaseExpression, scope: Scope) -> int | None:
+    """Return a whole number that is written here, or given to a name once."""
+    found = [node] if isinstance(node, cst.Integer) else values(inference, node, scope)
+    if len(found) == 1 and isinstance(found[0], cst.Integer):
+        return int(found[0].evaluated_value)
+    return None
+
+
 def _from_stars(inference: Types, name: str, scope: Scope) -> list[Binding]:
     stars = scope.module.scope.bindings.get("*", ())
     return [each for star in stars for each in _at(inference.modules, f"{star.path}.{name}")]
