@@ -10,7 +10,7 @@ WORKERS ?= $(shell expr 2 + $$(getconf _NPROCESSORS_ONLN))
 # Without compiled modules, each of many processes compiles the tests and pytest's plugins again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-2027 check check-platforms check-page docs clean
+.PHONY: demo test test-2027 templates-2027 check check-platforms check-page docs clean
 
 demo: $(VENV)/installed  ## create a robot project in demo/, run its tests, deploy it to a virtual robot, change it, roll back
 	test -d demo || $(RUN) pyfrc init demo
@@ -22,6 +22,9 @@ test: $(VENV)/installed-dev  ## run pyfrc's own tests; ARGS are passed to pytest
 
 test-2027:  ## run the tests that season 2027 has, with its WPILib in .venv-2027; needs Python 3.11 or newer, and glibc 2.39 on Linux
 	$(MAKE) test VENV=.venv-2027 DEV=dev-2027
+
+templates-2027: $(VENV)/installed-dev  ## make templates/2027 from the templates of 2026 with pyfrc migrate; ARGS=--patches: see CONTRIBUTING.md
+	$(VENV)/bin/python tests/make_2027.py $(ARGS)
 
 check: $(VENV)/installed-dev  ## check style, types, and which room imports which
 	$(RUN) ruff check .

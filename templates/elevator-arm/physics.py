@@ -27,10 +27,10 @@ ARM_MASS = 3.0  # kg
 
 
 class PhysicsEngine:
-    """Move both mechanisms according to their motors. Created after robotInit."""
+    """Move both mechanisms according to their motors. Created after the robot."""
 
     def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
-        self.elevator_motor = PWMSim(robot.elevator.motor.getChannel())
+        self.elevator_motor = PWMSim(robot.elevator.motor)
         self.elevator_encoder = EncoderShaft(robot.elevator.encoder)
         self.bottom_switch = DIOSim(robot.elevator.bottom_switch)
         self.elevator = ElevatorSim(
@@ -44,7 +44,7 @@ class PhysicsEngine:
             elevator.LOWEST,  # where it starts
         )
 
-        self.arm_motor = PWMSim(robot.arm.motor.getChannel())
+        self.arm_motor = PWMSim(robot.arm.motor)
         self.arm_encoder = DutyCycleEncoderSim(robot.arm.encoder)
         self.arm = SingleJointedArmSim(
             DCMotor.NEO(1),

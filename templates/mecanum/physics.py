@@ -1,6 +1,6 @@
-"""Physics of the robot in tests and in the simulator: mecanum wheels, their encoders and a gyro.
+"""Physics of the robot in tests and in the simulator: mecanum wheels and their encoders.
 
-The numbers describe a typical robot. Replace them with your robot's.
+The gyro turns with the robot. The numbers describe a typical robot. Replace them with your robot's.
 """
 
 from pyfrc.physics.core import PhysicsInterface
@@ -18,13 +18,13 @@ METRES_PER_SECOND = MAX_SPEED.to(units.metre / units.second).magnitude
 
 
 class PhysicsEngine:
-    """Move the robot according to its motors. Created after robotInit."""
+    """Move the robot according to its motors. Created after the robot."""
 
     def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
         self.physics_controller = physics_controller
         # In the order in which calculate() takes them.
         self.motors = [
-            PWMSim(motor.getChannel())
+            PWMSim(motor)
             for motor in (robot.front_left, robot.rear_left, robot.front_right, robot.rear_right)
         ]
         self.drivetrain = MecanumDrivetrain(x_wheelbase=TRACK_WIDTH, y_wheelbase=WHEEL_BASE, speed=MAX_SPEED)

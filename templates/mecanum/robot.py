@@ -64,9 +64,10 @@ class MyRobot(wpilib.TimedRobot):
         wpilib.SmartDashboard.putData("Field", self.field)
 
     def robotPeriodic(self) -> None:
-        """Called every 20 ms in every mode: show the driver the heading (in degrees clockwise) and the place."""
-        wpilib.SmartDashboard.putNumber("Heading", self.gyro.getAngle())
-        self.field.setRobotPose(self.odometry.update(self.gyro.getRotation2d(), self.wheel_positions()))
+        """Called every 20 ms in every mode: show the driver the heading (in degrees, to the left) and the place."""
+        heading = self.gyro.getRotation2d()
+        wpilib.SmartDashboard.putNumber("Heading", heading.degrees())
+        self.field.setRobotPose(self.odometry.update(heading, self.wheel_positions()))
 
     def wheel_positions(self) -> MecanumDriveWheelPositions:
         """Return how far each wheel has rolled, in metres."""
@@ -80,7 +81,7 @@ class MyRobot(wpilib.TimedRobot):
         """Called once when autonomous starts: the robot's current heading becomes forward."""
         self.face_forward()
         self.timer.restart()
-        self.steps: list[tuple[float, float, float]] = self.chooser.getSelected()
+        self.steps: list[tuple[float, float, float]] = self.chooser.getSelected() or []
 
     def autonomousPeriodic(self) -> None:
         """Called every 20 ms in autonomous: run the current step."""
@@ -113,8 +114,8 @@ class MyRobot(wpilib.TimedRobot):
 
     def drive_on_field(self, forward: float, right: float, turn: float) -> None:
         """Drive relative to the field. All values are from -1 to 1; `turn` is clockwise."""
-        # MecanumDrive counts angles clockwise, as gyros do.
-        self.drive.driveCartesian(forward, right, turn, Rotation2d.fromDegrees(self.gyro.getAngle()))
+        # MecanumDrive counts angles clockwise, Rotation2d counter-clockwise.
+        self.drive.driveCartesian(forward, right, turn, -self.gyro.getRotation2d())
 
     def disabledInit(self) -> None:
         """Called once when the robot is disabled: stop, so that nothing moves suddenly later."""

@@ -72,7 +72,9 @@ class Drivetrain:
         states = self.kinematics.toSwerveModuleStates(speeds)
         # If one wheel would exceed its maximum speed, slow all of them down, so that the direction stays.
         states = self.kinematics.desaturateWheelSpeeds(states, MAX_SPEED)
-        self._set(states)
+        for module, state in zip(self.modules, states, strict=True):
+            module.set(state)
+        self.target.set(list(states))
 
     def stop(self) -> None:
         """Stop all motors."""
@@ -94,11 +96,6 @@ class Drivetrain:
     def show_path(self, path: list[Pose2d]) -> None:
         """Show on the field where the robot is to go."""
         self.field.getObject("Path").setPoses(path)
-
-    def _set(self, states: tuple[SwerveModuleState, SwerveModuleState, SwerveModuleState, SwerveModuleState]) -> None:
-        for module, state in zip(self.modules, states, strict=True):
-            module.set(state)
-        self.target.set(list(states))
 
     def _positions(
         self,

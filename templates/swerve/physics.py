@@ -1,6 +1,6 @@
-"""Physics of the robot in tests and in the simulator: four swerve wheels, their encoders, a gyro.
+"""Physics of the robot in tests and in the simulator: four swerve wheels and their encoders.
 
-The numbers describe a typical robot. Replace them with your robot's.
+The gyro turns with the robot. The numbers describe a typical robot. Replace them with your robot's.
 """
 
 import math
@@ -21,8 +21,8 @@ class ModulePhysics:
     """The wheel of one module: its motors move it, and it moves the encoders."""
 
     def __init__(self, module: SwerveModule) -> None:
-        self.drive_motor = PWMSim(module.drive_motor.getChannel())
-        self.turn_motor = PWMSim(module.turn_motor.getChannel())
+        self.drive_motor = PWMSim(module.drive_motor)
+        self.turn_motor = PWMSim(module.turn_motor)
         self.drive_encoder = EncoderShaft(module.drive_encoder)
         self.angle_encoder = AnalogEncoderSim(module.angle_encoder)
         self.angle = 0.0  # in radians, counter-clockwise
@@ -39,7 +39,7 @@ class ModulePhysics:
 
 
 class PhysicsEngine:
-    """Move the robot according to its wheels. Created after robotInit."""
+    """Move the robot according to its wheels. Created after the robot."""
 
     def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
         self.physics_controller = physics_controller

@@ -43,7 +43,7 @@ class MyRobot(wpilib.TimedRobot):
     def autonomousInit(self) -> None:
         """Called once when autonomous starts."""
         self.timer.restart()
-        self.steps: list[tuple[float, ChassisSpeeds]] = self.chooser.getSelected()
+        self.steps: list[tuple[float, ChassisSpeeds]] = self.chooser.getSelected() or []
 
     def autonomousPeriodic(self) -> None:
         """Called every 20 ms in autonomous: run the current step."""
@@ -68,7 +68,7 @@ class MyRobot(wpilib.TimedRobot):
     def disabledPeriodic(self) -> None:
         """Called every 20 ms while the robot is disabled: show the path of the chosen autonomous, from here."""
         path = [self.drivetrain.pose]
-        for seconds, speeds in self.chooser.getSelected():
+        for seconds, speeds in self.chooser.getSelected() or []:
             place = path[-1]
             turn = Rotation2d(speeds.omega * seconds)
             x, y = place.X() + speeds.vx * seconds, place.Y() + speeds.vy * seconds

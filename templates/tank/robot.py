@@ -51,7 +51,7 @@ class MyRobot(wpilib.TimedRobot):
     def autonomousInit(self) -> None:
         """Called once when autonomous starts."""
         self.timer.restart()
-        self.drive_seconds: float = self.chooser.getSelected()
+        self.drive_seconds: float = self.chooser.getSelected() or 0.0
 
     def autonomousPeriodic(self) -> None:
         """Called every 20 ms in autonomous: drive forward at half speed, for as long as chosen."""

@@ -44,4 +44,5 @@ class RobotContainer:
 
     def get_autonomous_command(self) -> commands2.Command | None:
         """Return the command chosen on the dashboard."""
-        return self.chooser.get_selected()
+        chosen: commands2.Command | None = self.chooser.get_selected()
+        return chosen

@@ -4,7 +4,7 @@ import math
 
 import wpilib
 import wpilib_drivers
-from wpimath import ArmFeedforward, ProfiledPIDController, TrapezoidProfileConstraints
+from wpimath import ArmFeedforward, ProfiledPIDController, TrapezoidProfile
 
 LOWEST = math.radians(-85)  # from level; up is positive
 HIGHEST = math.radians(85)
@@ -21,7 +21,7 @@ class Arm:
         self.encoder = wpilib.DutyCycleEncoder(3, math.tau, 0.0)
 
         # The motion profile: at most 3 rad/s and 6 rad/s².
-        self.controller = ProfiledPIDController(12.0, 0.0, 0.3, TrapezoidProfileConstraints(3.0, 6.0))
+        self.controller = ProfiledPIDController(12.0, 0.0, 0.3, TrapezoidProfile.Constraints(3.0, 6.0))
         # Feedforward in volts: against gravity when the arm is level, and for each rad/s.
         self.feedforward = ArmFeedforward(0.0, 0.41, 2.0)
 

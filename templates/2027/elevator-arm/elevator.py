@@ -4,7 +4,7 @@ import math
 
 import wpilib
 import wpilib_drivers
-from wpimath import ElevatorFeedforward, ProfiledPIDController, TrapezoidProfileConstraints
+from wpimath import ElevatorFeedforward, ProfiledPIDController, TrapezoidProfile
 
 LOWEST = 0.0  # metres
 HIGHEST = 1.4
@@ -22,7 +22,7 @@ class Elevator:
         self.bottom_switch = wpilib.DigitalInput(2)  # False while it is pressed
 
         # The motion profile: at most 1.2 m/s and 2 m/s².
-        self.controller = ProfiledPIDController(20.0, 0.0, 0.5, TrapezoidProfileConstraints(1.2, 2.0))
+        self.controller = ProfiledPIDController(20.0, 0.0, 0.5, TrapezoidProfile.Constraints(1.2, 2.0))
         # Feedforward in volts: against gravity, and for each m/s. The controller corrects the remaining error.
         self.feedforward = ElevatorFeedforward(0.0, 0.57, 6.5)
         self.controller.set_goal(LOWEST)

@@ -51,7 +51,7 @@ class MyRobot(wpilib.TimedRobot):
         for encoder in self.encoders:
             encoder.set_distance_per_pulse(WHEEL_CIRCUMFERENCE / COUNTS_PER_TURN)
 
-        self.imu = wpilib.OnboardIMU(wpilib.OnboardIMU.MountOrientation.FLAT)  # the gyro in the controller
+        self.gyro = wpilib.OnboardIMU(wpilib.OnboardIMU.MountOrientation.FLAT)
         self.gamepad = wpilib.XboxController(0)
         self.timer = wpilib.Timer()
 
@@ -67,15 +67,15 @@ class MyRobot(wpilib.TimedRobot):
             Translation2d(-HALF_LENGTH, HALF_WIDTH),
             Translation2d(-HALF_LENGTH, -HALF_WIDTH),
         )
-        self.odometry = MecanumDriveOdometry(kinematics, self.imu.get_rotation2d(), self.wheel_positions(), START)
+        self.odometry = MecanumDriveOdometry(kinematics, self.gyro.get_rotation2d(), self.wheel_positions(), START)
         self.field = wpilib.Field2d()
 
     def robot_periodic(self) -> None:
         """Called every 20 ms in every mode: show the driver the heading (in degrees, to the left) and the place."""
-        heading = self.imu.get_rotation2d()
+        heading = self.gyro.get_rotation2d()
+        telemetry.log("Heading", heading.degrees())
         self.field.set_robot_pose(self.odometry.update(heading, self.wheel_positions()))
         telemetry.log("Field", self.field)
-        telemetry.log("Heading", heading.degrees())
 
     def wheel_positions(self) -> MecanumDriveWheelPositions:
         """Return how far each wheel has rolled, in metres."""
@@ -89,7 +89,7 @@ class MyRobot(wpilib.TimedRobot):
         """Called once when autonomous starts: the robot's current heading becomes forward."""
         self.face_forward()
         self.timer.restart()
-        self.steps = self.chooser.get_selected() or []
+        self.steps: list[tuple[float, float, float]] = self.chooser.get_selected() or []
 
     def autonomous_periodic(self) -> None:
         """Called every 20 ms in autonomous: run the current step."""
@@ -117,13 +117,13 @@ class MyRobot(wpilib.TimedRobot):
     def face_forward(self) -> None:
         """Define the robot's current heading as the direction away from the driver."""
         here = Pose2d(self.odometry.get_pose().translation(), Rotation2d())
-        self.imu.reset_yaw()
-        self.odometry.reset_position(self.imu.get_rotation2d(), self.wheel_positions(), here)
+        self.gyro.reset_yaw()
+        self.odometry.reset_position(self.gyro.get_rotation2d(), self.wheel_positions(), here)
 
     def drive_on_field(self, forward: float, right: float, turn: float) -> None:
         """Drive relative to the field. All values are from -1 to 1; `turn` is clockwise."""
-        # MecanumDrive counts angles clockwise, the IMU counter-clockwise.
-        self.drive.drive_cartesian(forward, right, turn, -self.imu.get_rotation2d())
+        # MecanumDrive counts angles clockwise, Rotation2d counter-clockwise.
+        self.drive.drive_cartesian(forward, right, turn, -self.gyro.get_rotation2d())
 
     def disabled_init(self) -> None:
         """Called once when the robot is disabled: stop, so that nothing moves suddenly later."""

@@ -1,7 +1,6 @@
 """The four swerve modules together: the robot's speed and its pose."""
 
-from collections.abc import Sequence
-
+import ntcore
 import telemetry
 import wpilib
 from wpimath import (
@@ -44,12 +43,15 @@ class Drivetrain:
         self.rear_right = SwerveModule(6, 7, (6, 7), 3)
         self.modules = (self.front_left, self.front_right, self.rear_left, self.rear_right)
 
-        self.imu = wpilib.OnboardIMU(wpilib.OnboardIMU.MountOrientation.FLAT)  # the gyro in the controller
+        self.gyro = wpilib.OnboardIMU(wpilib.OnboardIMU.MountOrientation.FLAT)
         self.kinematics = SwerveDrive4Kinematics(*MODULE_PLACES)
-        self.odometry = SwerveDrive4Odometry(self.kinematics, self.imu.get_rotation2d(), self._positions(), START)
+        self.odometry = SwerveDrive4Odometry(self.kinematics, self.gyro.get_rotation2d(), self._positions(), START)
 
-        # The field on the dashboard.
+        # The field on the dashboard, and the modules' states, which dashboards draw as arrows.
         self.field = wpilib.Field2d()
+        table = ntcore.NetworkTableInstance.get_default()
+        self.measured = table.get_struct_array_topic("/SwerveStates/Measured", SwerveModuleVelocity).publish()
+        self.target = table.get_struct_array_topic("/SwerveStates/Target", SwerveModuleVelocity).publish()
 
     @property
     def pose(self) -> Pose2d:
@@ -69,30 +71,30 @@ class Drivetrain:
         """Drive at these speeds relative to the robot."""
         # The robot turns a little within 20 ms, which would bend straight lines.
         speeds = speeds.discretize(0.02)
-        wheels = self.kinematics.to_swerve_module_velocities(speeds)
+        states = self.kinematics.to_swerve_module_velocities(speeds)
         # If one wheel would exceed its maximum speed, slow all of them down, so that the direction stays.
-        wheels = self.kinematics.desaturate_wheel_velocities(wheels, MAX_SPEED)
-        for module, wheel in zip(self.modules, wheels, strict=True):
-            module.set(wheel)
-        show_wheels("Target", wheels)
+        states = self.kinematics.desaturate_wheel_velocities(states, MAX_SPEED)
+        for module, state in zip(self.modules, states, strict=True):
+            module.set(state)
+        self.target.set(list(states))
 
     def stop(self) -> None:
         """Stop all motors."""
         for module in self.modules:
             module.stop()
-        show_wheels("Target", [SwerveModuleVelocity(0, module.angle) for module in self.modules])
+        self.target.set([SwerveModuleVelocity(0, module.angle) for module in self.modules])
 
     def face_forward(self) -> None:
         """Define the robot's current heading as the direction away from the driver."""
         here = Pose2d(self.pose.translation(), Rotation2d())
-        self.odometry.reset_position(self.imu.get_rotation2d(), self._positions(), here)
+        self.odometry.reset_position(self.gyro.get_rotation2d(), self._positions(), here)
 
     def update_odometry(self) -> None:
         """Update the pose with the movement since the last call, and show it."""
-        self.odometry.update(self.imu.get_rotation2d(), self._positions())
+        self.odometry.update(self.gyro.get_rotation2d(), self._positions())
         self.field.set_robot_pose(self.pose)
         telemetry.log("Field", self.field)
-        show_wheels("Measured", [module.state for module in self.modules])
+        self.measured.set([module.state for module in self.modules])
 
     def show_path(self, path: list[Pose2d]) -> None:
         """Show on the field where the robot is to go."""
@@ -107,8 +109,3 @@ class Drivetrain:
             self.rear_left.position,
             self.rear_right.position,
         )
-
-
-def show_wheels(name: str, wheels: Sequence[SwerveModuleVelocity]) -> None:
-    """Show each wheel's speed and direction, which dashboards draw as arrows."""
-    telemetry.log(f"SwerveStates/{name}", list(wheels), element_type=SwerveModuleVelocity)

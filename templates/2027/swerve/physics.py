@@ -1,6 +1,6 @@
 """Physics of the robot in tests and in the simulator: four swerve wheels and their encoders.
 
-The numbers describe a typical robot. Replace them with your robot's. The IMU turns with the robot.
+The gyro turns with the robot. The numbers describe a typical robot. Replace them with your robot's.
 """
 
 import math

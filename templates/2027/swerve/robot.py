@@ -42,7 +42,7 @@ class MyRobot(wpilib.TimedRobot):
     def autonomous_init(self) -> None:
         """Called once when autonomous starts."""
         self.timer.restart()
-        self.steps = self.chooser.get_selected() or []
+        self.steps: list[tuple[float, ChassisVelocities]] = self.chooser.get_selected() or []
 
     def autonomous_periodic(self) -> None:
         """Called every 20 ms in autonomous: run the current step."""

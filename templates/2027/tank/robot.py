@@ -52,7 +52,7 @@ class MyRobot(wpilib.TimedRobot):
     def autonomous_init(self) -> None:
         """Called once when autonomous starts."""
         self.timer.restart()
-        self.drive_seconds = self.chooser.get_selected() or 0.0
+        self.drive_seconds: float = self.chooser.get_selected() or 0.0
 
     def autonomous_periodic(self) -> None:
         """Called every 20 ms in autonomous: drive forward at half speed, for as long as chosen."""

@@ -33,7 +33,7 @@ def test_forward_after_a_quarter_turn(control, robot, physics_controller, as_see
             drive(control, 0.02)
         gamepad.setRightX(0)
         drive(control, 0.1)
-        assert robot.gyro.getAngle() == pytest.approx(-95, abs=10)  # clockwise
+        assert robot.gyro.getRotation2d().degrees() == pytest.approx(95, abs=10)
 
         start = physics_controller.get_pose().translation()
         gamepad.setLeftY(-1.0)
@@ -50,11 +50,11 @@ def test_the_back_button_makes_this_way_forward(control, robot):
     with control.run_robot():
         gamepad.setRightX(0.5)
         drive(control, 0.5)
-        assert robot.gyro.getAngle() > 20
+        assert robot.gyro.getRotation2d().degrees() < -20
         gamepad.setRightX(0)
         gamepad.setBackButton(True)
         drive(control, 0.1)
-        assert robot.gyro.getAngle() == pytest.approx(0, abs=1)
+        assert robot.gyro.getRotation2d().degrees() == pytest.approx(0, abs=1)
 
 
 def test_autonomous_goes_forward_then_right(control, robot, physics_controller):

@@ -1,4 +1,4 @@
-"""The drivetrain: a motor on each side, an encoder on each, and the controller's gyro."""
+"""The drivetrain: a motor on each side, an encoder on each, and a gyro."""
 
 from collections.abc import Callable
 
@@ -29,16 +29,16 @@ class Drive(commands2.Subsystem):
         self.right_encoder = wpilib.Encoder(2, 3)
         for encoder in (self.left_encoder, self.right_encoder):
             encoder.set_distance_per_pulse(WHEEL_CIRCUMFERENCE / COUNTS_PER_TURN)
-        self.imu = wpilib.OnboardIMU(wpilib.OnboardIMU.MountOrientation.FLAT)  # the gyro in the controller
+        self.gyro = wpilib.OnboardIMU(wpilib.OnboardIMU.MountOrientation.FLAT)
 
         # The field on the dashboard, with the robot where its wheels and its gyro say that it is.
-        self.odometry = DifferentialDriveOdometry(self.imu.get_rotation2d(), 0, 0, START)
+        self.odometry = DifferentialDriveOdometry(self.gyro.get_rotation2d(), 0, 0, START)
         self.field = wpilib.Field2d()
 
     def periodic(self) -> None:
         """Called by the scheduler every 20 ms: show the measurements to the driver."""
         left, right = self.left_encoder.get_distance(), self.right_encoder.get_distance()
-        self.field.set_robot_pose(self.odometry.update(self.imu.get_rotation2d(), left, right))
+        self.field.set_robot_pose(self.odometry.update(self.gyro.get_rotation2d(), left, right))
         telemetry.log("Field", self.field)
         telemetry.log("Distance", self.distance())
         telemetry.log("Heading", self.heading())
@@ -49,7 +49,7 @@ class Drive(commands2.Subsystem):
 
     def heading(self) -> float:
         """Return the heading in degrees, counter-clockwise."""
-        return self.imu.get_rotation2d().degrees()
+        return self.gyro.get_rotation2d().degrees()
 
     def go(self, forward: float, turn: float) -> None:
         """Drive for the next 20 ms. Both values are from -1 to 1; a turn to the left is positive."""

@@ -12,22 +12,30 @@ def teleop(control, seconds):
     control.step_timing(seconds=seconds, autonomous=False, enabled=True)
 
 
-def press(control, name):
+def press(control, set_button):
     """Press a button of the gamepad briefly."""
-    button = getattr(XboxControllerSim(0), f"set_{name.lower()}_button")
-    button(True)
+    gamepad = XboxControllerSim(0)
+    set_button(gamepad, True)
     teleop(control, 0.06)
-    button(False)
+    set_button(gamepad, False)
 
 
-@pytest.mark.parametrize(("button", "place"), [("A", FLOOR), ("B", SHELF), ("Y", TOP), ("X", STOWED)])
-def test_a_button_brings_both_there_and_holds_them(control, robot, button, place):
+@pytest.mark.parametrize(
+    ("set_button", "place"),
+    [
+        (XboxControllerSim.set_a_button, FLOOR),
+        (XboxControllerSim.set_b_button, SHELF),
+        (XboxControllerSim.set_y_button, TOP),
+        (XboxControllerSim.set_x_button, STOWED),
+    ],
+)
+def test_a_button_brings_both_there_and_holds_them(control, robot, set_button, place):
     height, angle = place
     with control.run_robot():
         teleop(control, 0.1)
-        press(control, "B")
+        press(control, XboxControllerSim.set_b_button)
         teleop(control, 1)
-        press(control, button)
+        press(control, set_button)
         teleop(control, 3)
         for _ in range(50):
             assert robot.elevator.height == pytest.approx(height, abs=0.02)
@@ -51,7 +59,7 @@ def test_at_the_bottom_the_motor_pulls_no_further(control, robot):
     with control.run_robot():
         teleop(control, 0.1)
         assert not robot.elevator.bottom_switch.get()
-        press(control, "X")
+        press(control, XboxControllerSim.set_x_button)
         for _ in range(50):
             teleop(control, 0.02)
             assert PWMMotorControllerSim(0).get_throttle() >= 0
@@ -60,7 +68,7 @@ def test_at_the_bottom_the_motor_pulls_no_further(control, robot):
 def test_it_overshoots_little(control, robot):
     with control.run_robot():
         teleop(control, 0.1)
-        press(control, "Y")
+        press(control, XboxControllerSim.set_y_button)
         heights, angles = [], []
         for _ in range(200):
             teleop(control, 0.02)

@@ -34,7 +34,7 @@ def test_forward_after_a_quarter_turn(control, robot, physics_controller, as_see
             drive(control, 0.02)
         gamepad.set_right_x(0)
         drive(control, 0.1)
-        assert robot.imu.get_rotation2d().degrees() == pytest.approx(95, abs=10)
+        assert robot.gyro.get_rotation2d().degrees() == pytest.approx(95, abs=10)
 
         start = physics_controller.get_pose().translation()
         gamepad.set_left_y(-1.0)
@@ -46,16 +46,16 @@ def test_forward_after_a_quarter_turn(control, robot, physics_controller, as_see
     assert abs(across) < 0.3 * along
 
 
-def test_the_view_button_makes_this_way_forward(control, robot):
+def test_the_back_button_makes_this_way_forward(control, robot):
     gamepad = XboxControllerSim(0)
     with control.run_robot():
         gamepad.set_right_x(0.5)
         drive(control, 0.5)
-        assert robot.imu.get_rotation2d().degrees() < -20
+        assert robot.gyro.get_rotation2d().degrees() < -20
         gamepad.set_right_x(0)
         gamepad.set_view_button(True)
         drive(control, 0.1)
-        assert robot.imu.get_rotation2d().degrees() == pytest.approx(0, abs=1)
+        assert robot.gyro.get_rotation2d().degrees() == pytest.approx(0, abs=1)
 
 
 def test_autonomous_goes_forward_then_right(control, robot, physics_controller):
