@@ -24,8 +24,7 @@ class PhysicsEngine:
         self.physics_controller = physics_controller
         # In the order in which calculate() takes them.
         self.motors = [
-            PWMSim(motor)
-            for motor in (robot.front_left, robot.rear_left, robot.front_right, robot.rear_right)
+            PWMSim(motor) for motor in (robot.front_left, robot.rear_left, robot.front_right, robot.rear_right)
         ]
         self.drivetrain = MecanumDrivetrain(x_wheelbase=TRACK_WIDTH, y_wheelbase=WHEEL_BASE, speed=MAX_SPEED)
         self.encoders = [EncoderShaft(encoder) for encoder in robot.encoders]
