@@ -8,7 +8,6 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from skips import missing_programs, require
 
 ROOT = Path(__file__).parents[1]
 
@@ -77,37 +76,3 @@ def test_a_run_with_default_settings_does_not_wait_for_pydantic(make_project) ->
     )
     result = project.run("test", "--", "-q", cold=True)
     assert result.code == 0, result.output
-
-
-@pytest.fixture
-def make_with(tmp_path: Path):
-    """Makes the environment with a Python that is a shell script."""
-    require("the Makefile", missing_programs("make"))
-
-    def make(script: str) -> subprocess.CompletedProcess[str]:
-        python = tmp_path / "python"
-        python.write_text(f"#!/bin/sh\n{script}", "utf-8")
-        python.chmod(0o755)
-        command = ["make", f"PYTHON={python}", f"VENV={tmp_path / 'venv'}", f"{tmp_path / 'venv'}/bin/python"]
-        return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-
-    return make
-
-
-def test_make_removes_an_environment_that_could_not_be_made(make_with, tmp_path: Path) -> None:
-    failing = (
-        'test "$1" = -c && exit 0; mkdir -p "$3/bin"; touch "$3/bin/python"; echo ensurepip is missing >&2; exit 1\n'
-    )
-    done = make_with(failing)
-    assert done.returncode != 0
-    assert "ensurepip is missing" in done.stderr
-    assert not (tmp_path / "venv").exists()
-
-
-def test_make_says_when_python_is_too_old(make_with, tmp_path: Path) -> None:
-    """The real check, run by a Python that says that it is an older one."""
-    too_old = f"shift; exec {sys.executable} -c 'import sys; sys.version_info = (3, 9, 2)'\"\n$1\"\n"
-    done = make_with(too_old)
-    assert done.returncode != 0
-    assert "pyfrc needs Python 3.10 or newer" in done.stderr
-    assert not (tmp_path / "venv").exists()

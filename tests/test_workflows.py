@@ -13,6 +13,7 @@ from typing import Any
 import click
 import pytest
 import yaml
+from make_script import make_script
 
 from pyfrc_cli.main import cli
 
@@ -32,9 +33,8 @@ SYSTEMS = {"ubuntu": "POSIX :: Linux", "windows": "Microsoft :: Windows", "macos
 
 #: Options of commands that are not pyfrc's, as far as the workflows use them.
 OPTIONS = {
-    "pip install": {"--editable"},
+    "pip install": set(),
     "pip wheel": {"--no-deps", "--wheel-dir"},
-    "pytest": {"-n", "--dist"},
     "apt-get update": {"--quiet=2"},
     "apt-get install": {"--quiet=2", "--yes"},
 }
@@ -86,6 +86,9 @@ def test_every_command_in_the_workflows_exists(command: list[str]) -> None:
             assert re.search(rf"^{target}:", MAKEFILE, re.MULTILINE), target
         for variable in (argument.partition("=")[0] for argument in arguments if "=" in argument):
             assert re.search(rf"^{variable} \?=", MAKEFILE, re.MULTILINE), variable
+    elif program == "python":
+        assert arguments[0] == "make.py"
+        assert arguments[1] in make_script.TASKS
     elif program == "pyfrc":
         context = click.Context(cli)
         found = cli if arguments[0] == "--help" else cli.get_command(context, arguments[0])
@@ -94,22 +97,21 @@ def test_every_command_in_the_workflows_exists(command: list[str]) -> None:
         assert unknown_options(arguments, known) == set()
     elif program == ".ci/run":
         assert os.access(ROOT / program, os.X_OK)
-    elif program == "pytest":
-        assert unknown_options(arguments, OPTIONS[program]) == set()
     else:
         assert unknown_options(arguments, OPTIONS[f"{program} {arguments[0]}"]) == set()
 
 
-def test_pytest_is_called_as_in_the_makefile() -> None:
-    (command,) = (command for command in COMMANDS if command[:3] == ["python", "-m", "pytest"])
-    distribution = shlex.join(command[command.index("--dist") :])
-    assert re.search(rf"^test: .*\n\t.* pytest .*{distribution}", MAKEFILE, re.MULTILINE)
-
-
-def test_the_extras_that_are_installed_exist() -> None:
-    extras = {extra for command in COMMANDS for extra in re.findall(r"\.\[(\w+)\]", " ".join(command))}
-    assert extras == {"dev"}
-    assert extras <= PROJECT["optional-dependencies"].keys()
+@pytest.mark.parametrize("job", ["linux", "windows-and-macos"])
+def test_every_system_runs_the_two_commands_of_the_readme(job: str) -> None:
+    runs = [step["run"] for step in JOBS[job]["steps"] if "run" in step]
+    with_make, without = (["make demo", "make test"], ["make.py demo", "make.py test"])
+    readme = (ROOT / "README.md").read_text("utf-8")
+    assert all(f"$ {command} " in readme for command in with_make)
+    assert all(f"`py {command}`" in readme for command in without)
+    if job == "linux":
+        assert runs == [f"{command} PYTHON=python" for command in with_make]
+    else:
+        assert runs == [f"python {command}" for command in without]
 
 
 def test_the_gate_gets_each_python_that_it_asks_for() -> None:
