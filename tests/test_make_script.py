@@ -131,8 +131,8 @@ make_script.run([sys.executable, "-c", {command!r}])
 
 #: Needs its time after Ctrl-C, as pytest does.
 ENDS_BY_ITSELF = """
-print("started", flush=True)
 try:
+    print("started", flush=True)
     input()
 except KeyboardInterrupt:
     print("interrupted", flush=True)

@@ -14,8 +14,8 @@ from pyfrc_cli import start
 
 #: Saves what it has when it is interrupted, which takes as long as a line does to come from the terminal.
 COMMAND = """
-print("started", flush=True)
 try:
+    print("started", flush=True)
     input()
 except KeyboardInterrupt:
     print("interrupted", flush=True)
