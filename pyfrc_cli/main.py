@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import importlib
-import io
 import os
 import re
 import sys
@@ -113,15 +112,16 @@ def cli() -> None:
 
 def run() -> None:
     """Run the command line. An error that pyfrc knows is shown as one sentence, with exit code 1 or 2."""
-    _escape_unknown_letters()
+    from pyfrc_core.errors import PyfrcError
+    from pyfrc_core.terminal_text import escape_unencodable, visible
+
+    for stream in (sys.stdout, sys.stderr):
+        escape_unencodable(stream)
     chosen = Verbosity()
     # None: colors only on a terminal.
     color = False if os.environ.get("NO_COLOR") else None
     if COMPLETE_VARIABLE in os.environ:
         from . import completion  # noqa: F401 - it registers PowerShell
-    from pyfrc_core.errors import PyfrcError
-    from pyfrc_core.terminal_text import visible
-
     try:
         sys.exit(cli.main(prog_name="pyfrc", standalone_mode=False, color=color, obj=chosen))
     except click.exceptions.Abort:
@@ -141,12 +141,6 @@ def run() -> None:
         else:
             click.secho(f"error: {visible(_message(error))}", fg="red", err=True, color=color)
         sys.exit(getattr(error, "exit_code", 1))
-
-
-def _escape_unknown_letters() -> None:
-    """Write letters that the output's encoding lacks as escapes, where Python would raise an exception."""
-    if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout.errors == "strict":
-        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _remedy(error: click.ClickException) -> str:

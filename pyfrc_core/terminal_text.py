@@ -1,4 +1,4 @@
-"""Make text from untrusted sources, such as a robot, safe to print in a terminal.
+"""Make text, also from untrusted sources such as a robot, safe to print in a terminal.
 
 Escape sequences can move the cursor over what was printed before, change the window's title, or have the terminal send
 keys; characters for right-to-left text can change the order in which a line is read; invisible characters, such as tags
@@ -33,6 +33,15 @@ def one_line(text: str, longest: int = 1000) -> str:
     if len(text) > longest:
         text = f"{text[:longest]} ..."
     return visible(text).replace("\n", "\\n").replace("\t", " ")
+
+
+def escape_unencodable(stream: TextIO) -> None:
+    """Let a stream write characters that its encoding lacks as escapes, where Python would raise an exception.
+
+    On Windows, pipes and files have the encoding of the country, and old consoles that of DOS.
+    """
+    if isinstance(stream, io.TextIOWrapper) and stream.errors in ("strict", "surrogateescape"):
+        stream.reconfigure(errors="backslashreplace")
 
 
 class VisibleStream(io.TextIOBase):

@@ -6,7 +6,6 @@ which may be another one. So the option is added here, in one place, to all mess
 
 from __future__ import annotations
 
-import io
 import json
 import os
 import re
@@ -19,7 +18,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from ..shell import quoted
-from ..terminal_text import visible
+from ..terminal_text import escape_unencodable, visible
 from .errors import RefusedError
 
 if TYPE_CHECKING:
@@ -257,8 +256,7 @@ def ask_to_continue(failure: str, ask: Questions | None, remedy: str, error: Pyf
 
 def progress_for(as_json: bool, quiet: bool = False) -> DeployProgress:
     """Return the progress output for standard output, which then escapes characters that it cannot encode."""
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")
+    escape_unencodable(sys.stdout)
     if as_json:
         return JsonProgress(quiet=quiet)
     return TerminalProgress() if sys.stdout.isatty() and not quiet else DeployProgress(quiet=quiet)

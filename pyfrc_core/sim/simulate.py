@@ -114,12 +114,8 @@ def _what(project: Project, request: SimRequest) -> str:
 
 
 def _echo(say: Callable[[str], object], text: str) -> None:
-    try:
+    with suppress(OSError):  # the terminal has gone
         say(text)
-    except UnicodeEncodeError:  # a terminal without this letter
-        say(text.encode("ascii", "backslashreplace").decode())
-    except OSError:  # the terminal has gone
-        pass
 
 
 def draw_script(project: Project, script: Path, picture: Path, until: float | None = None) -> None:

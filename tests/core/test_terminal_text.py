@@ -1,0 +1,91 @@
+"""What pyfrc prints can be printed on every terminal: no letter is an error."""
+
+from __future__ import annotations
+
+import ast
+import io
+from collections.abc import Iterator
+from pathlib import Path
+from unittest.mock import patch
+
+import click
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pyfrc_cli import main
+from pyfrc_core.errors import PyfrcError
+
+ROOT = Path(__file__).parents[2]
+
+#: The encodings of pipes and of consoles on Windows in America and Western Europe.
+ENCODINGS = ["cp1252", "cp437"]
+
+#: Drawn in a window or a page, or compared with what users have written.
+NOT_PRINTED = (
+    "pyfrc_core/sim/ui/models/",
+    "pyfrc_core/sim/ui/tk/",
+    "pyfrc_core/sim/ui/web/",
+    "pyfrc_core/config/toml_file.py",
+    "pyfrc_core/deploy/manifest.py",
+    "pyfrc_core/explain/syntax.py",
+    "pyfrc_core/terminal_text.py",
+)
+
+
+def printed(command: click.Command, encoding: str, errors: str) -> tuple[str, str]:
+    """Run a command line whose streams have this encoding, and return what it has printed."""
+    streams = [io.TextIOWrapper(io.BytesIO(), encoding, errors, newline="\n") for _ in range(2)]
+    with (
+        patch("sys.argv", ["pyfrc"]),
+        patch("sys.stdout", streams[0]),
+        patch("sys.stderr", streams[1]),
+        patch.object(main, "cli", command),
+        pytest.raises(SystemExit) as ended,
+    ):
+        main.run()
+    assert ended.value.code == 1
+    texts = []
+    for stream in streams:
+        stream.flush()
+        assert isinstance(stream.buffer, io.BytesIO)
+        texts.append(stream.buffer.getvalue().decode(encoding))
+    return texts[0], texts[1]
+
+
+@pytest.mark.parametrize("errors", ["strict", "surrogateescape"])
+@pytest.mark.parametrize("encoding", ENCODINGS)
+@given(text=st.text(st.characters(exclude_categories=["Cc"])))
+def test_any_text_can_be_printed(encoding: str, errors: str, text: str) -> None:
+    @click.command()
+    def command() -> None:
+        click.echo(f"robot: {text}!")
+        print(f"plain: {text}!")
+        click.echo(f"warning: {text}!", err=True)
+        raise PyfrcError(f"{text}!", where=f"{text}.py:3", remedy=f"Remove {text}!")
+
+    out, err = printed(command, encoding, errors)
+    assert (out.count("!"), err.count("!")) == (2 + 2 * text.count("!"), 3 + 4 * text.count("!"))
+    if text.isascii():
+        assert f"robot: {text}!\nplain: {text}!\n" == out
+        assert f"warning: {text}!\nerror: {text}.py:3: {text}!\n  Remove {text}!\n" == err
+
+
+def texts_in(file: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.value
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "cp437"])
+def test_no_message_needs_an_escape_on_a_console_of_windows(encoding: str) -> None:
+    """With what users have written left out: the texts in the source, which are help, hints and errors."""
+    found = []
+    for package in ("pyfrc", "pyfrc_cli", "pyfrc_core"):
+        for file in sorted((ROOT / package).rglob("*.py")):
+            if file.relative_to(ROOT).as_posix().startswith(NOT_PRINTED):
+                continue
+            for text in texts_in(file):
+                if text.encode(encoding, "replace").decode(encoding) != text:
+                    found.append(f"{file.relative_to(ROOT)}: {text}")
+    assert found == []
