@@ -33,6 +33,7 @@ COMMANDS = {
     "add-tests": ("pyfrc_cli.add_tests", "Add the ready-made tests to the robot project."),
     "create-tests": ("pyfrc_cli.add_tests", "The older name of: add-tests."),
     "create-physics": ("pyfrc_cli.create_physics", "Write a physics.py and sim/config.json that fit the robot."),
+    "sync": ("pyfrc_cli.sync", "Download what the robot needs: its Python, and the project's packages."),
     "deploy": ("pyfrc_cli.deploy", "Deploy the robot program, and start it."),
     "deploy-info": ("pyfrc_cli.deploy_info", "Show the program on the robot and its earlier releases."),
     "undeploy": ("pyfrc_cli.undeploy", "Stop the robot program and remove it from the robot."),
@@ -48,8 +49,8 @@ COMMANDS = {
 #: Names that other tools have for what pyfrc, or another tool, does; ``{robotpy}`` is how to install the season's.
 OTHER_NAMES = {
     "run": "To run the robot on this computer: pyfrc sim. To start it on the robot: pyfrc deploy",
-    "sync": "To download what the robot needs: {robotpy}, then: python -m robotpy sync",
     "installer": "To install packages on the robot: {robotpy}, then: python -m robotpy installer",
+    "download": "To download what the robot needs: pyfrc sync",
     "rollback": "To go back to an earlier release: pyfrc deploy --rollback",
     "netconsole": "To see the robot program's output: pyfrc console",
     "logs": "To see the robot program's output: pyfrc console",

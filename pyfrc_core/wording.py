@@ -29,3 +29,10 @@ def from_here(file: Path) -> str:
         return os.path.relpath(file) if file.is_relative_to(Path.cwd()) else str(file)
     except OSError:  # the current directory is gone
         return str(file)
+
+
+def size_text(count: int) -> str:
+    """Return a number of bytes with its unit."""
+    if count < 10_000:
+        return f"{count} bytes"
+    return f"{count / 1000:.0f} kB" if count < 10_000_000 else f"{count / 1e6:.1f} MB"

@@ -37,6 +37,7 @@ IN_2027 = frozenset(
         "sim_headless",
         "sim_scene",
         "sim_session",
+        "sync",
         "sync_lock",
         "visionsim",
     }

@@ -94,6 +94,7 @@ _DISTRIBUTIONS = {
     "_pytest": "pytest",
     "commands2": "robotpy-commands-v2",
     "magicbot": "robotpy-wpilib-utilities",
+    "pip": "pip",
     "pytest": "pytest",
     "wpilib": "wpilib",
     "wpiutil": "robotpy-wpiutil",

@@ -25,6 +25,9 @@ COMPONENTS["all"] = tuple(package for packages in COMPONENTS.values() for packag
 #: How the names of packages begin whose versions begin with a season's year.
 NUMBERED_BY_SEASON = ("wpilib", "robotpy", "pyntcore")
 
+#: The ``robotpy_version`` with which the season's tools since 2027 install only `requires`.
+_IGNORED = "ignored"
+
 #: Components that install nothing on a robot.
 _ON_DESKTOPS = ("romi", "sim", "xrp")
 
@@ -37,12 +40,14 @@ class RobotPackages:
     :param components: the names of optional components
     :param requires:   further packages
     :param lines:      where in pyproject.toml each key is, as ``pyproject.toml:3``
+    :param only_requires: whether the robot gets only `requires`, and no WPILib: ``robotpy_version = "ignored"``
     """
 
     version: str | None
     components: tuple[str, ...]
     requires: tuple[Requirement, ...]
     lines: dict[str, str]
+    only_requires: bool = False
 
 
 def load_robot_packages(pyproject: Path) -> RobotPackages:
@@ -59,7 +64,10 @@ def load_robot_packages(pyproject: Path) -> RobotPackages:
     lines = {key: file.place_of("tool", "robotpy", key) for key in table}
     requires = [_requirement(each, lines["requires"]) for each in _texts(table, "requires", lines)]
     components = _texts(table, "components", lines)
-    return RobotPackages(_version_in(table), components, tuple(requires), lines)
+    version = _version_in(table)
+    if version == _IGNORED:
+        return RobotPackages(None, (), tuple(requires), lines, only_requires=True)
+    return RobotPackages(version, components, tuple(requires), lines)
 
 
 def load_season_settings(pyproject: Path) -> list[SeasonSetting]:

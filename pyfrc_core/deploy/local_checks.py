@@ -18,7 +18,7 @@ from ..processes import spawn
 from ..processes.call import run_in_subprocess
 from ..project import MAIN_FILE, Project
 from ..project.git import git_output
-from ..wording import counted
+from ..wording import counted, size_text
 from .errors import RefusedError
 from .manifest import Manifest, ascii_path, build_manifest, listed, listed_paths
 from .progress import UserInterface, ask_to_continue
@@ -108,13 +108,6 @@ def prepare(project: Project, options: DeployOptions, talk: UserInterface) -> Ch
         phase.detail = f"{counted(len(manifest.entries), 'file')}, {size_text(manifest.total_bytes)}"
     main, record, packages = project.main_file.name, _deploy_json(project.root), load_robot_packages(project.pyproject)
     return CheckedProgram(manifest, main, record, packages, ImportSearch(manifest, project.root, main), importing)
-
-
-def size_text(count: int) -> str:
-    """Return a number of bytes with its unit."""
-    if count < 10_000:
-        return f"{count} bytes"
-    return f"{count / 1000:.0f} kB" if count < 10_000_000 else f"{count / 1e6:.1f} MB"
 
 
 def _refuse_other_main_files(project: Project, nonstandard: bool) -> None:

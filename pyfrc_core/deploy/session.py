@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 from ..errors import UsageError
 from ..project import Project
-from ..wording import counted
+from ..wording import counted, size_text
 from .connection import Connection, load_in_background
 from .console import follow_console
 from .discovery import Address
 from .errors import DeployError, RefusedError
 from .facts import Release, RobotFacts
-from .local_checks import CheckedProgram, DeployOptions, prepare, size_text
+from .local_checks import CheckedProgram, DeployOptions, prepare
 from .manifest import ascii_path
 from .progress import DeployProgress, UserInterface
 from .robot_checks import BackgroundTask, other_languages_notice, refuse_unfit_robot

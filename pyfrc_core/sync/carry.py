@@ -1,0 +1,79 @@
+"""A directory, such as a USB stick, that carries what a lock names to a computer without internet."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..errors import PyfrcError, UsageError
+from ..file_hash import hash_file
+from ..season import Season
+from .cache import cached_file
+from .download import cannot_write
+from .lock import LOCK_FILE, Lock, LockedFile, load_lock, save_lock
+
+
+def carry(lock: Lock, season: Season, to: Path) -> int:
+    """Copy the lock and all that it names from the cache into a directory, and return how many files were copied.
+
+    Files that are there already are kept.
+
+    :raises PyfrcError: if the directory cannot be written
+    """
+    try:
+        to.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise UsageError(f"--to {to} is a file", remedy="Name a directory.") from None
+    missing = [each for each in lock.files if find_in([to], each) is None]
+    needed, free = sum(each.size for each in missing), shutil.disk_usage(to).free
+    if needed > free:
+        text = f"{to} has {free / 1e6:.0f} MB free, and {needed / 1e6:.0f} MB are needed"
+        raise PyfrcError(text, remedy="Free some space there, or take another directory.")
+    for each in missing:
+        take(each, cached_file(each, season).parent, to / each.file)
+    save_lock(to / LOCK_FILE, lock)
+    return len(missing)
+
+
+def lock_in(source: Path, season: Season) -> Lock:
+    """Return the lock in a directory that `carry` has filled.
+
+    :raises PyfrcError: if there is none
+    """
+    if not source.is_dir():
+        raise UsageError(f"--from {source}: there is no such directory", remedy="Name one that pyfrc sync --to filled.")
+    lock = load_lock(source / LOCK_FILE, season)
+    if lock is None:
+        raise PyfrcError(
+            f"there is no {LOCK_FILE}, neither in the project nor in {source}",
+            remedy="Fill the directory on a computer with internet, in this project: pyfrc sync --to DIRECTORY",
+        )
+    return lock
+
+
+def find_in(directories: Sequence[Path], locked: LockedFile) -> Path | None:
+    """Return the first of these directories that has a file with the locked content."""
+    for directory in directories:
+        file = directory / locked.file
+        try:
+            if file.stat().st_size == locked.size and hash_file(file)[0] == locked.sha256:
+                return directory
+        except OSError:
+            continue
+    return None
+
+
+def take(locked: LockedFile, source: Path, to: Path) -> None:
+    """Copy a file, so that it appears only when complete."""
+    part = to.with_name(f".{to.name}.copy")
+    try:
+        to.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source / locked.file, part)
+        if hash_file(part) != (locked.sha256, locked.size):
+            raise PyfrcError(f"{locked.file} in {source} changes while it is read", remedy="Check the USB stick.")
+        part.replace(to)
+    except OSError as error:
+        raise cannot_write(error, to) from None
+    finally:
+        part.unlink(missing_ok=True)

@@ -1,0 +1,281 @@
+"""`pyfrc sync`: from a project to a lock, and the files that it names in the season's cache."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Protocol
+from urllib.parse import unquote, urlsplit
+
+from ..errors import PyfrcError, SettingsError
+from ..file_hash import hash_file
+from ..project import Project
+from ..season import Season
+from .addresses import python_url_of
+from .cache import Cache, cache_of
+from .carry import find_in, lock_in, take
+from .download import Download, Downloader, DownloadError
+from .lock import Lock, LockedFile, load_lock, lock_file_of, save_lock
+from .pip_errors import NothingFitsError
+from .resolve import Found, find_packages
+from .wanted import Wanted, load_wanted
+
+
+@dataclass(frozen=True)
+class SyncOptions:
+    """The options of `pyfrc sync`.
+
+    :param upgrade:     find new versions, also where the lock has one
+    :param source:      take all files from this directory, and nothing from the internet
+    :param find_links:  further places where pip looks for packages: directories and addresses
+    :param use_certifi: trust the certificates of the package certifi
+    """
+
+    upgrade: bool = False
+    source: Path | None = None
+    find_links: Sequence[str] = ()
+    use_certifi: bool = False
+
+
+class SyncProgress(Protocol):
+    """Shows what is being done."""
+
+    def finding(self, package: str) -> None:
+        """Show that pip looks at a package."""
+
+    def received(self, what: str, there: int, total: int | None) -> None:
+        """Show how many bytes of a file are there; `total` is None if unknown."""
+
+    def got(self, locked: LockedFile, how: str) -> None:
+        """Show that a file is complete, and how it was got, such as ``downloaded``."""
+
+
+@dataclass(frozen=True)
+class Synced:
+    """The result.
+
+    :param lock:     what the robot gets
+    :param previous: the project's lock before; None if there was none that fits
+    :param got:      files that were downloaded or copied
+    """
+
+    lock: Lock
+    previous: Lock | None
+    got: tuple[LockedFile, ...]
+
+
+def synchronize(
+    project: Project, season: Season, installed: str | None, options: SyncOptions, progress: SyncProgress
+) -> Synced:
+    """Have all that a project's robot needs in the season's cache, and its lock beside pyproject.toml.
+
+    :param installed: the version of WPILib on this computer
+    :raises PyfrcError: if something cannot be had; the lock and the complete files in the cache are as before then
+    """
+    file = lock_file_of(project)
+    wanted = load_wanted(project.pyproject, season, installed)
+    previous = _previous(file, season, options.upgrade)
+    work = _Work(season, cache_of(season), options, progress)
+    if options.source is not None:
+        usable = previous if not options.upgrade else None
+        lock = usable or lock_in(options.source, season)
+        if lock.requirements != wanted.locked:
+            whose = file.name if usable else f"the lock in {options.source}"
+            raise _other_requirements(whose, lock, wanted)
+        work.take_all(lock, options.source)
+    elif previous is not None and previous.requirements == wanted.locked and not options.upgrade:
+        lock = previous
+        work.get_all(lock)
+    else:
+        lock = work.make_lock(wanted, previous, keep=not options.upgrade)
+    if lock != previous:
+        save_lock(file, lock)
+    return Synced(lock, previous, tuple(work.got))
+
+
+def missing_files(lock: Lock, season: Season) -> list[LockedFile]:
+    """Return the locked files that are not in the season's cache, or have another content there."""
+    cache = cache_of(season)
+    return [each for each in lock.files if not cache.has(each)]
+
+
+def differences(project: Project, season: Season, installed: str | None) -> Iterator[str]:
+    """Yield why the robot would not get what the project asks for, each as a sentence.
+
+    :raises SettingsError: for a lock that cannot be read
+    """
+    lock = load_lock(lock_file_of(project), season)
+    if lock is None:
+        yield f"there is no {lock_file_of(project).name}"
+        return
+    wanted = load_wanted(project.pyproject, season, installed).locked
+    for requirement in wanted:
+        if requirement not in lock.requirements:
+            yield f"{project.pyproject.name} asks for {requirement}, which the lock does not have"
+    for requirement in lock.requirements:
+        if requirement not in wanted:
+            yield f"the lock is for {requirement}, which {project.pyproject.name} does not ask for"
+    cache = cache_of(season)
+    for each in missing_files(lock, season):
+        wrong = "another content" if cache.path_of(each).exists() else "not on this computer"
+        yield f"{each}: {wrong} ({each.file})"
+
+
+def _previous(file: Path, season: Season, upgrade: bool) -> Lock | None:
+    try:
+        return load_lock(file, season)
+    except SettingsError:
+        if upgrade:
+            return None
+        raise
+
+
+def _other_requirements(whose: str, lock: Lock, wanted: Wanted) -> PyfrcError:
+    new = [each for each in wanted.locked if each not in lock.requirements]
+    gone = [each for each in lock.requirements if each not in wanted.locked]
+    what = "; ".join(f"{word} {', '.join(some)}" for word, some in (("it lacks", new), ("it has", gone)) if some)
+    return PyfrcError(
+        f"{whose} is not for what pyproject.toml asks for now: {what}",
+        remedy="With internet, run pyfrc sync --to DIRECTORY in this project, then take that directory.",
+    )
+
+
+class _Work:
+    """Gets files into the cache."""
+
+    def __init__(self, season: Season, cache: Cache, options: SyncOptions, progress: SyncProgress) -> None:
+        self._season = season
+        self._cache = cache
+        self._options = options
+        self._progress = progress
+        self._directories = [Path(each) for each in options.find_links if Path(each).is_dir()]
+        self._downloader = Downloader(options.use_certifi)
+        self.got: list[LockedFile] = []
+
+    def take_all(self, lock: Lock, source: Path) -> None:
+        """Copy the locked files that the cache lacks from a directory."""
+        missing = [each for each in lock.files if not self._cache.has(each)]
+        self._refuse_full_disk(missing)
+        lacking = [each for each in missing if find_in([source], each) is None]
+        if lacking:
+            named = ", ".join(each.file for each in lacking[:3])
+            more = f" and {len(lacking) - 3} more" if len(lacking) > 3 else ""
+            raise PyfrcError(
+                f"{source} does not have {named}{more}, with the content that the lock names",
+                remedy="With internet, in this project: pyfrc sync --to DIRECTORY. To use the lock in the directory "
+                "instead of the project's: pyfrc sync --upgrade --from DIRECTORY",
+            )
+        for each in missing:
+            self._copy(each, source)
+
+    def get_all(self, lock: Lock) -> None:
+        """Get the locked files that the cache lacks."""
+        missing = [each for each in lock.files if not self._cache.has(each)]
+        self._refuse_full_disk(missing)
+        for each in missing:
+            self._get(each)
+
+    def make_lock(self, wanted: Wanted, previous: Lock | None, keep: bool) -> Lock:
+        """Find the packages, and get the files.
+
+        :param keep: whether to take the versions of the previous lock where they fit
+        """
+        old = {each.name: each for each in previous.packages} if previous is not None and keep else {}
+        found = self._find(wanted, old)
+        python = self._python(previous.python if previous is not None and keep else None)
+        packages = [self._package(each, old.get(each.name)) for each in found]
+        controller = self._season.controller.name
+        return Lock(self._season.year, controller, wanted.locked, python, tuple(packages))
+
+    def _find(self, wanted: Wanted, old: dict[str, LockedFile]) -> list[Found]:
+        requirements = list(wanted.locked)
+        constraints = [f"{each.name}=={each.version}" for each in old.values()]
+        meta = self._season.downloads.packages
+        newest = [f"{meta}=={wanted.version}"] if wanted.version is not None else []
+        links = [str(Path(each).absolute()) if Path(each).is_dir() else each for each in self._options.find_links]
+
+        def find(limits: list[str]) -> list[Found]:
+            return find_packages(
+                requirements, self._season, constraints=limits, find_links=links, finding=self._progress.finding
+            )
+
+        if constraints:
+            try:
+                return find(constraints)
+            except NothingFitsError:  # the requirements do not fit these versions any more
+                pass
+        return find(newest)
+
+    def _python(self, locked: LockedFile | None) -> LockedFile:
+        """Get the robot's Python.
+
+        :param locked: the one to get; None: the season's
+        """
+        if locked is not None:
+            if not self._cache.has(locked):
+                self._get(locked)
+            return locked
+        url = python_url_of(self._season)
+        file = unquote(urlsplit(url).path.rpartition("/")[2])
+        python = LockedFile("python", self._season.downloads.python, file, 0, "", url)
+        return self._get(python)
+
+    def _package(self, found: Found, old: LockedFile | None) -> LockedFile:
+        url = None if found.url.startswith("file:") else found.url
+        if old is not None and old.version == found.version:
+            new = old
+        else:
+            new = LockedFile(found.name, found.version, found.file, 0, found.sha256 or "", url)
+        if new.size and self._cache.has(new):
+            return new
+        there = self._cache.path_of(new)
+        if new.sha256 and there.is_file() and hash_file(there)[0] == new.sha256:
+            return replace(new, size=there.stat().st_size)
+        return self._get(new, found.url)
+
+    def _get(self, locked: LockedFile, url: str | None = None) -> LockedFile:
+        """Get one file, and return it with its size and hash."""
+        url = url or locked.url
+        if locked.sha256 and (directory := self._directory_with(locked)) is not None:
+            self._copy(locked, directory)
+            return locked
+        if url is None:
+            raise PyfrcError(
+                f"{locked} has no address in the lock: it came from a directory",
+                remedy="Name that directory: pyfrc sync --find-links DIRECTORY; or one that pyfrc sync --to has "
+                "filled: pyfrc sync --from DIRECTORY",
+            )
+        path = self._cache.path_of(locked)
+
+        def advanced(there: int, total: int | None) -> None:
+            self._progress.received(str(locked), there, total)
+
+        self._downloader.get(Download(str(locked), url, path, locked.sha256 or None), advanced)
+        sha256, size = hash_file(path)
+        if locked.size and locked.size != size:  # cannot be with the same hash
+            raise DownloadError(f"{locked}: the lock has a wrong size", remedy="Run pyfrc sync --upgrade.")
+        whole = replace(locked, sha256=sha256, size=size)
+        self._progress.got(whole, "downloaded")
+        self.got.append(whole)
+        return whole
+
+    def _directory_with(self, locked: LockedFile) -> Path | None:
+        return next((each for each in self._directories if find_in([each], locked) is not None), None)
+
+    def _copy(self, locked: LockedFile, source: Path) -> None:
+        take(locked, source, self._cache.path_of(locked))
+        self._progress.got(locked, "copied")
+        self.got.append(locked)
+
+    def _refuse_full_disk(self, missing: Sequence[LockedFile]) -> None:
+        needed = sum(each.size for each in missing)
+        place = self._cache.root
+        while not place.exists():
+            place = place.parent
+        if needed > shutil.disk_usage(place).free:
+            raise PyfrcError(
+                f"the disk is too full: {needed / 1e6:.0f} MB are needed in {self._cache.root}",
+                remedy="Free some space, and run pyfrc sync again.",
+            )

@@ -1,0 +1,405 @@
+"""`pyfrc sync`: what the robot needs, from indexes on this machine, with pip itself."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import threading
+from collections.abc import Iterator
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+from conftest import MakeProject, Result, RobotProject
+from package_index import PYTHON_SIZE, ROBOT_TAGS, WPILIB, PackageIndex, add_wheel, package_index
+
+from pyfrc_core.season import CURRENT, SEASONS
+from pyfrc_core.sync import LOCK_FILE, Lock, load_lock
+
+ROBOT = """
+    import wpilib
+
+
+    class MyRobot(wpilib.TimedRobot):
+        pass
+"""
+CACHE = Path("wpilib", str(CURRENT.year), "robotpy")
+CONTROLLER = CURRENT.controller.name
+
+
+def pyproject(components: str = '"commands2"', requires: str = '"simple-lib"', version: str = WPILIB) -> str:
+    return f"[tool.robotpy]\nrobotpy_version = {version!r}\ncomponents = [{components}]\nrequires = [{requires}]\n"
+
+
+@pytest.fixture
+def index(tmp_path: Path) -> Iterator[PackageIndex]:
+    with package_index(tmp_path / "index") as index:
+        index.add_wpilib()
+        index.add("simple-lib", "1.0")
+        yield index
+
+
+@pytest.fixture
+def project(make_project: MakeProject) -> RobotProject:
+    return make_project({"robot.py": ROBOT, "pyproject.toml": pyproject()})
+
+
+class Laptop:
+    """A computer with a home directory of its own, and a copy of the project."""
+
+    def __init__(self, home: Path, project: RobotProject, index: PackageIndex) -> None:
+        self.home = home
+        self.project = project
+        self.index = index
+
+    def run(self, *args: str | Path, **env: str) -> Result:
+        return self.project.run("sync", *args, env=self.index.environment(self.home) | env)
+
+    def sync(self, *args: str | Path, **env: str) -> str:
+        """Run it, and return what it prints; it must succeed."""
+        done = self.run(*args, **env)
+        assert done.code == 0, done.output
+        return done.stdout
+
+    @property
+    def lock(self) -> Lock:
+        lock = load_lock(self.project.path / LOCK_FILE, CURRENT)
+        assert lock is not None
+        return lock
+
+    @property
+    def packages(self) -> dict[str, str]:
+        return {each.name: each.version for each in self.lock.packages}
+
+    def cached(self) -> dict[str, bytes]:
+        """Return the cache's files by name."""
+        files = [each for each in (self.home / CACHE).rglob("*") if each.is_file()]
+        return {each.name: each.read_bytes() for each in files}
+
+
+@pytest.fixture
+def laptop(tmp_path: Path, project: RobotProject, index: PackageIndex) -> Laptop:
+    return Laptop(tmp_path / "home", project, index)
+
+
+def another(laptop: Laptop, tmp_path: Path) -> Laptop:
+    """Another computer with a clone of the project."""
+    directory = tmp_path / "another"
+    directory.mkdir()
+    shutil.copytree(laptop.project.path, directory / "robot-project")
+    project = RobotProject(directory / "robot-project", laptop.project.temporary)
+    return Laptop(directory / "home", project, laptop.index)
+
+
+def test_python_and_the_packages_for_the_robot_are_downloaded_and_locked(laptop: Laptop, index: PackageIndex) -> None:
+    printed = laptop.sync()
+    # Not what only desktops, Windows or older Pythons need, whatever runs here.
+    assert laptop.packages == {
+        "only-on-robots": "1.0",
+        "robotpy": WPILIB,
+        "robotpy-cli": "1.0",
+        "robotpy-commands-v2": WPILIB,
+        "robotpy-hal": WPILIB,
+        "simple-lib": "1.0",
+        "wpilib": WPILIB,
+    }
+    lock = laptop.lock
+    assert lock.requirements == (f"robotpy[commands2]=={WPILIB}", "simple-lib")
+    assert lock.python.version == CURRENT.downloads.python
+    assert lock.python.size == index.python.stat().st_size
+    wpilib = next(each for each in lock.packages if each.name == "wpilib")
+    assert wpilib.file == f"wpilib-{WPILIB}-{ROBOT_TAGS}.whl"
+    assert wpilib.url == f"{index.url}/robot/wpilib/{wpilib.file}"
+    assert set(laptop.cached()) == {each.file for each in lock.files}
+    assert laptop.cached()[index.python.name] == index.python.read_bytes()
+    assert f"{LOCK_FILE} is new: 7 packages. Commit it." in printed
+    assert f"For the {CONTROLLER}: 8 files, " in printed
+    assert f"get       wpilib {WPILIB} " in printed
+
+
+def test_with_a_lock_nothing_is_looked_up_and_what_is_there_is_not_downloaded_again(laptop: Laptop) -> None:
+    laptop.sync()
+    text = (laptop.project.path / LOCK_FILE).read_bytes()
+    laptop.index.add("simple-lib", "2.0")
+    laptop.index.requests.clear()
+    assert f"{LOCK_FILE}: unchanged" in laptop.sync()
+    assert laptop.index.requests == []
+    (laptop.home / CACHE / "pip_cache" / "simple_lib-1.0-py3-none-any.whl").unlink()
+    laptop.sync()
+    assert [path for path, _ in laptop.index.requests] == ["/simple/simple-lib/simple_lib-1.0-py3-none-any.whl"]
+    assert (laptop.project.path / LOCK_FILE).read_bytes() == text
+
+
+def test_two_laptops_with_the_same_lock_have_the_same_bytes(laptop: Laptop, tmp_path: Path) -> None:
+    laptop.sync()
+    other = another(laptop, tmp_path)
+    # Its cache has something else under the same name, and the indexes have newer packages.
+    file = other.home / CACHE / "pip_cache" / "simple_lib-1.0-py3-none-any.whl"
+    file.parent.mkdir(parents=True)
+    file.write_bytes(b"another build")
+    laptop.index.add("simple-lib", "2.0")
+    laptop.index.add("robotpy-cli", "2.0")
+    other.sync()
+    assert other.cached() == laptop.cached()
+    assert other.lock == laptop.lock
+
+
+def test_a_new_requirement_leaves_the_other_versions_as_they_are(laptop: Laptop) -> None:
+    laptop.sync()
+    laptop.index.add("simple-lib", "2.0")
+    laptop.index.add("added", "3.1")
+    laptop.project.write({"pyproject.toml": pyproject(requires='"simple-lib", "added"')})
+    printed = laptop.sync()
+    assert laptop.packages["simple-lib"] == "1.0"
+    assert "  + added 3.1\n  asked for now: added\n" in printed
+    laptop.project.write({"pyproject.toml": pyproject(components="", requires='"added", "simple-lib>1"')})
+    printed = laptop.sync()  # the version that is locked does not fit any more
+    assert laptop.packages["simple-lib"] == "2.0"
+    assert f"  - robotpy-commands-v2 {WPILIB}\n  simple-lib 1.0 -> 2.0\n" in printed
+
+
+def test_upgrade_takes_the_newest(laptop: Laptop) -> None:
+    laptop.sync()
+    laptop.index.add("simple-lib", "2.0")
+    printed = laptop.sync("--upgrade")
+    assert laptop.packages["simple-lib"] == "2.0"
+    assert f"{LOCK_FILE} has changed. Commit it.\n  simple-lib 1.0 -> 2.0\n" in printed
+
+
+def test_without_a_version_the_robot_gets_this_computers(laptop: Laptop) -> None:
+    laptop.index.add_wpilib("9999.1.1")
+    laptop.project.write({"pyproject.toml": "[tool.robotpy]\n"})
+    laptop.sync()
+    assert laptop.packages["wpilib"] == laptop.packages["robotpy"] == WPILIB
+    assert laptop.lock.requirements == ("robotpy",)
+
+
+def test_only_requires_are_taken_where_the_version_is_ignored(laptop: Laptop) -> None:
+    laptop.project.write({"pyproject.toml": pyproject(version="ignored", requires='"simple-lib", "pyfrc"')})
+    laptop.sync()
+    assert laptop.packages == {"simple-lib": "1.0"}
+
+
+def test_requirements_may_have_markers_of_the_robot(laptop: Laptop) -> None:
+    machine = CURRENT.downloads.marker_machine
+    requires = f"\"simple-lib; platform_machine == '{machine}'\", \"nowhere; platform_machine == 'x86_64'\""
+    laptop.project.write({"pyproject.toml": pyproject(requires=requires)})
+    laptop.sync()
+    assert "simple-lib" in laptop.packages
+    assert "nowhere" not in laptop.packages
+
+
+def test_an_interrupted_download_goes_on_where_it_ended(laptop: Laptop) -> None:
+    name = laptop.index.python.name
+    laptop.index.cut_after[name] = 0
+    failed = laptop.run()
+    assert failed.code == 1
+    assert failed.first_error == (
+        f"python {CURRENT.downloads.python} cannot be downloaded from 127.0.0.1: the connection was lost"
+    )
+    assert not (laptop.project.path / LOCK_FILE).exists()
+    laptop.index.cut_after[name] = 100_000
+    laptop.index.requests.clear()
+    laptop.sync()  # each connection is lost after 100,000 bytes
+    asked = [wanted for path, wanted in laptop.index.requests if path == f"/{name}"]
+    assert asked == ["", *(f"bytes={begin}-" for begin in range(100_000, PYTHON_SIZE + 1, 100_000))]
+    assert laptop.cached()[name] == laptop.index.python.read_bytes()
+
+
+def test_a_killed_download_goes_on_where_it_ended(laptop: Laptop) -> None:
+    index, name = laptop.index, laptop.index.python.name
+    index.cut_after[name], index.may_go_on = 200_000, threading.Event()
+    part = laptop.home / CACHE / CURRENT.downloads.python_cache / f".{name}.part"
+    with laptop.project.start("sync", env=index.environment(laptop.home)) as command:
+        while not part.exists() or part.stat().st_size < 196_608:  # what is written in whole pieces
+            assert command.poll() is None
+        command.kill()
+        command.wait()
+    index.may_go_on.set()
+    index.cut_after.clear()
+    there = part.stat().st_size
+    index.requests.clear()
+    laptop.sync()
+    assert (f"/{name}", f"bytes={there}-") in index.requests
+    assert laptop.cached()[name] == index.python.read_bytes()
+
+
+def test_a_file_that_was_replaced_meanwhile_is_downloaded_from_its_beginning(laptop: Laptop) -> None:
+    index, name = laptop.index, laptop.index.python.name
+    cache = laptop.home / CACHE / CURRENT.downloads.python_cache
+    cache.mkdir(parents=True)
+    (cache / f".{name}.part").write_bytes(b"the beginning of another")
+    (cache / f".{name}.part-of").write_text('"another"')
+    laptop.sync()
+    assert laptop.cached()[name] == index.python.read_bytes()
+
+
+def test_a_file_with_another_content_than_the_locked_is_refused(laptop: Laptop, tmp_path: Path) -> None:
+    laptop.sync()
+    other = another(laptop, tmp_path)
+    wheel = laptop.index.directory / "simple/simple-lib/simple_lib-1.0-py3-none-any.whl"
+    wheel.write_bytes(wheel.read_bytes() + b"more")
+    refused = other.run()
+    assert refused.code == 1
+    expected = "simple-lib 1.0 from 127.0.0.1 has another content than it should have (its SHA-256 differs)"
+    assert refused.first_error == expected
+    assert wheel.name not in other.cached()
+    assert other.lock == laptop.lock
+
+
+def test_what_a_network_sends_instead_of_python_is_not_taken_for_it(laptop: Laptop) -> None:
+    laptop.index.python.write_text("<html>Log in first</html>")
+    refused = laptop.run()
+    assert refused.code == 1
+    assert refused.first_error == f"127.0.0.1 sent something else than python {CURRENT.downloads.python}"
+
+
+def test_a_check_compares_and_changes_nothing(laptop: Laptop, tmp_path: Path) -> None:
+    checked = laptop.run("--check")
+    assert (checked.code, checked.stdout) == (1, f"there is no {LOCK_FILE}\n\nTo get it: pyfrc sync\n")
+    laptop.sync()
+    laptop.index.requests.clear()
+    assert laptop.sync("--check") == "nothing is missing\n"
+    laptop.project.write({"pyproject.toml": pyproject(components="")})
+    (laptop.home / CACHE / "pip_cache" / "simple_lib-1.0-py3-none-any.whl").unlink()
+    (laptop.home / CACHE / "pip_cache" / "robotpy_cli-1.0-py3-none-any.whl").write_bytes(b"another")
+    checked = laptop.run("-q", "--check")
+    assert checked.code == 1
+    assert checked.stdout.splitlines() == [
+        f"pyproject.toml asks for robotpy=={WPILIB}, which the lock does not have",
+        f"the lock is for robotpy[commands2]=={WPILIB}, which pyproject.toml does not ask for",
+        "robotpy-cli 1.0: another content (robotpy_cli-1.0-py3-none-any.whl)",
+        "simple-lib 1.0: not on this computer (simple_lib-1.0-py3-none-any.whl)",
+    ]
+    assert laptop.index.requests == []
+
+
+def test_a_directory_carries_everything_to_a_laptop_without_internet(laptop: Laptop, tmp_path: Path) -> None:
+    stick = tmp_path / "stick"
+    other = another(laptop, tmp_path)
+    assert "8 files copied to " in laptop.sync("--to", stick)
+    assert "0 files copied to " in laptop.sync("--to", stick)
+    laptop.index.close()
+    assert "copied" in other.sync("--from", stick)  # also the lock
+    assert other.lock == laptop.lock
+    assert other.cached() == laptop.cached()
+    other.sync()
+    (stick / "simple_lib-1.0-py3-none-any.whl").write_bytes(b"broken")
+    (other.home / CACHE / "pip_cache" / "simple_lib-1.0-py3-none-any.whl").unlink()
+    refused = other.run("--from", stick)
+    assert refused.code == 1
+    expected = "stick does not have simple_lib-1.0-py3-none-any.whl, with the content that the lock names"
+    assert expected in refused.first_error
+    other.project.write({"pyproject.toml": pyproject(requires='"added"')})
+    refused = other.run("--from", stick)
+    assert f"{LOCK_FILE} is not for what pyproject.toml asks for now: it lacks added; it has simple-lib" in (
+        refused.first_error
+    )
+    refused = other.run("--from", stick, "--upgrade")
+    assert f"the lock in {stick} is not for" in refused.first_error
+
+
+def test_wheels_of_a_directory_are_locked_without_an_address(laptop: Laptop, tmp_path: Path) -> None:
+    wheels = laptop.project.path / "wheels"
+    add_wheel(wheels, "own-lib", "1.0")
+    laptop.project.write({"pyproject.toml": pyproject(requires='"own-lib"')})
+    laptop.sync("--find-links", "wheels")
+    assert next(each for each in laptop.lock.packages if each.name == "own-lib").url is None
+    other = another(laptop, tmp_path)
+    assert other.run().first_error == "own-lib 1.0 has no address in the lock: it came from a directory"
+    other.sync("--find-links", "wheels")
+    assert other.cached() == laptop.cached()
+
+
+@pytest.mark.parametrize(
+    ("requires", "message"),
+    [
+        ('"nonesuch"', f"there is no wheel of nonesuch for the {CONTROLLER} (Python 3.14)"),
+        ('"needs-c"', f"there is no wheel of only-for-pcs>=1 for the {CONTROLLER} (Python 3.14); needs-c needs it"),
+        (
+            '"simple-lib>5"',
+            f"there is no wheel of simple-lib>5 for the {CONTROLLER} (Python 3.14); there are wheels of 0.5, 1.0",
+        ),
+        (
+            '"needs-old", "simple-lib==1.0"',
+            "the requirements contradict each other: [tool.robotpy] has simple-lib==1.0; needs-old 1.0 depends on "
+            "simple-lib<1",
+        ),
+    ],
+)
+def test_what_cannot_be_found_is_named_and_what_to_do(laptop: Laptop, requires: str, message: str) -> None:
+    laptop.index.add("needs-c", "1.0", ["only-for-pcs>=1"])
+    laptop.index.add("only-for-pcs", "1.0", tags="cp314-cp314-manylinux_2_17_x86_64")
+    laptop.index.add("needs-old", "1.0", ["simple-lib<1"])
+    laptop.index.add("simple-lib", "0.5")
+    laptop.project.write({"pyproject.toml": pyproject(requires=requires)})
+    failed = laptop.run()
+    assert failed.code == 1
+    assert failed.first_error == message
+    assert "pyproject.toml" in failed.stderr.splitlines()[1]
+    assert not (laptop.project.path / LOCK_FILE).exists()
+
+
+def test_what_is_no_wheel_is_refused_with_how_to_make_one(laptop: Laptop) -> None:
+    laptop.project.write({"pyproject.toml": pyproject(requires='"own-lib @ git+https://example.org/own-lib"')})
+    refused = laptop.run()
+    assert refused.code == 2
+    assert "pyproject.toml:4: requires has 'own-lib" in refused.first_error
+    assert "python -m pip wheel --no-deps --wheel-dir wheels" in refused.stderr
+
+
+def test_without_internet_one_sentence_says_so(laptop: Laptop, tmp_path: Path) -> None:
+    laptop.sync()
+    other = another(laptop, tmp_path)
+    nowhere = {"PIP_INDEX_URL": "http://127.0.0.1:9/simple", "PYFRC_SYNC_INDEX": "", "PIP_RETRIES": "0"}
+    failed = laptop.run("--upgrade", **nowhere)
+    assert failed.code == 1
+    assert failed.first_error == "the package index cannot be reached: Connection refused"
+    assert "pyfrc sync --from DIRECTORY" in failed.stderr
+    laptop.index.close()
+    failed = other.run()
+    assert failed.code == 1
+    expected = f"python {CURRENT.downloads.python} cannot be downloaded from 127.0.0.1: Connection refused"
+    assert failed.first_error == expected
+
+
+def test_a_lock_that_does_not_fit_is_refused_and_replaced_only_on_request(laptop: Laptop) -> None:
+    laptop.sync()
+    file = laptop.project.path / LOCK_FILE
+    fitting = file.read_text("utf-8")
+    other = next(season for season in SEASONS.values() if season is not CURRENT)
+    wrong = fitting.replace(f"season = {CURRENT.year}", f"season = {other.year}")
+    file.write_text(wrong.replace(CONTROLLER, other.controller.name), "utf-8")
+    for args in ((), ("--check",)):
+        refused = laptop.run(*args)
+        assert refused.code == 2
+        assert refused.first_error == (
+            f"{LOCK_FILE}: this is for the {other.controller.name} of {other.year}, and the project for the "
+            f"{CONTROLLER} of {CURRENT.year}"
+        )
+    file.write_text(fitting[:-100], "utf-8")
+    assert "this lock is damaged" in laptop.run().first_error
+    laptop.sync("--upgrade")
+    assert file.read_text("utf-8") == fitting
+
+
+def test_other_versions_here_are_named_and_installed_on_request(laptop: Laptop) -> None:
+    # A package that pyfrc needs is installed here. pip only shows what it would install.
+    laptop.index.add("click", "99.0")
+    laptop.project.write({"pyproject.toml": pyproject(version="ignored", requires='"simple-lib", "click"')})
+    version = metadata.version("click")
+    printed = laptop.sync()
+    assert f"This computer has click {version} (the robot: 99.0). For the same here: pyfrc sync --install" in printed
+    printed = laptop.sync("--install", PIP_DRY_RUN="1")
+    assert "Would install click-99.0 simple-lib-1.0" in printed
+
+
+def test_a_quiet_sync_prints_nothing(laptop: Laptop) -> None:
+    assert laptop.sync("-q") == ""
+
+
+def test_options_that_exclude_each_other_are_refused(laptop: Laptop, tmp_path: Path) -> None:
+    assert laptop.run("--check", "--upgrade").code == 2
+    assert laptop.run("--to", tmp_path, "--from", tmp_path).code == 2
+    refused = laptop.run("--from", tmp_path / "nowhere")
+    assert (refused.code, os.fspath(tmp_path / "nowhere") in refused.first_error) == (2, True)
