@@ -72,6 +72,7 @@ class PackageIndex:
                 "robotpy-cli",
                 f'only-on-desktops; platform_machine != "{machine}"',
                 f'robotpy-commands-v2=={version}; extra == "commands2"',
+                f'robotpy-apriltag=={version}; extra == "apriltag"',
             ],
         )
         self.add("robotpy-cli", "1.0")
@@ -87,7 +88,8 @@ class PackageIndex:
         for package in ("wpilib", "robotpy-hal"):
             self.add(package, version, needs, f"{DOWNLOADS.abi}-{DOWNLOADS.abi}-manylinux_2_39_aarch64")
         self.add("wpilib", version, needs, ROBOT_TAGS, "robot")
-        self.add("robotpy-hal", version, (), ROBOT_TAGS, "robot")
+        for package in ("robotpy-hal", "robotpy-apriltag"):
+            self.add(package, version, (), ROBOT_TAGS, "robot")
 
     def environment(self, home: Path) -> dict[str, str]:
         """Return the environment of a computer that has these indexes."""

@@ -195,7 +195,7 @@ def test_an_interrupted_download_goes_on_where_it_ended(laptop: Laptop) -> None:
     failed = laptop.run()
     assert failed.code == 1
     assert failed.first_error == (
-        f"python {CURRENT.downloads.python} cannot be downloaded from 127.0.0.1: the connection was lost"
+        f"Python {CURRENT.downloads.python} cannot be downloaded from 127.0.0.1: the connection was lost"
     )
     assert not (laptop.project.path / LOCK_FILE).exists()
     laptop.index.cut_after[name] = 100_000
@@ -251,7 +251,7 @@ def test_what_a_network_sends_instead_of_python_is_not_taken_for_it(laptop: Lapt
     laptop.index.python.write_text("<html>Log in first</html>")
     refused = laptop.run()
     assert refused.code == 1
-    assert refused.first_error == f"127.0.0.1 sent something else than python {CURRENT.downloads.python}"
+    assert refused.first_error == f"127.0.0.1 sent something else than Python {CURRENT.downloads.python}"
 
 
 def test_a_check_compares_and_changes_nothing(laptop: Laptop, tmp_path: Path) -> None:
@@ -359,7 +359,7 @@ def test_without_internet_one_sentence_says_so(laptop: Laptop, tmp_path: Path) -
     laptop.index.close()
     failed = other.run()
     assert failed.code == 1
-    expected = f"python {CURRENT.downloads.python} cannot be downloaded from 127.0.0.1: Connection refused"
+    expected = f"Python {CURRENT.downloads.python} cannot be downloaded from 127.0.0.1: Connection refused"
     assert failed.first_error == expected
 
 

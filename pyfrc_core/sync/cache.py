@@ -7,7 +7,7 @@ from pathlib import Path
 from ..errors import PyfrcError
 from ..file_hash import hash_file
 from ..season import Season
-from .lock import LockedFile
+from .lock import PYTHON, LockedFile
 
 _REMEDY = "With internet: pyfrc sync. Without: pyfrc sync --from DIRECTORY, with one that pyfrc sync --to has filled."
 
@@ -29,7 +29,7 @@ class Cache:
 
     def path_of(self, locked: LockedFile) -> Path:
         """Return where a file is or would be."""
-        return (self._python if locked.name == "python" else self._packages) / locked.file
+        return (self._python if locked.name == PYTHON else self._packages) / locked.file
 
     def has(self, locked: LockedFile) -> bool:
         """Return whether a file is there, with the locked size and hash."""

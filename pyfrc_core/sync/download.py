@@ -78,8 +78,10 @@ class Downloader:
         context = ssl.create_default_context(cafile=_certificates(use_certifi))
         self._opener = urllib.request.build_opener(urllib.request.HTTPSHandler(context=context))
 
-    def get(self, wanted: Download, advanced: Callable[[int, int | None], None]) -> None:
+    def get(self, wanted: Download, advanced: Callable[[int, int | None], None]) -> bool:
         """Download a file. What an earlier attempt has received is kept, and the file appears only when complete.
+
+        Without a hash, a file that is there and as large as the server's is kept. Return whether one was downloaded.
 
         :param advanced: is called with the bytes that are there, and with all; None if the server does not say
         :raises DownloadError: if it cannot be reached, or has another hash than it should
@@ -89,12 +91,13 @@ class Downloader:
             if urlsplit(wanted.url).scheme == "file":
                 shutil.copyfile(url2pathname(urlsplit(wanted.url).path), wanted.part)
             elif not self._receive(wanted, advanced):
-                return
+                return False
             self._check(wanted)
             wanted.part.replace(wanted.to)
         except OSError as error:
             raise cannot_write(error, wanted.to) from None
         wanted.version_file.unlink(missing_ok=True)
+        return True
 
     def _receive(self, wanted: Download, advanced: Callable[[int, int | None], None]) -> bool:
         """Receive the rest of a file. Return False if the file is there already, as large as the server's."""

@@ -18,6 +18,9 @@ from ..text_files import write_whole
 #: The lock's name; it is beside pyproject.toml.
 LOCK_FILE = "pyfrc-lock.toml"
 
+#: The name of the robot's Python among the files.
+PYTHON = "python"
+
 #: The version of its format.
 _FORMAT = 1
 _HEAD = """\
@@ -49,7 +52,7 @@ class LockedFile:
     url: str | None = None
 
     def __str__(self) -> str:
-        return f"{self.name} {self.version}"
+        return f"{'Python' if self.name == PYTHON else self.name} {self.version}"
 
 
 @dataclass(frozen=True)
@@ -152,7 +155,7 @@ class _Reader:
             raise self._error("[python] is missing", "python")
         if not isinstance(packages, list | None):
             raise self._error("package must be a list of tables", "package")
-        found = [self._file("python", python), *(self._package(each) for each in packages or [])]
+        found = [self._file(PYTHON, python), *(self._package(each) for each in packages or [])]
         for what in ("name", "file"):
             values = [getattr(each, what).casefold() for each in found]
             if (double := next((value for value in values if values.count(value) > 1), None)) is not None:
@@ -166,7 +169,7 @@ class _Reader:
         return self._file(self._text(table, "name", "package", _FILE_NAME), table)
 
     def _file(self, name: str, table: dict[str, Any]) -> LockedFile:
-        key = "python" if name == "python" else "package"
+        key = PYTHON if name == PYTHON else "package"
         size, url = table.get("size"), table.get("url")
         if type(size) is not int or size < 0:
             raise self._error(f"{name}: size must be a number of bytes", key)

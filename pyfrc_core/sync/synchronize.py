@@ -17,7 +17,7 @@ from .addresses import python_url_of
 from .cache import Cache, cache_of
 from .carry import find_in, lock_in, take
 from .download import Download, Downloader, DownloadError
-from .lock import Lock, LockedFile, load_lock, lock_file_of, save_lock
+from .lock import PYTHON, Lock, LockedFile, load_lock, lock_file_of, save_lock
 from .pip_errors import NothingFitsError
 from .resolve import Found, find_packages
 from .wanted import Wanted, load_wanted
@@ -219,7 +219,7 @@ class _Work:
             return locked
         url = python_url_of(self._season)
         file = unquote(urlsplit(url).path.rpartition("/")[2])
-        python = LockedFile("python", self._season.downloads.python, file, 0, "", url)
+        python = LockedFile(PYTHON, self._season.downloads.python, file, 0, "", url)
         return self._get(python)
 
     def _package(self, found: Found, old: LockedFile | None) -> LockedFile:
@@ -252,13 +252,14 @@ class _Work:
         def advanced(there: int, total: int | None) -> None:
             self._progress.received(str(locked), there, total)
 
-        self._downloader.get(Download(str(locked), url, path, locked.sha256 or None), advanced)
+        downloaded = self._downloader.get(Download(str(locked), url, path, locked.sha256 or None), advanced)
         sha256, size = hash_file(path)
         if locked.size and locked.size != size:  # cannot be with the same hash
             raise DownloadError(f"{locked}: the lock has a wrong size", remedy="Run pyfrc sync --upgrade.")
         whole = replace(locked, sha256=sha256, size=size)
-        self._progress.got(whole, "downloaded")
-        self.got.append(whole)
+        if downloaded:
+            self._progress.got(whole, "downloaded")
+            self.got.append(whole)
         return whole
 
     def _directory_with(self, locked: LockedFile) -> Path | None:
