@@ -91,6 +91,7 @@ def another(laptop: Laptop, tmp_path: Path) -> Laptop:
     return Laptop(directory / "home", project, laptop.index)
 
 
+@pytest.mark.bare
 def test_python_and_the_packages_for_the_robot_are_downloaded_and_locked(laptop: Laptop, index: PackageIndex) -> None:
     printed = laptop.sync()
     # Not what only desktops, Windows or older Pythons need, whatever runs here.
@@ -130,6 +131,7 @@ def test_with_a_lock_nothing_is_looked_up_and_what_is_there_is_not_downloaded_ag
     assert (laptop.project.path / LOCK_FILE).read_bytes() == text
 
 
+@pytest.mark.bare
 def test_two_laptops_with_the_same_lock_have_the_same_bytes(laptop: Laptop, tmp_path: Path) -> None:
     laptop.sync()
     other = another(laptop, tmp_path)

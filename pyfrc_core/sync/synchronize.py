@@ -58,12 +58,10 @@ class Synced:
 
     :param lock:     what the robot gets
     :param previous: the project's lock before; None if there was none that fits
-    :param got:      files that were downloaded or copied
     """
 
     lock: Lock
     previous: Lock | None
-    got: tuple[LockedFile, ...]
 
 
 def synchronize(
@@ -92,7 +90,7 @@ def synchronize(
         lock = work.make_lock(wanted, previous, keep=not options.upgrade)
     if lock != previous:
         save_lock(file, lock)
-    return Synced(lock, previous, tuple(work.got))
+    return Synced(lock, previous)
 
 
 def missing_files(lock: Lock, season: Season) -> list[LockedFile]:
@@ -152,7 +150,6 @@ class _Work:
         self._progress = progress
         self._directories = [Path(each) for each in options.find_links if Path(each).is_dir()]
         self._downloader = Downloader(options.use_certifi)
-        self.got: list[LockedFile] = []
 
     def take_all(self, lock: Lock, source: Path) -> None:
         """Copy the locked files that the cache lacks from a directory."""
@@ -259,7 +256,6 @@ class _Work:
         whole = replace(locked, sha256=sha256, size=size)
         if downloaded:
             self._progress.got(whole, "downloaded")
-            self.got.append(whole)
         return whole
 
     def _directory_with(self, locked: LockedFile) -> Path | None:
@@ -268,7 +264,6 @@ class _Work:
     def _copy(self, locked: LockedFile, source: Path) -> None:
         take(locked, source, self._cache.path_of(locked))
         self._progress.got(locked, "copied")
-        self.got.append(locked)
 
     def _refuse_full_disk(self, missing: Sequence[LockedFile]) -> None:
         needed = sum(each.size for each in missing)
