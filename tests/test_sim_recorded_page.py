@@ -93,7 +93,10 @@ def test_a_mentor_looks_through_a_run_that_failed(page: Any, recorded: Any) -> N
     page.wait_for_function(
         "text => [...document.querySelectorAll('.nt-value')].some(each => each.value === text)", arg=HOSTILE
     )
-    assert page.locator(".nt-value:enabled").count() == 0
+    assert page.locator("input.nt-value:enabled").count() == 0
+    for name in ("Modules", "0"):
+        page.locator(".nt-row.folder").get_by_role("button", name=name, exact=True).click()
+    page.locator("[data-path='nt:/SmartDashboard/Modules/0/speed'] .nt-value", has_text="1").wait_for()
 
 
 def test_a_page_from_disk_runs_its_own_scripts_only(recorded: Any, browser: Any) -> None:

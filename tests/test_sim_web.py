@@ -115,11 +115,19 @@ def test_networktables_are_shown_and_edited_live(make_project) -> None:
         assert page.values["nt:/SmartDashboard/Arm/.type"] == "Mechanism2d"
         assert page.values["nt:/SmartDashboard/Arm/pivot/arm/angle"] > 45
         assert page.values["nt:/SmartDashboard/Alerts/warnings"] == ["the battery is low"]
-        pose = page.values["nt:/pose"]
-        assert (pose["$"], pose["type"]) == ("struct", "Pose2d")
-        assert pose["value"]["translation"]["x"] == 1
-        assert pose["value"]["rotation"]["value"] == pytest.approx(0.5)
-        assert [each["value"]["translation"]["y"] for each in page.values["nt:/poses"]] == [0, 4]
+        assert page.types["nt:/pose"] == "struct:Pose2d"
+        parts = {path: value for path, value in page.values.items() if path.startswith("nt:/pose")}
+        assert parts == {
+            "nt:/pose/translation/x": 1,
+            "nt:/pose/translation/y": pytest.approx(page.values["nt:/pose/translation/y"]),
+            "nt:/pose/rotation/value": pytest.approx(0.5),
+            **{
+                f"nt:/poses/{index}/{part}": value
+                for index, pose in enumerate([(0, 0, 0), (3, 4, 0)])
+                for part, value in zip(("translation/x", "translation/y", "rotation/value"), pose, strict=True)
+            },
+        }
+        assert not parts.keys() & page.types.keys()  # only topics can be written to
         assert page.values["nt:/odd"] == {"$": "NaN"}
 
 

@@ -62,7 +62,7 @@ export function valueText(value) {
   if (typeof simple === "boolean") return String(simple);
   if (Array.isArray(simple)) return `[${simple.map(valueText).join(", ")}]`;
   if (simple.$ === "bytes") return `${simple.size} bytes`;
-  if (simple.$ === "struct") return simple.value === undefined ? simple.type : `${simple.type} ${valueText(simple.value)}`;
+  if (simple.$ === "struct") return `${simple.type}, ${simple.size} bytes`; // its schema is missing or does not fit
   return `{${Object.entries(simple).map(([key, each]) => `${key}: ${valueText(each)}`).join(", ")}}`;
 }
 

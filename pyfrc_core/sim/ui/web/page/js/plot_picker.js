@@ -2,11 +2,11 @@
 import { valueText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { nameOf } from "#js/names.js";
+import { elementsOf, valueIn } from "#js/parts.js";
 import { showBeside } from "#js/popup.js";
 import { Component, Icon, createRef, html } from "#js/view.js";
 
 const MOST = 60;
-const LONGEST_LIST = 16; // elements of a list that are offered
 
 export class PlotPicker extends Component {
   state = { open: false, search: "" };
@@ -38,7 +38,7 @@ export class PlotPicker extends Component {
         <label class="search"><${Icon} name="search" /><input type="search" value=${search} placeholder="Search all values"
           aria-label="Search all values" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
         <ul>${found.map((path) => html`<li key=${path}><button title=${path} onClick=${() => this.add(path)}>
-          <span>${nameOf(path)}</span><small>${valueText(valueAtPath(path)).slice(0, 24)}</small></button></li>`)}</ul>
+          <span>${nameOf(path)}</span><small>${valueText(valueIn(model.values, path)).slice(0, 24)}</small></button></li>`)}</ul>
         ${found.length === MOST && html`<p class="faint">Only ${MOST} values are listed: search for others.</p>`}
         ${!found.length && html`<p class="faint">No value is called that.</p>`}
       </div>`}
@@ -79,21 +79,10 @@ function* allPaths() {
   const late = [];
   for (const [path, value] of model.values) {
     const isLate = path.startsWith("nt:/LiveWindow") || path.startsWith("event.") || /\/\.\w+$/.test(path);
-    for (const each of expanded(path, value)) {
+    for (const each of Array.isArray(value) ? elementsOf(path, value) : [path]) {
       if (isLate) late.push(each);
       else yield each;
     }
   }
   yield* late;
-}
-
-function expanded(path, value) {
-  if (Array.isArray(value)) return value.slice(0, LONGEST_LIST).map((_, index) => `${path}[${index}]`);
-  return [path];
-}
-
-function valueAtPath(path) {
-  if (model.values.has(path)) return model.values.get(path);
-  const element = /^(.*)\[(\d+)\]$/.exec(path);
-  return element ? model.values.get(element[1])?.[Number(element[2])] : undefined;
 }

@@ -1,5 +1,6 @@
 // A run that is part of this file, as `--page` writes it: it answers what the server answers about the past.
 // `history.py` says how its values are stored.
+import { elementIn } from "#js/parts.js";
 import { indexAfter } from "#js/times.js";
 
 const ROUNDING = 1e-6; // seconds
@@ -53,10 +54,10 @@ function valuesAt(columns, t) {
 
 // The steps of a value between two times; the first is the one in force at `from`. `path` may name an element of a list.
 function seriesOf(columns, path, from, to) {
-  const element = columns.has(path) ? null : /^(.+)\[(\d+)\]$/.exec(path);
-  const column = columns.get(element ? element[1] : path);
+  const [list, index] = columns.has(path) ? [path, null] : elementIn(path);
+  const column = columns.get(list);
   if (!column) return { kind: "number", t: [], v: [] };
-  const pick = (value) => (element ? (Array.isArray(value) ? value[Number(element[2])] : undefined) : value);
+  const pick = (value) => (index === null ? value : Array.isArray(value) ? value[index] : undefined);
   const first = Math.max(indexAfter(column.t, from + ROUNDING) - 1, 0);
   const end = indexAfter(column.t, to + ROUNDING);
   const t = column.t.slice(first, end);

@@ -11,27 +11,40 @@ function fromMetres(x, y, radians, field) {
   return [x / FOOT, field.height - y / FOOT, -radians];
 }
 
-// The poses of a value: numbers in threes as Field2d has them, or Pose2d structs.
-function posesOf(value, field) {
-  const list = Array.isArray(value) ? value : value === undefined || value === null ? [] : [value];
-  if (list.length && list.every((each) => each?.$ === "struct" && each.type === "Pose2d" && each.value)) {
-    return list.map(({ value: pose }) => fromMetres(pose.translation.x, pose.translation.y, angleOf(pose.rotation), field));
-  }
-  const numbers = list.map(plain);
-  if (numbers.length % 3 || !numbers.every((each) => typeof each === "number")) return [];
+// The poses of a topic: numbers in threes as Field2d has them, or structs, which come as their parts.
+function posesOf(values, path, field) {
+  const pose = poseAt(values, path, field);
+  if (pose) return [pose];
   const poses = [];
+  for (let next; (next = poseAt(values, `${path}/${poses.length}`, field)); ) poses.push(next);
+  const numbers = values.get(path);
+  if (!Array.isArray(numbers) || numbers.length % 3) return poses;
+  const plainNumbers = numbers.map(plain);
+  if (!plainNumbers.every((each) => typeof each === "number")) return poses;
   for (let index = 0; index < numbers.length; index += 3) {
-    poses.push(fromMetres(numbers[index], numbers[index + 1], (numbers[index + 2] * Math.PI) / 180, field));
+    poses.push(fromMetres(plainNumbers[index], plainNumbers[index + 1], (plainNumbers[index + 2] * Math.PI) / 180, field));
   }
   return poses;
 }
 
-function isCorner([x, y, angle], field) {
-  return x === 0 && y === field.height && angle === 0;
+// The pose whose parts begin with a path; null if there is none.
+function poseAt(values, path, field) {
+  const x = plain(values.get(`${path}/translation/x`));
+  const y = plain(values.get(`${path}/translation/y`));
+  const angle = angleAt(values, `${path}/rotation`);
+  return [x, y, angle].every((each) => typeof each === "number") ? fromMetres(x, y, angle, field) : null;
 }
 
-function angleOf(rotation) {
-  return rotation?.value ?? rotation?.radians ?? 0;
+// An angle in radians: that of a Rotation2d, or a Rotation3d's yaw.
+function angleAt(values, path) {
+  const angle = plain(values.get(`${path}/value`));
+  if (angle !== undefined) return angle;
+  const [w, x, y, z] = ["w", "x", "y", "z"].map((each) => plain(values.get(`${path}/q/${each}`)));
+  return typeof w === "number" ? Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) : undefined;
+}
+
+function isCorner([x, y, angle], field) {
+  return x === 0 && y === field.height && angle === 0;
 }
 
 // Whether poses follow each other, as on a trajectory, or are places here and there, such as vision targets.
@@ -53,27 +66,22 @@ export function fieldObjects(values, field) {
   const objects = [];
   const folders = [];
   const simulated = physicsRobot(values);
-  for (const [path, type] of values) {
-    if (!path.startsWith("nt:/") || !path.endsWith("/.type") || type !== "Field2d") continue;
-    const folder = path.slice(0, -"/.type".length);
-    folders.push(`${folder}/`);
-    for (const [each, value] of values) {
-      if (!each.startsWith(`${folder}/`)) continue;
-      const name = each.slice(folder.length + 1);
-      if (name.startsWith(".")) continue;
-      if (each === simulated && model.shown.robot) continue; // the page draws it anyway
-      // Nothing has moved this one yet: a Field2d begins with its robot in the corner.
-      const poses = posesOf(value, field);
-      if (name === "Robot" && poses.length === 1 && isCorner(poses[0], field)) continue;
-      if (poses.length) objects.push({ name, path: each, poses, isPath: isTrajectory(poses) });
-    }
-  }
+  const structs = Object.keys(model.types).filter((path) => path.startsWith("nt:/") && /^struct:Pose[23]d/.test(model.types[path]));
+  const lists = [];
   for (const [path, value] of values) {
-    // Poses that robot code publishes as structs, beside any Field2d.
-    if (!path.startsWith("nt:/") || !/^(struct:)?Pose2d/.test(model.types[path] ?? "")) continue;
-    if (folders.some((folder) => path.startsWith(folder))) continue;
-    const poses = posesOf(value, field);
-    if (poses.length) objects.push({ name: path.split("/").pop(), path, poses, isPath: isTrajectory(poses) });
+    if (path.endsWith("/.type") && value === "Field2d") folders.push(path.slice(0, -".type".length));
+    else if (Array.isArray(value) && path.startsWith("nt:/")) lists.push(path);
+  }
+  for (const path of new Set([...lists, ...structs])) {
+    const folder = folders.find((each) => path.startsWith(each));
+    if (!folder && !structs.includes(path)) continue;
+    const name = folder ? path.slice(folder.length) : path.split("/").pop();
+    if (name.startsWith(".")) continue;
+    if (path === simulated && model.shown.robot) continue; // the page draws it anyway
+    const poses = posesOf(values, path, field);
+    // Nothing has moved this one yet: a Field2d begins with its robot in the corner.
+    if (folder && name === "Robot" && poses.length === 1 && isCorner(poses[0], field)) continue;
+    if (poses.length) objects.push({ name, path, poses, isPath: isTrajectory(poses) });
   }
   return objects;
 }
@@ -81,16 +89,25 @@ export function fieldObjects(values, field) {
 // The four states of swerve modules, front left first: { path, wanted, states: [{ speed in m/s, angle in radians }] }.
 export function swerveStates(values) {
   const found = [];
-  for (const [path, value] of values) {
-    if (!path.startsWith("nt:/") || !Array.isArray(value) || value.length < 3) continue;
+  for (const [path, type] of Object.entries(model.types)) {
+    if (!path.startsWith("nt:/")) continue;
     const wanted = /target|desired|setpoint|wanted/i.test(path);
-    if (value.every((each) => each?.$ === "struct" && each.type === "SwerveModuleState" && each.value)) {
-      found.push({ path, wanted, states: value.map(({ value: state }) => ({ speed: state.speed, angle: angleOf(state.angle) })) });
-    } else if (/swerve.*state|module.*state/i.test(path) && value.length === 8 && value.every((each) => typeof each === "number")) {
+    const value = values.get(path);
+    if (/^struct:SwerveModule(State|Velocity)\[\]$/.test(type)) {
+      const states = [];
+      for (let speed; (speed = speedAt(values, `${path}/${states.length}`)) !== undefined; ) {
+        states.push({ speed, angle: angleAt(values, `${path}/${states.length}/angle`) ?? 0 });
+      }
+      if (states.length >= 3) found.push({ path, wanted, states });
+    } else if (Array.isArray(value) && /swerve.*state|module.*state/i.test(path) && value.length === 8 && value.every((each) => typeof each === "number")) {
       // AdvantageScope's older form: angle, speed of each module.
       const states = [0, 1, 2, 3].map((module) => ({ angle: value[2 * module], speed: value[2 * module + 1] }));
       found.push({ path, wanted, states });
     }
   }
   return found;
+}
+
+function speedAt(values, path) {
+  return plain(values.get(`${path}/speed`) ?? values.get(`${path}/velocity`));
 }

@@ -1,7 +1,9 @@
-// NetworkTables as a tree. Numbers, texts, switches and lists can be edited; any value can be plotted.
+// NetworkTables as a tree. Numbers, texts, switches and lists can be edited; any value can be plotted. Structs come as
+// their parts, which only robot code changes; the elements of a list are below it.
 import { write } from "#js/connection.js";
 import { plain, valueText } from "#js/format.js";
 import { model } from "#js/model.js";
+import { elementsOf } from "#js/parts.js";
 import { addToPlot, carryPath } from "#js/plotting.js";
 import { ValueBox } from "#js/value_box.js";
 import { Component, Icon, Live, classes, createRef, html } from "#js/view.js";
@@ -21,7 +23,7 @@ export class NetworkTablesPanel extends Live {
       for (const child of [...node.children.values()].sort(byName)) {
         const isOpen = words.length > 0 || open[child.path];
         if (child.children.size) rows.push(html`<${Folder} key=${`folder ${child.path}`} node=${child} depth=${depth} open=${isOpen} toggle=${() => this.toggle(child.path)} />`);
-        if (child.leaf) rows.push(html`<${Leaf} key=${child.path} path=${child.path} name=${child.name} depth=${depth} />`);
+        if (child.leaf) this.addLeaf(rows, child, depth, open);
         if (child.children.size && isOpen) visit(child, depth + 1);
       }
     };
@@ -31,6 +33,16 @@ export class NetworkTablesPanel extends Live {
         aria-label="Search NetworkTables" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
       <div class="scroll" role="tree">${rows}${!rows.length && html`<p class="empty">${search ? "No value is called that." : "The robot has published nothing yet."}</p>`}</div>
     </div>`;
+  }
+
+  addLeaf(rows, { path, name }, depth, open) {
+    const elements = elementsOf(path, model.shown.values.get(path));
+    const toggle = elements.length ? () => this.toggle(path) : null;
+    rows.push(html`<${Leaf} key=${path} path=${path} name=${name} depth=${depth} open=${Boolean(open[path])} toggle=${toggle} resized=${() => this.setState({})} />`);
+    if (!open[path]) return;
+    elements.forEach((element, index) => {
+      rows.push(html`<${Leaf} key=${element} path=${element} name=${`[${index}]`} list=${path} index=${index} depth=${depth + 1} />`);
+    });
   }
 
   toggle(path) {
@@ -59,7 +71,7 @@ function treeOf(paths) {
 }
 
 function Folder({ node, depth, open, toggle }) {
-  const type = model.shown.values.get(`${node.path}/.type`);
+  const type = model.shown.values.get(`${node.path}/.type`) ?? model.types[node.path]?.replace("struct:", "");
   return html`<div class="nt-row folder" role="treeitem" aria-expanded=${open} style=${{ paddingLeft: `${depth * 14}px` }}>
     <button class=${classes({ fold: true, closed: !open })} onClick=${toggle}><${Icon} name="chevron" /><span>${node.name}</span></button>
     ${typeof type === "string" && html`<span class="chip">${type}</span>`}</div>`;
@@ -69,20 +81,31 @@ class Leaf extends Component {
   element = createRef();
 
   shouldComponentUpdate(next, state) {
-    return next.path !== this.props.path || next.depth !== this.props.depth || state !== this.state;
+    const { path, depth, open, toggle } = this.props;
+    return next.path !== path || next.depth !== depth || next.open !== open || !next.toggle !== !toggle || state !== this.state;
   }
 
   componentDidMount() {
-    this.unbind = model.bind(this.props.path, (value) => this.paint(plain(value)));
+    this.unbind = model.bind(this.props.list ?? this.props.path, () => this.paint(this.value));
   }
 
   componentWillUnmount() {
     this.unbind();
   }
 
+  get value() {
+    const { path, list, index } = this.props;
+    const value = model.shown.values.get(list ?? path);
+    return plain(list === undefined ? value : value?.[index]);
+  }
+
   // A value whose kind has changed needs another control; otherwise only its text changes.
   paint(value) {
-    const kind = controlOf(value);
+    const kind = this.controlOf(value);
+    if (Array.isArray(value) && value.length !== this.length) {
+      if (this.length !== undefined) this.props.resized?.();
+      this.length = value.length;
+    }
     if (kind !== this.kind) {
       this.kind = kind;
       this.setState({});
@@ -94,15 +117,22 @@ class Leaf extends Component {
   }
 
   componentDidUpdate() {
-    this.paint(plain(model.shown.values.get(this.props.path)));
+    this.paint(this.value);
   }
 
-  render({ path, name, depth }) {
-    const kind = controlOf(plain(model.shown.values.get(path)));
+  // Only topics can be written to: elements of lists and parts of structs have no type.
+  controlOf(value) {
+    return this.props.path in model.types ? controlOf(value) : "none";
+  }
+
+  render({ path, name, depth, open, toggle }) {
+    const kind = this.controlOf(this.value);
     this.kind = kind;
-    return html`<div class="nt-row" role="treeitem" ref=${this.element} style=${{ paddingLeft: `${depth * 14 + 18}px` }} title=${`${path} ${model.types[path] ?? ""}`}
-        draggable="true" onDragStart=${(event) => carryPath(event, path)} data-path=${path}>
-      <span class="row-label">${name}</span>
+    return html`<div class="nt-row" role="treeitem" ref=${this.element} aria-expanded=${toggle ? open : undefined} style=${{ paddingLeft: `${depth * 14 + (toggle ? 0 : 18)}px` }}
+        title=${`${path} ${model.types[path] ?? ""}`} draggable="true" onDragStart=${(event) => carryPath(event, path)} data-path=${path}>
+      ${toggle
+        ? html`<button class=${classes({ fold: true, "row-label": true, closed: !open })} title="The elements of this list" onClick=${toggle}><${Icon} name="chevron" /><span>${name}</span></button>`
+        : html`<span class="row-label">${name}</span>`}
       ${kind === "switch"
         ? html`<label class="switch"><input type="checkbox" role="switch" class="nt-value" aria-label=${name} disabled=${model.readonly}
             onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label>`
