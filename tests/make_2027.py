@@ -1,9 +1,10 @@
 """Make the templates of 2027: what `pyfrc migrate` makes of those of 2026, changed by one small patch each.
 
     make templates-2027                  # after a change to a template or to migrate: writes templates/2027
-    make templates-2027 ARGS=--patches   # after a change by hand in templates/2027: writes tests/patches_2027
+    make templates-2027 ARGS=--patches   # after a change by hand in templates/2027: writes tests/patches_2027/templates
 
-A patch begins with the reasons for its differences.
+A patch begins with the reasons for its differences. Those in `tests/patches_2027/robots` are written by hand, for some
+robots of `tests/robots` (`season_2027/test_migrated_robots.py`).
 """
 
 from __future__ import annotations
@@ -58,16 +59,17 @@ def write_patch(name: str) -> None:
     for file, text in before.items():
         lines = text.splitlines(keepends=True), after[file].splitlines(keepends=True)
         hunks += "".join(difflib.unified_diff(*lines, f"a/{file}", f"b/{file}", n=2))
+    patch = PATCHES / f"templates/{name}.patch"
     if hunks:
-        (PATCHES / f"{name}.patch").write_text(reasons(name) + hunks, "utf-8", newline="\n")
+        patch.write_text(reasons(f"templates/{name}") + hunks, "utf-8", newline="\n")
     else:
-        (PATCHES / f"{name}.patch").unlink(missing_ok=True)
+        patch.unlink(missing_ok=True)
 
 
 def template_of_2027(name: str) -> dict[str, str]:
     """Return the files of `templates/2027/NAME`: those that are not as in 2026."""
     files = migrated_template(name)
-    apply_patch(name, files)
+    apply_patch(f"templates/{name}", files)
     before = texts(TEMPLATES / name)
     return {file: text for file, text in files.items() if text != before[file]}
 
@@ -91,6 +93,7 @@ class PatchError(Exception):
 def apply_patch(name: str, files: dict[str, str]) -> None:
     """Change files as a patch says. Each of its hunks must fit at one place; the line numbers do not matter.
 
+    :param name: of the patch, such as `templates/tank`; without one, nothing changes
     :raises PatchError: with the hunk that does not
     """
     for part in re.split(r"^--- a/", _patch(name), flags=re.MULTILINE)[1:]:

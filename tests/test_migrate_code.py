@@ -402,22 +402,32 @@ CODE = {
         """
         import wpilib
         DRIVER = 0
+        X, Y = wpilib.XboxController.Button.kX, wpilib.XboxController.Button.kY
+        A = 1
+        B = 2
         driver, stick = wpilib.XboxController(DRIVER), wpilib.Joystick(1)
         def test_it(control, hal_data):
             gamepad = hal_data["joysticks"][0]
             gamepad["axes"][4] = hal_data["joysticks"][DRIVER]["axes"][1] = 0.5
             gamepad["buttons"][5] = hal_data["joysticks"][0]["buttons"][1] = True
             hal_data["joysticks"][1]["buttons"][5] = True
+            buttons = hal_data["joysticks"][0]["buttons"]
+            buttons[5] = buttons[B] = buttons[X] = hal_data["joysticks"][0]["buttons"][A] = True
         """,
         """
         import wpilib
         DRIVER = 0
+        X, Y = wpilib.XboxController.Button.X, wpilib.XboxController.Button.Y
+        A = 1
+        B = 2
         driver, stick = wpilib.XboxController(DRIVER), wpilib.Joystick(1)
         def test_it(control, hal_data):
             gamepad = hal_data["joysticks"][0]
             gamepad["axes"][2] = hal_data["joysticks"][DRIVER]["axes"][1] = 0.5
             gamepad["buttons"][9] = hal_data["joysticks"][0]["buttons"][0] = True
             hal_data["joysticks"][1]["buttons"][4] = True
+            buttons = hal_data["joysticks"][0]["buttons"]
+            buttons[9] = buttons[B - 1] = buttons[X] = hal_data["joysticks"][0]["buttons"][A - 1] = True
         """,
     ),
     "the deadband that sticks have": (
@@ -754,6 +764,19 @@ BY_HAND = {
     "a vendor": ("import pathplannerlib.auto  # here\n", "has no release for 2027"),
     "a channel": ("import wpilib\nPORT = 9\nled = wpilib.AddressableLED(PORT)  # here\n", "channels 0 to 5"),
     "a POV's angle": ("import wpilib\nangle = wpilib.Joystick(0).getPOV()  # here\n", "not an angle"),
+    "a button of an Xbox controller": (
+        "import wpilib\nBUMPER = 5\nheld = wpilib.XboxController(0).getRawButton(BUMPER)  # here\n",
+        "Button 5 of an Xbox controller is 9 now.",
+    ),
+    "the same in hal_data": (
+        "import wpilib\npad = wpilib.XboxController(0)\nBUMPER = 5\n"
+        'def test_it(hal_data):\n    hal_data["joysticks"][0]["buttons"][BUMPER] = True  # here\n',
+        "Button 5 of an Xbox controller is 9 now.",
+    ),
+    "a key of hal_data": (
+        'def test_it(hal_data):\n    assert hal_data["analog_gyro"][0]["angle"] == 0  # here\n',
+        'Use hal_data["onboard_imu"]["yaw"]',
+    ),
     "an unknown object": ("def f(sensor):\n    return sensor.getRate()  # here\n", "write get_rate"),
     "a path in a string": ('patched = "wpilib.DriverStation.isEnabled"  # here\n', "names something of WPILib 2026"),
     "a new method": (

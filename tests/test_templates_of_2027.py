@@ -20,14 +20,14 @@ def test_it_is_what_migrate_and_its_patch_make(name: str) -> None:
     assert made == there, "Run `make templates-2027`, and commit the difference if it is right (CONTRIBUTING.md)."
 
 
-@pytest.mark.parametrize("file", sorted(PATCHES.iterdir()), ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", sorted(PATCHES.glob("templates/*")), ids=lambda file: file.stem)
 def test_a_patch_is_small_and_gives_its_reasons(file) -> None:
     assert file.stem in NAMES
-    assert reasons(file.stem).strip()
+    assert reasons(f"templates/{file.stem}").strip()
     changed = re.findall(r"^[-+](?![-+])", file.read_text("utf-8"), flags=re.MULTILINE)
     assert len(changed) <= SMALL
 
 
 def test_a_patch_that_does_not_fit_is_said_with_its_lines() -> None:
     with pytest.raises(PatchError, match=r"(?s)tank\.patch does not fit robot\.py any more:\n.*Selectable"):
-        apply_patch("tank", {"robot.py": "import wpilib\n"})
+        apply_patch("templates/tank", {"robot.py": "import wpilib\n"})

@@ -85,6 +85,11 @@ class Arguments:
         types = self._file.inference.infer(value, scope)
         if types or (isinstance(value, cst.Attribute) and value.attr.value == "value"):
             return  # a constant of an enumeration
+        old = written_number(self._file.inference, value, scope)
+        new = xbox_number(self._corrections, "buttons", old) if old is not None and self._is_xbox(node, scope) else None
+        if old is not None and new is not None and new != old - 1:
+            self._file.say(arg, f"Button {old} of an Xbox controller is {new} now.", f"Write {new} for {old}.")
+            return
         self._file.edit(
             arg,
             lambda updated: updated.with_changes(

@@ -52,6 +52,8 @@ class Calls:
             return
         if not self._file.first_time:
             return
+        if isinstance(node.func, cst.Name) and (note := self._corrections["notes"].get(found.path)):
+            self._file.say(node, f"{node.func.value} has another meaning.", note, done=True)
         self._sticks.call(node, scope, found.path)
         self._arguments.changed_meaning(node, scope, paths)
 

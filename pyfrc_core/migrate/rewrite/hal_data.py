@@ -1,4 +1,4 @@
-"""Rewrite the numbers of buttons in `hal_data`, which are those that robot code gives them."""
+"""Rewrite the numbers of axes and buttons in `hal_data`, which are those that robot code gives them; report keys."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .gamepads import xbox_number
 
 
 class HalData:
-    """The axes and buttons that a file's tests and physics set in `hal_data`.
+    """What a file's tests and physics do with `hal_data`.
 
     :param xbox_ports: where the project has an Xbox controller
     """
@@ -24,27 +24,44 @@ class HalData:
 
     def subscript(self, node: cst.Subscript, scope: Scope) -> None:
         """Count a button from 0: `hal_data["joysticks"][0]["buttons"][1]` becomes `...["buttons"][0]`."""
-        if not self._file.first_time:
-            return
         index = _index(node)
-        if index is not None and self._is_part(node.value, scope, "axes") and not _is_first(index.value):
-            self._axis(node, index, scope)
-        if self._is_buttons(node, scope):
-            if node not in self._with_number:
-                self._file.say(
-                    node, "Buttons count from 0 in hal_data, too.", "Check what is done with this list.", done=True
-                )
+        if index is None or not self._file.first_time:
             return
-        if index is None or not self._is_buttons(node.value, scope):
+        key = self._key(node, scope)
+        if key is not None:
+            self._said_by_key(node, key)
             return
-        self._with_number.add(node.value)
+        part = self._resolved(node.value, scope)
+        if not isinstance(part, cst.Subscript):
+            return
+        key = self._key(part, scope)
+        if key == "axes":
+            self._axis(node, index, part, scope)
+        elif key == "buttons":
+            self._with_number.add(part)
+            self._button(node, index, part, scope)
+
+    def _said_by_key(self, node: cst.Subscript, key: str) -> None:
+        advice = self._file.table.corrections["hal_data_gone"].get(key)
+        if advice is not None:
+            self._file.say(node, f'hal_data["{key}"] is gone.', advice)
+        elif key == "buttons" and node not in self._with_number:
+            self._file.say(
+                node, "Buttons count from 0 in hal_data, too.", "Check what is done with this list.", done=True
+            )
+
+    def _button(self, node: cst.Subscript, index: cst.Index, part: cst.Subscript, scope: Scope) -> None:
         number = index.value
+        if isinstance(number, cst.Attribute) or self._file.inference.infer(number, scope):
+            return  # a constant of an enumeration
+        old = written_number(self._file.inference, number, scope)
+        new = self._of_xbox(part, scope, "buttons", old)
         if isinstance(number, cst.Integer):
-            new = self._of_xbox(node.value, scope, "buttons", number.evaluated_value)
-            if number.evaluated_value:
-                new = number.evaluated_value - 1 if new is None else new
-                self._file.edit(index, changed(value=cst.Integer(str(new))))
-        elif not isinstance(number, cst.Attribute):  # that is a constant of an enumeration
+            new = max(0, number.evaluated_value - 1) if new is None else new
+            self._file.edit(index, changed(value=cst.Integer(str(new))))
+        elif old is not None and new is not None and new != old - 1:
+            self._file.say(node, f"Button {old} of an Xbox controller is {new} now.", f"Write {new} for {old}.")
+        else:
             self._file.edit(
                 index,
                 lambda updated: updated.with_changes(
@@ -53,13 +70,14 @@ class HalData:
             )
             self._file.say(node, "Buttons count from 0 in hal_data, too: 1 is subtracted here.", done=True)
 
-    def _axis(self, node: cst.Subscript, index: cst.Index, scope: Scope) -> None:
-        number = index.value
-        if isinstance(number, cst.Integer):
-            new = self._of_xbox(node.value, scope, "axes", number.evaluated_value)
-            if new is not None:
-                self._file.edit(index, changed(value=cst.Integer(str(new))))
-                return
+    def _axis(self, node: cst.Subscript, index: cst.Index, part: cst.Subscript, scope: Scope) -> None:
+        old = written_number(self._file.inference, index.value, scope)
+        if old is not None and old < 2:
+            return  # of the left stick, which has not changed
+        new = self._of_xbox(part, scope, "axes", old)
+        if new is not None and isinstance(index.value, cst.Integer):
+            self._file.edit(index, changed(value=cst.Integer(str(new))))
+            return
         self._file.say(
             node,
             "The axes of a gamepad have other numbers.",
@@ -67,37 +85,39 @@ class HalData:
             done=True,
         )
 
-    def _of_xbox(self, part: cst.BaseExpression, scope: Scope, kind: str, number: int) -> int | None:
+    def _of_xbox(self, part: cst.Subscript, scope: Scope, kind: str, number: int | None) -> int | None:
         """Return the new number of an axis or a button, if it is one of an Xbox controller.
 
         :param part: the axes or the buttons of a joystick
         """
-        if not isinstance(part, cst.Subscript) or self._port(part.value, scope) not in self._xbox_ports:
+        if number is None or self._port(part.value, scope) not in self._xbox_ports:
             return None
         return xbox_number(self._file.table.corrections, kind, number)
 
     def _port(self, joystick: cst.CSTNode, scope: Scope) -> int | None:
         """Return the port of a joystick of `hal_data`."""
-        if isinstance(joystick, cst.Name):
-            found = values(self._file.inference, joystick, scope)
-            joystick = found[0] if len(found) == 1 else joystick
-        if not isinstance(joystick, cst.Subscript) or not self._is_part(joystick.value, scope, "joysticks"):
+        joystick = self._resolved(joystick, scope)
+        if not isinstance(joystick, cst.Subscript) or self._key(joystick.value, scope) != "joysticks":
             return None
         index = _index(joystick)
         return None if index is None else written_number(self._file.inference, index.value, scope)
 
-    def _is_buttons(self, node: cst.BaseExpression, scope: Scope) -> bool:
-        return self._is_part(node, scope, "buttons")
+    def _resolved(self, node: cst.CSTNode, scope: Scope) -> cst.CSTNode:
+        """Return what a name is given once, or another expression itself."""
+        found = values(self._file.inference, node, scope) if isinstance(node, cst.Name) else []
+        return found[0] if len(found) == 1 else node
 
-    def _is_part(self, node: cst.BaseExpression, scope: Scope, key: str) -> bool:
+    def _key(self, node: cst.CSTNode, scope: Scope) -> str | None:
+        """Return the key that a subscript of `hal_data`, or of a part of it, names."""
         index = _index(node)
-        return (
+        if (
             isinstance(node, cst.Subscript)
             and index is not None
             and isinstance(index.value, cst.SimpleString)
-            and index.value.evaluated_value == key
             and self._is_hal_data(node.value, scope, set())
-        )
+        ):
+            return str(index.value.evaluated_value)
+        return None
 
     def _is_hal_data(self, node: cst.CSTNode, scope: Scope, seen: set[str]) -> bool:
         """Return whether an expression is `hal_data`, or a part of it."""
@@ -114,14 +134,9 @@ class HalData:
         return bool(found) and all(self._is_hal_data(each, scope, seen) for each in found)
 
 
-def _index(node: cst.BaseExpression) -> cst.Index | None:
+def _index(node: cst.CSTNode) -> cst.Index | None:
     """Return the one index of a subscript."""
     if not isinstance(node, cst.Subscript) or len(node.slice) != 1:
         return None
     index = node.slice[0].slice
     return index if isinstance(index, cst.Index) and index.star is None else None
-
-
-def _is_first(number: cst.BaseExpression) -> bool:
-    """Return whether a number is that of the left stick, which has not changed."""
-    return isinstance(number, cst.Integer) and number.evaluated_value < 2
