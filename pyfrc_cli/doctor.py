@@ -42,8 +42,8 @@ def command(
 ) -> None:
     """Check this computer, your project and the robot for problems, and show how to solve them.
 
-    A problem prevents something from working, and is shown first. A hint is optional, or not important yet. Nothing is
-    changed, on this computer or on the robot.
+    A problem prevents something from working, and is shown first. A hint is optional, or not important yet. The last
+    result is the next step from a new robot to a driving one. Nothing is changed, on this computer or on the robot.
 
     \b
     Exit codes: 0 no problems, 1 problems found, 2 wrong usage.
@@ -53,14 +53,14 @@ def command(
     # With `python -m pyfrc`, the current directory is first on the path, where the project may hide libraries.
     sys.path[:] = [place for place in sys.path if place and Path(place) != Path.cwd()]
     from pyfrc_core.deploy.progress import with_robot_option
-    from pyfrc_core.doctor import DoctorOptions, examine
+    from pyfrc_core.doctor import NEXT_STEP, DoctorOptions, examine
     from pyfrc_core.wording import counted
 
     findings = [
         replace(each, remedy=each.remedy and with_robot_option(each.remedy, robot, team))
         for each in examine(DoctorOptions(directory, main, robot_class, not no_robot, robot, team, extras or as_json))
     ]
-    for finding in sorted(findings, key=lambda each: tuple(_COLOURS).index(each.status)):
+    for finding in sorted(findings, key=lambda each: (each.topic == NEXT_STEP, tuple(_COLOURS).index(each.status))):
         if not as_json and (finding.status == "problem" or not verbosity().quiet):
             click.secho(f"{finding.status:<8}", fg=_COLOURS[finding.status], nl=False)
             click.echo(f"{finding.topic}: {finding.text}")

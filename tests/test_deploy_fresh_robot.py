@@ -17,7 +17,8 @@ from pyfrc_core.deploy.facts import RobotFacts
 from pyfrc_core.deploy.robot_checks import refuse_unfit_robot
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.doctor import CheckResult
-from pyfrc_core.doctor.robot import RobotSearch, check_robot_facts
+from pyfrc_core.doctor.robot import RobotSearch, check_robot_facts, missing_on_robot
+from pyfrc_core.doctor.steps import Step
 from pyfrc_core.project import find_project
 
 OURS = version("wpilib")
@@ -187,3 +188,24 @@ def test_packages_that_the_project_asks_for_and_the_robot_lacks(tmp_path: Path) 
     assert (
         finding.text == "pyproject.toml:2: components has commands2, but the robot has no package robotpy-commands-v2"
     )
+
+
+@pytest.mark.parametrize(
+    ("there", "step", "remedy"),
+    [
+        ({"not_controller": "there is no frcKillRobot.sh on it"}, Step.CONTROLLER, "roboRIO Imaging Tool"),
+        ({"image": "FRC_roboRIO_2025_v2.0", "wpilib": None}, Step.CONTROLLER, "roboRIO Imaging Tool"),
+        ({"wpilib": None}, Step.PACKAGES, "Prepare the robot: "),
+        ({"python": "3.9.1"}, Step.PACKAGES, "Prepare the robot: "),
+        ({}, Step.PROGRAM, "pyfrc deploy"),
+        ({"current": 1}, Step.PROGRAM, "pyfrc deploy-info"),
+        ({"other_code": True, "running": True}, Step.DRIVE, ""),
+        ({"current": 1, "running": True}, Step.DRIVE, ""),
+    ],
+    ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
+)
+def test_the_first_missing_step_of_a_robot(there: dict[str, Any], step: Step, remedy: str) -> None:
+    facts = replace(READY, **there)
+    missing = missing_on_robot(facts, ROBORIO, list(check_robot_facts(facts, ROBORIO, None)))
+    assert missing[0] is step
+    assert remedy in missing[1]

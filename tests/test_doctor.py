@@ -344,6 +344,19 @@ def test_a_team_number_that_is_none(make_project) -> None:
     assert "teamNumber" in finding["text"]
 
 
+def test_the_next_step_is_the_last_thing_that_is_shown(make_project) -> None:
+    project = make_project({"robot.py": ROBOT})
+    (step,) = results_of(project.run("doctor", "--json"))["next step"]
+    assert step["text"] == "1 of 6, the team number"
+    with refusing_port() as port:
+        result = project.run("doctor", "--robot", f"127.0.0.1:{port}")
+    *_, step, remedy, _, count = result.stdout.splitlines()
+    assert step == "hint    next step: 2 of 6, the downloads for the robot"
+    assert remedy.startswith("          With internet: pyfrc sync.")
+    assert count == "1 problem"
+    assert "next step" not in project.run("doctor", "--no-robot").stdout
+
+
 def test_only_one_result_about_the_robot(make_project) -> None:
     assert make_project({}).run("doctor", "--no-robot", "--team", "1").code == 2
 

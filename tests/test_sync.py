@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import threading
@@ -405,3 +406,24 @@ def test_options_that_exclude_each_other_are_refused(laptop: Laptop, tmp_path: P
     assert laptop.run("--to", tmp_path, "--from", tmp_path).code == 2
     refused = laptop.run("--from", tmp_path / "nowhere")
     assert (refused.code, os.fspath(tmp_path / "nowhere") in refused.first_error) == (2, True)
+
+
+def doctor_on(laptop: Laptop) -> list[dict[str, str]]:
+    """Return what the doctor finds about the downloads."""
+    done = laptop.project.run("doctor", "--no-robot", "--json", env=laptop.index.environment(laptop.home))
+    return [each for each in json.loads(done.stdout)["findings"] if each["topic"] == "sync"]
+
+
+def test_the_doctor_looks_at_the_downloads(laptop: Laptop) -> None:
+    (found,) = doctor_on(laptop)
+    assert (found["status"], found["remedy"][:25]) == ("hint", "With internet: pyfrc sync")
+    laptop.sync()
+    found, *_ = doctor_on(laptop)
+    assert (found["status"], found["text"]) == ("ok", f"8 files for the {CONTROLLER} are on this computer")
+    laptop.project.write({"pyproject.toml": pyproject(components="")})
+    found, *_ = doctor_on(laptop)
+    assert found["status"] == "hint"
+    assert f"pyproject.toml asks for robotpy=={WPILIB}, which the lock does not have" in found["text"]
+    (laptop.project.path / LOCK_FILE).write_text("version = 1\n", "utf-8")
+    (found,) = doctor_on(laptop)
+    assert (found["status"], "this lock is damaged" in found["text"]) == ("problem", True)

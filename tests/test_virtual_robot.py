@@ -24,6 +24,7 @@ from started_commands import StartedCommand
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.doctor.robot import RobotSearch
+from pyfrc_core.doctor.steps import Step
 from pyfrc_core.project import find_project
 from pyfrc_core.virtual_robot.console import ConsoleServer
 from pyfrc_core.virtual_robot.robot import Control
@@ -146,8 +147,9 @@ def test_a_program_is_deployed_changed_rolled_back_and_removed(project: RobotPro
         on(robot, project, "deploy", "--rollback")
         second = robot.pid(times=2)
         (project.path / ".pyfrc/known_hosts").unlink()
-        findings = RobotSearch(find_project(project.path), robot.address).findings()
-        assert [each.status for each in findings] == ["ok", "ok"], findings
+        search = RobotSearch(find_project(project.path), robot.address)
+        assert [each.status for each in search.findings()] == ["ok", "ok"]
+        assert search.missing_step() == (Step.DRIVE, "")
         assert not (project.path / ".pyfrc/known_hosts").exists(), "the doctor pins no key"
         refused = project.run("undeploy", "--java-cpp", "--yes", "--robot", robot.address)
         assert refused.code == 1

@@ -13,13 +13,15 @@ from ..config.robotpy import load_season_settings
 from ..display import WITHOUT_DISPLAY, has_display, has_tkinter
 from ..errors import PyfrcError, SettingsError
 from ..project import Project, find_project
-from ..season import SeasonSetting, installed_wpilib, season_of
+from ..season import CURRENT, SeasonSetting, installed_wpilib, season_of
 from ..shell import getting_tkinter
 from .check_result import CheckResult, hint, ok
+from .downloads import check_downloads
 from .installed import find_installed
 from .packages import check_imports, check_pyfrc, check_python, check_wpilib
 from .robot import RobotSearch
 from .robot_project import check_project, problem_from_error
+from .steps import first_missing
 
 #: Each of pyfrc's extras with its module and its purpose.
 EXTRAS = {
@@ -101,10 +103,17 @@ def examine(wanted: DoctorOptions) -> Iterator[CheckResult]:
         yield from check_extras()
     if about_project is not None:
         yield about_project
+    downloads: list[CheckResult] = []
     if project is not None:
         yield from check_project(project, installed, settings)
+        wpilib = installed.get("wpilib")
+        if wpilib is not None and all(each.year == CURRENT.year for each in settings):
+            downloads = list(check_downloads(project, CURRENT, wpilib.version))
+            yield from downloads
     if search is not None:
         yield from search.findings()
+        if (missing := search.missing_step()) is not None:
+            yield first_missing(downloads[0] if downloads else None, missing)
 
 
 def _season_settings(project: Project | None) -> list[SeasonSetting]:

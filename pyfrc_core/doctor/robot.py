@@ -11,15 +11,17 @@ from ..deploy.connection import Connection, connect
 from ..deploy.discovery import RobotNotFoundError, addresses_of, find_robot, parse_address
 from ..deploy.errors import HostKeyError, NoPythonError, OnTheFieldError
 from ..deploy.facts import RobotFacts
-from ..deploy.robot_checks import RobotWithoutPython, obstacles, other_languages_notice
+from ..deploy.robot_checks import RobotWithoutPython, image_it, image_problem, obstacles, other_languages_notice
 from ..deploy.robot_packages import unfit_packages
 from ..deploy.target_connection import load_robot_keys
-from ..deploy.targets import ControllerKind
+from ..deploy.targets import ControllerKind, controller_of
 from ..deploy.team import find_target
 from ..errors import PyfrcError, SettingsError, UsageError
 from ..project import Project
+from ..season import CURRENT, installed_wpilib
 from .check_result import CheckResult, hint, ok, problem
 from .robot_project import problem_from_error
+from .steps import Step
 
 #: Seconds to wait for a robot after all other checks.
 SEARCH_SECONDS = 3.0
@@ -44,6 +46,7 @@ class RobotSearch:
     def __init__(self, project: Project | None, robot: str | None = None, team: int | None = None) -> None:
         self._named = robot is not None or team is not None
         self._findings: list[CheckResult] = []
+        self._next: tuple[Step, str] | None = None
         self._found = False
         self._whose = robot or (f"team {team}" if team is not None else "this project")
         self._thread = threading.Thread(target=self._run, args=(project, robot, team), daemon=True)
@@ -63,6 +66,13 @@ class RobotSearch:
             )
         return findings
 
+    def missing_step(self) -> tuple[Step, str] | None:
+        """Return the first step to a driving robot that is missing, and how to do it; None if that is unknown.
+
+        `findings` has been called before.
+        """
+        return self._next
+
     def _run(self, project: Project | None, robot: str | None, team: int | None) -> None:
         try:
             for finding in self._search(project, robot, team):
@@ -71,8 +81,10 @@ class RobotSearch:
             self._findings.append(ok(_TOPIC, "not checked: the Driver Station is connected to a competition field"))
         except RobotNotFoundError:
             self._findings.append(self._not_found())
+            self._next = Step.CONTROLLER, f"{_REMEDY} For a new one: {image_it(controller_of(CURRENT))}"
         except HostKeyError as error:
             remedy = "If this is your robot, pyfrc deploy-info shows how to accept its key."
+            self._next = Step.CONTROLLER, remedy
             self._findings.append(problem(_TOPIC, error.message, remedy))
         except (PyfrcError, OSError) as error:
             self._findings.append(problem_from_error(_TOPIC, error, "Correct it there."))
@@ -90,6 +102,7 @@ class RobotSearch:
             raise
         except UsageError as unknown:
             yield hint(_TOPIC, f"not searched: {unknown.message}", unknown.remedy or "pyfrc doctor --team NUMBER")
+            self._next = Step.TEAM, "pyfrc deploy asks for it, and keeps it in .wpilib/wpilib_preferences.json"
             return
         if target.robot is not None:
             address = parse_address(target.robot)
@@ -105,23 +118,26 @@ class RobotSearch:
             yield ok(_TOPIC, f"{self._whose} found at {found.address} ({found.kind})")
             keys = load_robot_keys(target, found.address)
             with connect(found.address, target.controller, keys, connected=found.connected, pin=False) as connection:
-                yield from _examine(project, connection)
+                yield from self._examine(project, connection)
+
+    def _examine(self, project: Project | None, connection: Connection) -> Iterator[CheckResult]:
+        try:
+            robot = AgentClient.start(connection)
+        except NoPythonError:
+            there = RobotWithoutPython(connection)
+            obstacles = list(there.obstacles())
+            self._next = (Step.PACKAGES if len(obstacles) == 1 else Step.CONTROLLER), obstacles[0].remedy
+            yield from (problem(_TOPIC, each.text, each.remedy) for each in obstacles)
+            yield from _check_other_languages(there.other_languages)
+        else:
+            robot.close()
+            found = list(check_robot_facts(robot.facts, connection.controller, project))
+            self._next = missing_on_robot(robot.facts, connection.controller, found)
+            yield from found
 
     def _not_found(self) -> CheckResult:
         text = f"{self._whose}: no robot found"
         return problem(_TOPIC, text, _REMEDY) if self._named else hint(_TOPIC, text, _REMEDY)
-
-
-def _examine(project: Project | None, connection: Connection) -> Iterator[CheckResult]:
-    try:
-        robot = AgentClient.start(connection)
-    except NoPythonError:
-        there = RobotWithoutPython(connection)
-        yield from (problem(_TOPIC, each.text, each.remedy) for each in there.obstacles())
-        yield from _check_other_languages(there.other_languages)
-    else:
-        robot.close()
-        yield from check_robot_facts(robot.facts, connection.controller, project)
 
 
 def check_robot_facts(facts: RobotFacts, controller: ControllerKind, project: Project | None) -> Iterator[CheckResult]:
@@ -133,6 +149,26 @@ def check_robot_facts(facts: RobotFacts, controller: ControllerKind, project: Pr
     ready = f"Python {facts.python}, wpilib {facts.wpilib}, image {facts.image}"
     yield from problems or [ok(_TOPIC, ready)]
     yield from _check_other_languages(facts.other_languages)
+
+
+def missing_on_robot(facts: RobotFacts, controller: ControllerKind, found: Sequence[CheckResult]) -> tuple[Step, str]:
+    """Return the first step that is missing on a robot.
+
+    :param found: the results about it
+    """
+    if facts.not_controller is not None or image_problem(facts.image, installed_wpilib() or "", controller):
+        return Step.CONTROLLER, image_it(controller)
+    wrong = next((each for each in found if each.status == "problem"), None)
+    if wrong is not None:
+        return Step.PACKAGES, wrong.remedy or ""
+    if facts.current is None and not facts.other_code:
+        return Step.PROGRAM, "pyfrc deploy"
+    if not facts.running:
+        return (
+            Step.PROGRAM,
+            "It is there, but does not run. To see why: pyfrc deploy-info. After a correction: pyfrc deploy",
+        )
+    return Step.DRIVE, ""
 
 
 def _check_other_languages(found: Sequence[str]) -> Iterator[CheckResult]:
