@@ -45,8 +45,9 @@ def main(arguments: list[str]) -> int:
 
 def write_template(name: str) -> None:
     """Write `templates/2027/NAME`."""
+    made = template_of_2027(name)
     shutil.rmtree(OF_2027 / name, ignore_errors=True)
-    for file, text in template_of_2027(name).items():
+    for file, text in made.items():
         (OF_2027 / name / file).parent.mkdir(parents=True, exist_ok=True)
         (OF_2027 / name / file).write_text(text, "utf-8", newline="\n")
 

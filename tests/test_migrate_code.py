@@ -488,6 +488,106 @@ CODE = {
         tunables.publish("lift", Own(1, 0, 0))
         """,
     ),
+    "what dashboards show again and again": (
+        """
+        import wpilib
+        from commands2 import Subsystem
+        from wpilib import SmartDashboard
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.field = wpilib.Field2d()
+                # The field.
+                SmartDashboard.putData(self.field)
+                self.picture = wpilib.Mechanism2d(1, 1)
+                wpilib.SmartDashboard.putData("picture", self.picture)
+                self.timer = wpilib.Timer()
+
+            def robotPeriodic(self):
+                pass
+
+        class Arm(Subsystem):
+            def __init__(self):
+                super().__init__()
+                self.encoder = wpilib.Encoder(0, 1)
+                SmartDashboard.putData("arm", self.encoder)
+
+            def periodic(self):
+                self.encoder.getRate()
+        """,
+        """
+        import wpilib
+        import telemetry
+        from commands2 import Subsystem
+
+        class MyRobot(wpilib.TimedRobot):
+            def __init__(self):
+                super().__init__()
+                self.field = wpilib.Field2d()
+                self.picture = wpilib.Mechanism2d(1, 1)
+                self.timer = wpilib.Timer()
+
+            def robot_periodic(self):
+                # The field.
+                telemetry.log("Field", self.field)
+                telemetry.log("picture", self.picture)
+
+        class Arm(Subsystem):
+            def __init__(self):
+                super().__init__()
+                self.encoder = wpilib.Encoder(0, 1)
+
+            def periodic(self):
+                self.encoder.get_rate()
+                telemetry.log("arm", self.encoder)
+        """,
+    ),
+    "what cannot be shown again and again": (
+        """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.field = wpilib.Field2d()
+                wpilib.SmartDashboard.putData("field", self.field)
+
+            def robotPeriodic(self):
+                if self.isDisabled():
+                    return
+
+        class Arm(wpilib.TimedRobot):
+            def __init__(self):
+                super().__init__()
+                encoder = wpilib.Encoder(0, 1)
+                wpilib.SmartDashboard.putData("arm", encoder)
+
+            def robotPeriodic(self):
+                pass
+        """,
+        """
+        import wpilib
+        import telemetry
+
+        class MyRobot(wpilib.TimedRobot):
+            def __init__(self):
+                super().__init__()
+                self.field = wpilib.Field2d()
+                telemetry.log("field", self.field)
+
+            def robot_periodic(self):
+                if self.is_disabled():
+                    return
+
+        class Arm(wpilib.TimedRobot):
+            def __init__(self):
+                super().__init__()
+                encoder = wpilib.Encoder(0, 1)
+                telemetry.log("arm", encoder)
+
+            def robot_periodic(self):
+                pass
+        """,
+    ),
     "gyros that physics turns": (
         """
         from pyfrc.physics.core import PhysicsInterface

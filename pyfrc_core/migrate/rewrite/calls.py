@@ -13,6 +13,7 @@ from .arguments import Arguments
 from .edits import changed, fill, renamed, replaced
 from .file import FileRewriter, Found
 from .gamepads import Sticks
+from .repeated_logs import RepeatedLogs
 
 _BOTH = "wpilib.interfaces.GenericHID.RumbleType.kBothRumble"
 _ADD_TO_TAB = "wpilib.shuffleboard.ShuffleboardContainer.add"
@@ -30,6 +31,7 @@ class Calls:
         self._reads = dashboard_reads
         self._arguments = Arguments(rewriter)
         self._sticks = Sticks(rewriter)
+        self._repeated = RepeatedLogs(rewriter)
         self._corrections: Mapping[str, Any] = rewriter.table.corrections
 
     def call(self, node: cst.Call, scope: Scope) -> None:
@@ -141,6 +143,12 @@ class Calls:
         if ancestors.intersection(self._corrections["tunables"]["classes"]):
             self.replace(node, scope, f"<tunables.publish>({arguments})")
             return True
+        code = [cst.Module([]).code_for_node(arg.value) for arg in node.args]
+        code = code if len(code) == 2 else [f'"{name}"', *code]
+        if self._repeated.move(node, scope, ", ".join(code)):
+            what = "SmartDashboard.putData is telemetry.log now, and called again and again."
+            self._file.say(node, what, done=True)
+            return True
         self.replace(node, scope, f"<telemetry.log>({arguments})")
         self._file.say(
             node,
@@ -238,8 +246,7 @@ class Calls:
 
     def _remove(self, node: cst.Expr, scope: Scope) -> None:
         self._file.consume(cst.ensure_type(node.value, cst.Call).func, scope)
-        self._file.edit(node, lambda updated: cst.Pass(semicolon=updated.semicolon))
-        self._file.removed.add(node)
+        self._file.remove(node)
 
     def _add_to_tab(self, node: cst.Call) -> None:
         self._file.handled.add(node.func)

@@ -98,6 +98,21 @@ def commented(texts: list[str]) -> Edit:
     return edit
 
 
+def with_last(method: cst.FunctionDef, statement: cst.BaseStatement) -> cst.FunctionDef:
+    """Return a function with one more statement at its end; it takes the place of a `pass`."""
+    body = method.body
+    if isinstance(body, cst.SimpleStatementSuite):
+        block = cst.IndentedBlock([cst.SimpleStatementLine(body.body), statement])
+        return method.with_changes(body=block)
+    before = [*body.body[:-1]] if body.body and is_pass(body.body[-1]) else [*body.body]
+    return method.with_changes(body=body.with_changes(body=[*before, statement]))
+
+
+def is_pass(statement: cst.CSTNode) -> bool:
+    """Return whether a statement is `pass`."""
+    return isinstance(statement, cst.SimpleStatementLine) and isinstance(statement.body[0], cst.Pass)
+
+
 def chain(path: str) -> cst.Name | cst.Attribute:
     """Return the expression `a.b.c`."""
     first, *rest = path.split(".")

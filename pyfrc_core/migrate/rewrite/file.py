@@ -91,6 +91,11 @@ class FileRewriter:
         before = self.edits.get(node)
         self.edits[node] = edit if before is None else lambda updated: edit(before(updated))
 
+    def remove(self, statement: cst.Expr) -> None:
+        """Leave a statement out."""
+        self.edit(statement, lambda updated: cst.Pass(semicolon=updated.semicolon))
+        self.removed.add(statement)
+
     # Attributes
 
     def look_up(self, node: cst.Attribute, scope: Scope) -> list[Found]:

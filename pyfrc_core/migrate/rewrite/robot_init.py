@@ -7,7 +7,7 @@ from typing import Any
 import libcst as cst
 
 from ..types.scopes import OwnClass, Scope
-from .edits import renamed
+from .edits import is_pass, renamed, with_last
 from .file import FileRewriter
 
 _CALL = "super().__init__()"
@@ -29,7 +29,8 @@ def rewrite(file: FileRewriter, own: OwnClass, method: cst.FunctionDef) -> None:
     name = "robot_init"
     file.edit(method, renamed(name))
     first = node.params.params[0].name.value if node.params.params else "self"
-    file.edit(node, lambda updated: _with_last(updated, f"{first}.{name}()"))
+    call = cst.ensure_type(cst.parse_statement(f"{first}.{name}()"), cst.SimpleStatementLine)
+    file.edit(node, lambda updated: with_last(updated, call))
     file.say(method, f"robotInit is called {name} now, by the constructor.", done=True)
 
 
@@ -75,17 +76,9 @@ def _with_first(method: Any, code: str) -> Any:
         return method.with_changes(body=block)
     statements = list(body.body)
     index = 1 if _is_docstring(statements[0]) else 0
-    if len(statements) == index + 1 and _is_pass(statements[index]):
+    if len(statements) == index + 1 and is_pass(statements[index]):
         statements = statements[:index]
     return method.with_changes(body=body.with_changes(body=[*statements[:index], statement, *statements[index:]]))
-
-
-def _with_last(method: Any, code: str) -> Any:
-    statement = cst.parse_statement(code)
-    body = method.body
-    if isinstance(body, cst.SimpleStatementSuite):
-        return method.with_changes(body=cst.IndentedBlock([cst.SimpleStatementLine(body.body), statement]))
-    return method.with_changes(body=body.with_changes(body=[*body.body, statement]))
 
 
 def _is_docstring(statement: cst.BaseStatement) -> bool:
@@ -94,7 +87,3 @@ def _is_docstring(statement: cst.BaseStatement) -> bool:
         and isinstance(statement.body[0], cst.Expr)
         and isinstance(statement.body[0].value, cst.SimpleString | cst.ConcatenatedString)
     )
-
-
-def _is_pass(statement: cst.BaseStatement) -> bool:
-    return isinstance(statement, cst.SimpleStatementLine) and isinstance(statement.body[0], cst.Pass)

@@ -39,9 +39,9 @@ class Drive(commands2.Subsystem):
         """Called by the scheduler every 20 ms: show the measurements to the driver."""
         left, right = self.left_encoder.get_distance(), self.right_encoder.get_distance()
         self.field.set_robot_pose(self.odometry.update(self.gyro.get_rotation2d(), left, right))
-        telemetry.log("Field", self.field)
         telemetry.log("Distance", self.distance())
         telemetry.log("Heading", self.heading())
+        telemetry.log("Field", self.field)
 
     def distance(self) -> float:
         """Return how far the robot has driven, in metres."""
