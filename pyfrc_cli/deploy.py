@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .loading import loading
 from .project_options import chosen_project, project_options
 from .robot_options import errors_shown, json_option, project_if_any, robot_options, user_interface
 
@@ -87,9 +88,7 @@ def command(
     if rollback and not rollback.isdecimal():
         raise click.UsageError(f"--rollback {rollback!r}: a release is a number; pyfrc deploy-info lists them.")
     with errors_shown(choice, as_json):
-        from pyfrc_core.collector import collector_paused
-
-        with collector_paused():
+        with loading():
             from pyfrc_core.deploy import session
 
         talk = user_interface(choice, as_json)

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import click
 
-from pyfrc_core.collector import collector_paused
-
+from .loading import loading
 from .project_options import chosen_project, project_options
 from .verbosity import hint
 
@@ -53,7 +52,7 @@ def command(
     1 it differs, or the robot's code failed; 2 wrong usage, or no such script.
     """
     project = chosen_project(directory, main, robot_class)
-    with collector_paused():
+    with loading():
         from pyfrc_core.compat.unrepeatable import explain_unrepeatable
         from pyfrc_core.replay import replay
     if picture is not None:

@@ -8,8 +8,7 @@ from typing import Literal
 
 import click
 
-from pyfrc_core.collector import collector_paused
-
+from .loading import loading
 from .project_options import chosen_project, project_options
 from .verbosity import verbosity
 
@@ -118,7 +117,7 @@ def command(
     )
     with measuring(project, coverage_options) as measured:
         # Imported here, so that lines of the robot's modules are counted while they are imported.
-        with collector_paused():
+        with loading():
             from pyfrc_core.test_support.options import TestOptions
             from pyfrc_core.test_support.run_tests import run_tests
 

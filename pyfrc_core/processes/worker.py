@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -15,14 +16,16 @@ from typing import IO, Any, NoReturn
 
 from ..project.robot_files import RobotFiles
 from . import fork, spawn
-from .crash_report import CrashLog, describe_exit, standstill_of
+from .crash_report import CrashLog, describe_exit, moment_of, standstill_of
 from .exit import end_child_processes, exit_now, flush_output
 from .frames import decode, encode
 from .memory_file import memory_file
-from .standstill import Standstill
+from .standstill import Standstill, loading_for
 
 #: Seconds between two looks at a process that is waited for. Decides nothing else.
 _LOOK_SECONDS = 0.25
+
+_now = time.monotonic  # which robot code may replace
 
 #: Sends an object to the process that has started this one.
 Send = Callable[[object], object]
@@ -42,6 +45,7 @@ class Worker(ABC):
         self.finished = False
         self.status = 0
         self._received = b""
+        self._begun = _now()
 
     @abstractmethod
     def poll(self) -> None:
@@ -77,6 +81,10 @@ class Worker(ABC):
             self.kill()
         return standstill
 
+    def loading(self) -> Standstill | None:
+        """Return the start of a process that takes seconds, until its robot's first moment; None when it does not."""
+        return None if moment_of(self._crash_report()) is not None else loading_for(_now() - self._begun)
+
     @abstractmethod
     def _crash_report(self) -> bytes:
         """Return what is in its crash log."""
@@ -105,6 +113,9 @@ class ForkedWorker(Worker):
     def close(self) -> None:
         self.kill()
         self._crash_log.close()
+
+    def loading(self) -> None:
+        return None  # everything is there
 
     def _take_over(self) -> None:
         self.finished, self.status, self._received = self._fork.finished, self._fork.status, self._fork.message

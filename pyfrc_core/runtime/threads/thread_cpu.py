@@ -35,6 +35,7 @@ class ThreadTimes:
     def starved(self) -> float | None:
         """Return for how long it has waited for a processor of a busy machine. None where the system does not say."""
         try:
-            return int(self._schedule.read_text("ascii").split()[1]) / 1e9
+            # Not as text: another thread may be importing, for long, and the codec is a module.
+            return int(self._schedule.read_bytes().split()[1]) / 1e9
         except (OSError, ValueError, IndexError):
             return None

@@ -7,6 +7,7 @@ import pickle
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Listener
@@ -15,12 +16,12 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from ...processes.channel import Channel, Connection, Outbox
-from ...processes.crash_report import standstill_of
+from ...processes.crash_report import moment_of, standstill_of
 from ...processes.fork import FORK_IS_SAFE
 from ...processes.groups import kill_group
 from ...processes.output_pipe import OutputPipe
 from ...processes.spawn import Interpreter
-from ...processes.standstill import Standstill
+from ...processes.standstill import Standstill, loading_for
 from ...project.robot_files import RobotFiles
 from . import host_process
 from .commands import Quit
@@ -64,6 +65,7 @@ class RobotProcesses:
         except OSError:  # a file system without sockets, or a name that is too long
             self._listener = Listener(("127.0.0.1", 0), authkey=self._key)
         self._number = 0
+        self._launched_at = time.monotonic()
         self._host: Interpreter | None = None
         self._host_connection: Connection | None = None
         self._host_reader: threading.Thread | None = None
@@ -86,6 +88,7 @@ class RobotProcesses:
             if self._closed:
                 return self._number
             self._number += 1
+            self._launched_at = time.monotonic()
             self._channels[self._number] = Channel(self._number, self._received, self._gone)
             if self._host is not None and not self._forks:
                 self._end_host()
@@ -114,8 +117,11 @@ class RobotProcesses:
                 self._end_host()
 
     def standstill(self, files: RobotFiles) -> Standstill | None:
-        """Return where the robot's code stands, if it does. End a process in which no Python code can run."""
-        standstill = standstill_of(self._crash_report(self._number), files)
+        """Return where the robot's code, or its process's start, stands. End it if no Python code can run there."""
+        report = self._crash_report(self._number)
+        standstill = standstill_of(report, files)
+        if standstill is None and moment_of(report) is None:
+            return loading_for(time.monotonic() - self._launched_at)
         if standstill is not None and standstill.hopeless:
             self.kill()
         return standstill

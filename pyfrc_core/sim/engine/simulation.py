@@ -89,6 +89,8 @@ class Simulation(Controls):
         status = self._status
         if status.state not in ("failed", "closed") and monotonic() - self._reported_at > _SILENCE:
             standstill = None if self._processes is None else self._processes.standstill(self.project.files)
+            if standstill is not None and standstill.loading:  # nothing is wrong
+                return replace(status, standstill=standstill) if status.state == "starting" else status
             silent = status.state == "running" or standstill is not None
             return replace(status, responding=not silent, standstill=standstill)
         return status

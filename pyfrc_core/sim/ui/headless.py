@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from ...display import has_terminal
 from ...errors import UsageError
 from ...physics.pose import METRES_PER_FOOT
 from ...processes.standstill import StandstillNotice
@@ -240,7 +241,10 @@ class Headless(FrontEnd):
         if status.note not in ("", self._noted):
             self._noted = status.note
             self._say_line(f"warning: {status.note}")
-        if (text := self._notice.look(status.standstill)) is not None:
+        stands = status.standstill
+        if stands is not None and stands.loading and (self._quiet or not has_terminal()):
+            stands = None
+        if (text := self._notice.look(stands)) is not None:
             self._say_line(text)
         if self._watching and status.failure is not None and status.failure is not self._reported:
             self._reported = status.failure

@@ -23,6 +23,7 @@ import pytest
 
 from ...compat import pytest_private
 from ...compat.unrepeatable import real_time_libraries
+from ...display import has_terminal
 from ...processes.fork import FORK_IS_SAFE
 from ...processes.worker import wait_for_any
 from ...processors import usable_processors
@@ -58,6 +59,8 @@ class IsolatedTests:
         self._durations: Durations | None = None
         #: Where tests print to, if pytest captures nothing.
         self._output: UncapturedOutput | None = None
+        #: Whether it need not be printed that interpreters take long to start: it was, or no person waits.
+        self._loading_told = not has_terminal()
 
     @pytest.hookimpl
     def pytest_runtestloop(self, session: pytest.Session) -> bool | None:
@@ -180,6 +183,9 @@ class IsolatedTests:
         for process in self._running.values():
             if not process.worker.finished:
                 standstill = process.worker.standstill(self._plugin.project.files)
+                if standstill is None and not self._loading_told:
+                    standstill = process.worker.loading()
+                    self._loading_told = standstill is not None
                 if (text := process.notice.look(standstill)) is not None:
                     self._print(config, text)
 
