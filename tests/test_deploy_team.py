@@ -108,6 +108,16 @@ def test_the_user_is_asked_until_the_reply_is_valid_and_it_is_stored(make_projec
     assert find_target(find_project(project.path), ask=never).team == 1234
 
 
+@pytest.mark.parametrize("host", ["10.12.34.2", "practice.local", "127.0.0.1:2222", "roboRIO-1234-FRC"])
+def test_the_user_may_reply_with_an_address(host: str, make_project) -> None:
+    """The season's tools ask for either, and store it under the same keys."""
+    project = make_project({"robot.py": "", PREFERENCES: '{"currentLanguage": "python"}'})
+    assert find_target(find_project(project.path), ask=lambda question: host).robot == host
+    stored = json.loads((project.path / PREFERENCES).read_text())
+    assert stored == {"currentLanguage": "python", "robotHostname": host}
+    assert find_target(find_project(project.path), ask=never).robot == host
+
+
 def test_without_a_terminal_the_error_names_the_setting(target_of) -> None:
     with pytest.raises(UsageError, match=r"--team NUMBER.*\[tool\.pyfrc\].*--robot HOST"):
         target_of({})

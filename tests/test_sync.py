@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import threading
+from collections import namedtuple
 from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
@@ -14,8 +15,11 @@ import pytest
 from conftest import MakeProject, Result, RobotProject
 from package_index import PYTHON_SIZE, ROBOT_TAGS, WPILIB, PackageIndex, add_wheel, package_index
 
+from pyfrc_core.errors import PyfrcError
+from pyfrc_core.project import find_project
 from pyfrc_core.season import CURRENT, SEASONS
 from pyfrc_core.sync import LOCK_FILE, Lock, load_lock
+from pyfrc_core.sync.synchronize import SyncOptions, synchronize
 
 ROBOT = """
     import wpilib
@@ -159,6 +163,16 @@ def test_a_new_requirement_leaves_the_other_versions_as_they_are(laptop: Laptop)
     printed = laptop.sync()  # the version that is locked does not fit any more
     assert laptop.packages["simple-lib"] == "2.0"
     assert f"  - robotpy-commands-v2 {WPILIB}\n  simple-lib 1.0 -> 2.0\n" in printed
+
+
+def test_another_version_of_wpilib_replaces_all_its_packages(laptop: Laptop) -> None:
+    laptop.sync()
+    newer = f"{CURRENT.year}.99.0"
+    laptop.index.add_wpilib(newer)
+    laptop.index.add("simple-lib", "2.0")
+    laptop.project.write({"pyproject.toml": pyproject(version=newer)})
+    laptop.sync()
+    assert laptop.packages["wpilib"] == laptop.packages["robotpy-hal"] == newer
 
 
 def test_upgrade_takes_the_newest(laptop: Laptop) -> None:
@@ -395,6 +409,20 @@ def test_other_versions_here_are_named_and_installed_on_request(laptop: Laptop) 
     assert f"This computer has click {version} (the robot: 99.0). For the same here: pyfrc sync --install" in printed
     printed = laptop.sync("--install", PIP_DRY_RUN="1")
     assert "Would install click-99.0 simple-lib-1.0" in printed
+
+
+def test_a_full_disk_is_noticed_before_the_download(
+    laptop: Laptop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    laptop.sync()
+    other = another(laptop, tmp_path)
+    full = namedtuple("full", "total used free")(10**9, 10**9 - 1000, 1000)
+    monkeypatch.setattr("shutil.disk_usage", lambda place: full)
+    monkeypatch.setenv("HOME", str(other.home))
+    options = SyncOptions()
+    with pytest.raises(PyfrcError, match=r"the disk is too full: .* kB are needed in .*robotpy"):
+        synchronize(find_project(other.project.path), CURRENT, None, options, progress=None)  # type: ignore[arg-type]
+    assert other.cached() == {}
 
 
 def test_a_quiet_sync_prints_nothing(laptop: Laptop) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from ..text_files import write_whole
 from .connection import NONE_OFFERED, Credentials
 from .discovery import parse_address
 from .progress import Questions
-from .targets import MAX_TEAM, ControllerKind, controller_of
+from .targets import MAX_TEAM, ControllerKind, controller_of, team_of_host
 
 PREFERENCES = Path(".wpilib", "wpilib_preferences.json")
 _OLD_FILE = ".deploy_cfg"
@@ -122,24 +123,23 @@ def _find_target(
             remedy="Specify it with --team NUMBER, or permanently with team = NUMBER under [tool.pyfrc] in "
             "pyproject.toml; or give the robot's address with --robot HOST.",
         )
-    number = _asked(ask)
+    target = _asked(ask)
     file = _preferences_file(project)
-    save_team(file, number)
-    return RobotTarget(number, source=PREFERENCES.as_posix())
+    named = {"teamNumber": target.team} if target.robot is None else {"robotHostname": target.robot}
+    write_whole(file, [json.dumps(_read_preferences(file) | named, indent=2), "\n"])
+    return target
 
 
-def save_team(file: Path, team: int) -> None:
-    """Write the team number to a ``wpilib_preferences.json``, and keep its other keys."""
-    preferences = _read_preferences(file)
-    write_whole(file, [json.dumps(preferences | {"teamNumber": team}, indent=2), "\n"])
-
-
-def _asked(ask: Callable[[str], str]) -> int:
+def _asked(ask: Callable[[str], str]) -> RobotTarget:
+    """Return the user's team, or the robot if the user enters an address: the season's tools take both there."""
     question = "What is your team number?"
     while True:
         text = ask(question).strip()
         if re.fullmatch(r"[0-9]{1,5}", text) and 1 <= int(text) <= MAX_TEAM:
-            return int(text)
+            return RobotTarget(int(text), source=PREFERENCES.as_posix())
+        if team_of_host(text) is not None or "." in text or ":" in text:
+            with suppress(UsageError):
+                return RobotTarget(robot=str(parse_address(text)), source=PREFERENCES.as_posix())
         question = f"{text!r} is not a team number: {_RANGE}. What is your team number?"
 
 

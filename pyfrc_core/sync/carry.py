@@ -9,6 +9,7 @@ from pathlib import Path
 from ..errors import PyfrcError, UsageError
 from ..file_hash import hash_file
 from ..season import Season
+from ..wording import size_text
 from .cache import cached_file
 from .download import cannot_write
 from .lock import LOCK_FILE, Lock, LockedFile, load_lock, save_lock
@@ -28,7 +29,7 @@ def carry(lock: Lock, season: Season, to: Path) -> int:
     missing = [each for each in lock.files if find_in([to], each) is None]
     needed, free = sum(each.size for each in missing), shutil.disk_usage(to).free
     if needed > free:
-        text = f"{to} has {free / 1e6:.0f} MB free, and {needed / 1e6:.0f} MB are needed"
+        text = f"{to} has {size_text(free)} free, and {size_text(needed)} are needed"
         raise PyfrcError(text, remedy="Free some space there, or take another directory.")
     for each in missing:
         take(each, cached_file(each, season).parent, to / each.file)

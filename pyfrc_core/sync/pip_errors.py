@@ -21,8 +21,7 @@ _MISSING = re.compile(
 )
 _CONFLICT = re.compile(r"The conflict is caused by:\s*\n(?P<reasons>(?:[ \t]+\S.*\n)+)")
 _UNREACHABLE = re.compile(r"Retrying \(Retry\(|Could not fetch URL|Connection to \S+ timed out|ConnectTimeoutError")
-_REASON = re.compile(r"\[Errno -?\d+\] ([^'\")\n]+)|(CERTIFICATE_VERIFY_FAILED)|(timed out)")
-_STATUS = re.compile(r"HTTP error (\d+) while getting (\S+)|(\d{3}) Client Error: .* for url: (\S+)")
+_REASON = re.compile(r"\[Errno -?\d+\] ([^'\")\n]+)|(certificate.verify.failed)|(timed out)", re.IGNORECASE)
 _FULL = "No space left on device"
 _ERROR = re.compile(r"^ERROR: (?!Ignored the following|pip's dependency resolver)(.+)$", re.MULTILINE)
 

@@ -13,6 +13,7 @@ from ..errors import PyfrcError, SettingsError
 from ..file_hash import hash_file
 from ..project import Project
 from ..season import Season
+from ..wording import size_text
 from .addresses import python_url_of
 from .cache import Cache, cache_of
 from .carry import find_in, lock_in, take
@@ -272,6 +273,6 @@ class _Work:
             place = place.parent
         if needed > shutil.disk_usage(place).free:
             raise PyfrcError(
-                f"the disk is too full: {needed / 1e6:.0f} MB are needed in {self._cache.root}",
+                f"the disk is too full: {size_text(needed)} are needed in {self._cache.root}",
                 remedy="Free some space, and run pyfrc sync again.",
             )
