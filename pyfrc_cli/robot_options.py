@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import wraps
+from functools import cache, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -47,17 +47,34 @@ def robot_options(command: Function) -> Function:
         ssh_agent: bool,
         **others: object,
     ) -> Any:
-        from pyfrc_core.deploy.connection import Credentials
+        from pyfrc_core.deploy.login import Credentials
 
         choice = replace(
             choice,
             accepted_key=accept_host_key,
             robot_name=robot_name,
-            credentials=Credentials(identity, ssh_agent),
+            credentials=Credentials(identity, ssh_agent, _password_prompt(bool(others.get("as_json")))),
         )
         return command(choice=choice, **others)
 
     return address_options(_with_options(with_keys, _KEY_OPTIONS))  # type: ignore[no-any-return]
+
+
+def _password_prompt(as_json: bool) -> Callable[[str], str] | None:
+    """Return a function that asks for a robot's password; each robot's once. It is kept nowhere else."""
+    if as_json or not can_ask():
+        return None
+
+    @cache
+    def ask(robot: str) -> str:
+        return str(click.prompt(f"Password of {robot}", hide_input=True))
+
+    return ask
+
+
+def can_ask() -> bool:
+    """Return whether the user can be asked."""
+    return sys.stdin.isatty() and sys.stdout.isatty()
 
 
 def address_options(command: Function) -> Function:
@@ -140,7 +157,7 @@ def user_interface(choice: RobotChoice, as_json: bool = False) -> UserInterface:
     from pyfrc_core.deploy.progress import Questions, UserInterface, progress_for, with_robot_option
 
     ask = None
-    if not as_json and sys.stdin.isatty() and sys.stdout.isatty():
+    if not as_json and can_ask():
         ask = Questions(
             text=lambda question: str(click.prompt(question, prompt_suffix=" ")),
             yes=lambda question: click.confirm(question),

@@ -18,6 +18,11 @@ from .verbosity import verbosity
     help="Where the robot stores its programs and its SSH key. Default: in your user data.",
 )
 @click.option(
+    "--controller",
+    metavar="NAME",
+    help="The controller that it stands for: roborio or systemcore. Default: the season's.",
+)
+@click.option(
     "--port",
     type=click.IntRange(1, 65535),
     metavar="N",
@@ -25,7 +30,9 @@ from .verbosity import verbosity
 )
 @click.option("--fresh", is_flag=True, help="Start without programs. The SSH key stays.")
 @click.argument("command", nargs=-1, metavar="[-- COMMAND...]")
-def command(directory: Path | None, port: int | None, fresh: bool, command: tuple[str, ...]) -> None:
+def command(
+    directory: Path | None, controller: str | None, port: int | None, fresh: bool, command: tuple[str, ...]
+) -> None:
     """Start a virtual robot on this computer: an SSH server, and the program in WPILib's simulation.
 
     Shows how to deploy to it, then its program's output. Ctrl-C stops it. Its programs are kept for the next start.
@@ -41,7 +48,7 @@ def command(directory: Path | None, port: int | None, fresh: bool, command: tupl
     from pyfrc_core.virtual_robot.robot import run_command, show
 
     if command:
-        sys.exit(run_command(command, directory, port, fresh))
+        sys.exit(run_command(command, directory, controller, port, fresh))
     # Read here, since messages also come from other threads.
     quiet = verbosity().quiet
-    show(directory, port, fresh, click.echo, (lambda text: None) if quiet else click.echo)
+    show(directory, controller, port, fresh, click.echo, (lambda text: None) if quiet else click.echo)

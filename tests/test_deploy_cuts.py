@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+from collections import defaultdict
 from collections.abc import Generator
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from roborio.local import ROBOT_PY, Agents, Disk, LocalRobot, directory_in_memor
 from pyfrc_core.deploy.agent_client import AgentClient
 from pyfrc_core.deploy.errors import DeployError
 from pyfrc_core.deploy.manifest import Manifest
+from pyfrc_core.deploy.targets import CONTROLLERS, ControllerKind
 
 Files = dict[str, bytes]
 
@@ -41,18 +43,22 @@ SCENARIOS = ["first", "update", "renamed", "taken over"]
 #: Cut at each step: by day, an update; by night, all.
 SAMPLED_SCENARIOS = sampled(SCENARIOS, "update")
 
+#: By controller and scenario, the disks on which a deploy after a cut was seen to work.
+_DEPLOYED_AGAIN: dict[tuple[str, str], set[Disk]] = defaultdict(set)
 
-#: By scenario, the disks on which a deploy after a cut was seen to work.
-_DEPLOYED_AGAIN: dict[str, set[Disk]] = {name: set() for name in SCENARIOS}
+
+@pytest.fixture(params=CONTROLLERS, ids=lambda each: each.name)
+def controller(request: pytest.FixtureRequest) -> ControllerKind:
+    return request.param
 
 
 class Scenario:
     """A robot as it is before a deploy, the deploy, and the programs that may be there after it."""
 
-    def __init__(self, name: str, directory: Path, agents: Agents) -> None:
+    def __init__(self, name: str, directory: Path, agents: Agents, controller: ControllerKind) -> None:
         self._directory = directory
         self._agents = agents
-        self._before = LocalRobot.new(directory / "before")
+        self._before = LocalRobot.new(directory / "before", controller)
         self.main = "my_robot.py" if name == "renamed" else "robot.py"
         new = RENAMED if name == "renamed" else NEW
         self.project: Manifest = project_of(directory / "new", new)
@@ -60,8 +66,9 @@ class Scenario:
         if name == "taken over":
             for path, content in OLD.items():
                 self._write(path, content)
-            command = "/usr/local/bin/python3 -u -O -m robotpy --main /home/lvuser/py/robot.py run"
-            (self._before.home / "robotCommand").write_text(command)
+            layout = controller.layout
+            command = layout.start.rstrip().replace("{main}", f"{layout.code}/robot.py")
+            (self._before.home / layout.command).write_text(command)
         elif name != "first":
             self._before.deploy(agents, project_of(directory / "old", OLD))
         for path, content in written.items():
@@ -72,7 +79,7 @@ class Scenario:
         whole.deploy(agents, self.project, main=self.main)
         assert whole.startable() == self.new
         self.channel = whole.channel
-        self._deployed_again = _DEPLOYED_AGAIN[name]
+        self._deployed_again = _DEPLOYED_AGAIN[controller.name, name]
 
     def _write(self, path: str, content: bytes) -> None:
         file = self._before.home / "py" / path
@@ -113,9 +120,11 @@ def directory() -> Generator[Path]:
 @pytest.mark.parametrize(
     ("name", "way"), sampled(itertools.product(["first", "update"], ["to", "from"]), ("update", "from"))
 )
-def test_cut_after_every_kth_byte(name: str, way: str, directory: Path, agents: Agents) -> None:
+def test_cut_after_every_kth_byte(
+    name: str, way: str, directory: Path, agents: Agents, controller: ControllerKind
+) -> None:
     """More than 300 places in all, the last of them within the last bytes."""
-    scenario = Scenario(name, directory, agents)
+    scenario = Scenario(name, directory, agents, controller)
     total = scenario.channel.bytes_to_robot if way == "to" else scenario.channel.bytes_from_robot
     places = [total * number // 80 for number in range(80)] + [total - 1]
     assert len(set(places)) == 81
@@ -127,9 +136,9 @@ def test_cut_after_every_kth_byte(name: str, way: str, directory: Path, agents: 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SAMPLED_SCENARIOS)
-def test_agent_killed_at_each_step(name: str, directory: Path, agents: Agents) -> None:
+def test_agent_killed_at_each_step(name: str, directory: Path, agents: Agents, controller: ControllerKind) -> None:
     """Killed: its last step is the one before; what it had written stays."""
-    scenario = Scenario(name, directory, agents)
+    scenario = Scenario(name, directory, agents, controller)
     assert scenario.channel.steps is not None
     outcomes = [scenario.check(last_step=step) for step in range(1, scenario.channel.steps + 1)]
     assert outcomes == sorted(outcomes), "once the new program is in place it stays there"
@@ -137,9 +146,9 @@ def test_agent_killed_at_each_step(name: str, directory: Path, agents: Agents) -
 
 
 @pytest.mark.parametrize("name", SAMPLED_SCENARIOS)
-def test_power_lost_at_each_step(name: str, directory: Path, agents: Agents) -> None:
+def test_power_lost_at_each_step(name: str, directory: Path, agents: Agents, controller: ControllerKind) -> None:
     """As killed; and what was written since the disk was last flushed is lost, while names have changed."""
-    scenario = Scenario(name, directory, agents)
+    scenario = Scenario(name, directory, agents, controller)
     assert scenario.channel.steps is not None
     outcomes = [scenario.check(last_step=step, loses=True) for step in range(1, scenario.channel.steps + 1)]
     assert outcomes == sorted(outcomes)
@@ -157,9 +166,9 @@ def agent(robot: LocalRobot, agents: Agents, **options: int | bool) -> Generator
 
 @pytest.mark.slow
 @pytest.mark.parametrize("loses", sampled([False, True], True))
-def test_rollback_killed_at_each_step(directory: Path, agents: Agents, loses: bool) -> None:
+def test_rollback_killed_at_each_step(directory: Path, agents: Agents, controller: ControllerKind, loses: bool) -> None:
     """From a program with another start command, and with files that it has written."""
-    before = LocalRobot.new(directory / "before")
+    before = LocalRobot.new(directory / "before", controller)
     before.deploy(agents, project_of(directory / "old", OLD))
     before.deploy(agents, project_of(directory / "renamed", RENAMED), main="my_robot.py")
     (before.home / "py/log.txt").write_bytes(b"1\n2\n")
@@ -184,9 +193,9 @@ def test_rollback_killed_at_each_step(directory: Path, agents: Agents, loses: bo
 
 
 @pytest.mark.slow
-def test_undeploy_killed_at_each_step(directory: Path, agents: Agents) -> None:
+def test_undeploy_killed_at_each_step(directory: Path, agents: Agents, controller: ControllerKind) -> None:
     """The robot starts the program, or nothing; and can be deployed to."""
-    before = LocalRobot.new(directory / "before")
+    before = LocalRobot.new(directory / "before", controller)
     project = project_of(directory / "old", OLD)
     before.deploy(agents, project)
     step, ended = 0, False

@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, suppress
+from dataclasses import replace
 
 import pytest
 from ports import refusing_port
@@ -17,6 +18,7 @@ from roborio import PATIENCE
 from pyfrc_core.deploy import discovery
 from pyfrc_core.deploy.discovery import Address, RobotNotFoundError, addresses_of, find_robot, parse_address
 from pyfrc_core.deploy.errors import OnTheFieldError
+from pyfrc_core.deploy.targets import CONTROLLERS, ControllerKind
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.errors import UsageError
 
@@ -70,13 +72,36 @@ def servers() -> Iterator[Servers]:
         yield Servers(stack)
 
 
-def find(servers: Servers, *candidates: Address, station: Address | None = None, **how: bool) -> discovery.FoundRobot:
-    port = (station or servers.nobody()).port
-    return find_robot([(each, "a place") for each in candidates], "team 1234", ROBORIO, station_port=port, **how)
+Station = tuple[ControllerKind, int]
+#: Each Driver Station of each controller: 2027's robots can be driven by two.
+STATIONS = [(each, number) for each in CONTROLLERS for number in range(len(each.stations))]
 
 
-def station_says(servers: Servers, robot: int = 0, on_field: bool = False, **more: object) -> Address:
-    return servers.start(json.dumps({"robotIP": robot, "FMS Connected": on_field, **more}).encode() + b"\n")
+@pytest.fixture(params=STATIONS, ids=lambda station: f"{station[0].name} {station[0].stations[station[1]].port}")
+def kind(request: pytest.FixtureRequest) -> Station:
+    return request.param
+
+
+def find(
+    servers: Servers,
+    *candidates: Address,
+    station: Address | None = None,
+    kind: Station = (ROBORIO, 0),
+    **how: bool,
+) -> discovery.FoundRobot:
+    controller, number = kind
+    stations = [replace(each, port=servers.nobody().port) for each in controller.stations]
+    if station is not None:
+        stations[number] = replace(stations[number], port=station.port)
+    controller = replace(controller, stations=tuple(stations))
+    return find_robot([(each, "a place") for each in candidates], "team 1234", controller, **how)
+
+
+def station_says(servers: Servers, kind: Station, robot: str | None = None, on_field: bool = False) -> Address:
+    said: dict[str, object] = {"robotIp": robot, "fmsControlled": on_field}
+    if kind[0].stations[kind[1]].port == 1742:
+        said = {"robotIP": struct.unpack("!I", socket.inet_aton(robot or "0.0.0.0"))[0], "FMS Connected": on_field}
+    return servers.start(json.dumps(said).encode() + b"\n")
 
 
 def test_the_address_with_an_ssh_server_wins(servers: Servers) -> None:
@@ -120,24 +145,25 @@ def test_failed_attempts_are_shown_as_a_table(servers: Servers) -> None:
     assert [tried.address for tried in caught.value.tried] == [nobody, nowhere, mail, mute]
 
 
-def test_the_driver_stations_robot_is_tried_too(servers: Servers, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_driver_stations_robot_is_tried_too(
+    kind: Station, servers: Servers, monkeypatch: pytest.MonkeyPatch
+) -> None:
     asked = []
 
     def connect_elsewhere(self, address: Address, kind: str) -> None:  # port 22 of it is not ours to listen on
         asked.append((address, kind))
 
-    number = struct.unpack("!I", socket.inet_aton("127.9.8.7"))[0]
     monkeypatch.setattr(discovery._Race, "enter", connect_elsewhere)
     with pytest.raises(RobotNotFoundError):
-        find(servers, station=station_says(servers, number))
+        find(servers, station=station_says(servers, kind, "127.9.8.7"), kind=kind)
     assert asked == [(Address("127.9.8.7"), "the Driver Station's robot")]
 
 
 @pytest.mark.parametrize("how", [{}, {"take_its_robot": False}])
-def test_on_a_competition_field_it_is_refused(how: dict[str, bool], servers: Servers) -> None:
+def test_on_a_competition_field_it_is_refused(how: dict[str, bool], kind: Station, servers: Servers) -> None:
     robot = servers.start(BANNER)
     with pytest.raises(OnTheFieldError, match=r"FMS.*\n.*when your match is over"):
-        find(servers, robot, station=station_says(servers, 0, on_field=True), **how)
+        find(servers, robot, station=station_says(servers, kind, on_field=True), kind=kind, **how)
     assert servers.ends[robot].wait(PATIENCE)
 
 

@@ -28,6 +28,7 @@ ONE_USER = Layout(
     debug_flag="",
     stop=("/usr/bin/service", "stop", "robot"),
     restart=("/usr/bin/service", "restart", "robot"),
+    stopper="service",
     profiles=(),
     texts={},
     other_start="[.]jar",
@@ -71,7 +72,7 @@ def test_the_program_is_stopped_by_the_controllers_command(robot: AgentDisk) -> 
     (missing,) = robot.ask({"op": "restart"})
     assert layout.restart[0] in missing["message"]
     command.parent.mkdir(parents=True)
-    command.write_text(f'#!/bin/sh\necho "$@" >> {calls}\n')
+    command.write_text(f'#!/bin/sh\nprintf "%s\\n" "$*" >> {calls}\n')
     command.chmod(0o755)
     assert robot.ask({"op": "restart"}) == [{"done": {"survived": False}}]
     assert robot.ask({"op": "undeploy"}) == [{"done": {"removed": True}}]

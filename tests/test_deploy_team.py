@@ -7,12 +7,10 @@ import re
 
 import pytest
 
-from pyfrc_core.deploy.progress import Questions
 from pyfrc_core.deploy.targets import MAX_TEAM
-from pyfrc_core.deploy.team import RobotChoice, RobotTarget, choose_target, find_target
+from pyfrc_core.deploy.team import RobotTarget, find_target
 from pyfrc_core.errors import PyfrcError, SettingsError, UsageError
 from pyfrc_core.project import find_project
-from pyfrc_core.season import SEASONS
 
 PREFERENCES = ".wpilib/wpilib_preferences.json"
 
@@ -54,13 +52,6 @@ def test_places_count_in_their_order(first: int, target_of) -> None:
 def test_the_command_counts_most(target_of) -> None:
     target = target_of(PLACES, team=7, ask=never)
     assert (target.team, target.robot, target.project_team) == (7, None, None)
-
-
-def test_no_team_is_asked_for_where_pyfrc_cannot_deploy(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pyfrc_core.deploy.team.CURRENT", SEASONS[2027])
-    project = find_project(make_project({"robot.py": ""}).path)
-    with pytest.raises(UsageError, match="cannot deploy to a SystemCore yet"):
-        choose_target(project, RobotChoice(), Questions(text=never, yes=never))
 
 
 def test_a_robots_address_counts_most_of_all(target_of) -> None:

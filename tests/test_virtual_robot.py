@@ -22,10 +22,12 @@ from skips import require
 from started_commands import StartedCommand
 
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
+from pyfrc_core.deploy.targets import CONTROLLERS
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.doctor.steps import Step
 from pyfrc_core.project import find_project
+from pyfrc_core.season import CURRENT
 from pyfrc_core.virtual_robot.console import ConsoleServer
 from pyfrc_core.virtual_robot.robot import Control
 from pyfrc_core.virtual_robot.supervisor import Supervisor
@@ -130,6 +132,25 @@ def ended(pid: int) -> bool:
         return bool(select.select([descriptor], [], [], SECONDS)[0])
     finally:
         os.close(descriptor)
+
+
+def test_a_project_for_another_controller_is_refused(project: RobotProject, directory: Path) -> None:
+    other = next(each for each in CONTROLLERS if each.name != CURRENT.controller.name)
+    with started(project, directory, "--controller", other.name.upper()) as robot:
+        for command in (["deploy", "--skip-tests"], ["deploy-info"], ["deploy", "--rollback"]):
+            result = project.run(*command, "--robot", robot.address)
+            assert result.code == 1
+            assert result.first_error == (
+                f"{robot.address}: this robot has a {other.name}, but the robots of season {CURRENT.year} have a "
+                f"{CURRENT.controller.name}"
+            )
+        home = directory / "root" / other.layout.home.lstrip("/")
+        assert list(home.iterdir()) == []
+    result = project.run("virtual-robot", "--directory", directory, "--controller", "crio")
+    assert (result.code, result.stderr) == (
+        2,
+        "error: there is no controller 'crio'\n  Write: --controller roborio or systemcore\n",
+    )
 
 
 @pytest.mark.slow

@@ -6,8 +6,8 @@ WPILib: the program is imported, and tested, in other processes (`local_checks`)
 
 - The robot's files are changed by `agent`, which runs on the robot and is always the laptop's version: the robot needs
   nothing but its Python. A cut at any moment leaves a complete program.
-- Only `targets` names a controller (roboRIO): users, paths, commands, addresses. The agent gets its part of that in the
-  first message.
+- Only `targets` names a controller (roboRIO, SystemCore): users, paths, commands, addresses. The agent gets its part of
+  that in the first message.
 - A deploy on a field waits for round trips more than for data. So there is one connection, and one request for
   the whole deploy, which includes the restart.
 - Host keys are pinned in the project (`host_keys`), not in the user's `~/.ssh/known_hosts`: at the end of a USB cable,

@@ -96,7 +96,7 @@ class AgentClient:
     @property
     def stop_command(self) -> str:
         """Return the name of the command that stops the program."""
-        return self._controller.layout.stop[0].rpartition("/")[2]
+        return self._controller.layout.stopper
 
     def close(self) -> None:
         """Close the connection to the agent, which then ends."""

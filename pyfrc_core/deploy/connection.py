@@ -6,90 +6,24 @@ import contextlib
 import logging
 import socket
 import threading
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
 from importlib import import_module
-from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
 
 from .discovery import CONNECT_SECONDS, Address
-from .errors import ConnectionFailedError, DeployError, RefusedError
+from .errors import ConnectionFailedError, DeployError
 from .host_keys import HostKey, Recognized, RobotKeys
+from .login import NONE_OFFERED, STEP_SECONDS, Credentials, LoginRefusedError, log_in, other_controller
 from .targets import AdministratorTask, ControllerKind
 
 if TYPE_CHECKING:
     import paramiko
 
 
-#: SSH servers usually disconnect after more keys.
-_MAX_KEYS = 5
-
-
-@dataclass(frozen=True)
-class Credentials:
-    """The keys to offer.
-
-    :param identity: a file with a private key without a passphrase
-    :param ssh_agent: whether to offer the keys of the SSH agent
-    """
-
-    identity: Path | None = None
-    ssh_agent: bool = False
-
-    def load(self) -> Iterator[paramiko.PKey]:
-        """Yield the keys to offer, the identity first.
-
-        :raises RefusedError: if the file has no readable key
-        """
-        if self.identity is not None:
-            yield _key_in(self.identity)
-        if self.ssh_agent:
-            import paramiko
-
-            agent = paramiko.Agent()
-            try:
-                yield from agent.get_keys()[:_MAX_KEYS]
-            finally:
-                agent.close()
-
-    def offered(self, count: int) -> str:
-        """Return a description of the offered keys, for an error message."""
-        if count == 0:
-            return "there is none in your SSH agent" if self.ssh_agent else "none was offered"
-        sources = [str(self.identity)] if self.identity is not None else []
-        if of_agent := count - len(sources):
-            sources.append(f"{of_agent} of your SSH agent's keys")
-        return " and ".join(sources)
-
-
-NONE_OFFERED = Credentials()
-
-
-def _key_in(file: Path) -> paramiko.PKey:
-    import paramiko
-
-    try:
-        return paramiko.PKey.from_path(file)
-    except (paramiko.PasswordRequiredException, TypeError):  # cryptography raises TypeError for this
-        raise RefusedError(
-            "this key has a passphrase",
-            where=file,
-            remedy="Add it to your SSH agent: ssh-add FILE, and use --ssh-agent.",
-        ) from None
-    except OSError as error:
-        raise RefusedError(f"this key cannot be read: {error.strerror or error}", where=file) from None
-    except Exception as error:  # invalid content causes many kinds of errors
-        raise RefusedError(
-            f"this is not a private key: {error}", where=file, remedy="Use the file without .pub at its end."
-        ) from None
-
-
 #: The first part of a virtual robot's SSH greeting.
 VIRTUAL_ROBOT_GREETING = "SSH-2.0-pyfrc_virtual_robot"
 
-#: Time limit for each step of the login, in seconds. The first key exchange after a robot's start is slow.
-_STEP_SECONDS = 15.0
 #: Seconds between keep-alive packets, and until a silent connection counts as lost.
 _ALIVE_SECONDS = 5
 _LOST_SECONDS = 20
@@ -168,7 +102,7 @@ class Connection:
         import paramiko
 
         try:
-            channel = self._transport.open_session(timeout=_STEP_SECONDS)
+            channel = self._transport.open_session(timeout=STEP_SECONDS)
             channel.settimeout(_LOST_SECONDS)
             channel.exec_command(command)
         except (paramiko.SSHException, OSError, EOFError) as error:
@@ -242,11 +176,13 @@ def connect(
     try:
         key = _greet(transport, keys)
         keys.check(key, accepted_key, robot_name, pin=False)
-        _log_in(transport, address, controller, user or controller.layout.user, credentials)
+        log_in(transport, address, controller, user or controller.layout.user, credentials, key)
         # Pinned only after the login, which fails at an unrelated server with a robot's address.
         recognized = keys.check(key, accepted_key, robot_name, pin)
     except BaseException as error:
         transport.close()
+        if isinstance(error, LoginRefusedError):
+            raise other_controller(address, controller) or error from error
         if isinstance(error, (paramiko.SSHException, OSError, EOFError)):
             raise _not_let_in(address, error) from error
         raise
@@ -267,71 +203,18 @@ def _set_socket_options(connected: socket.socket) -> None:
 
 def _greet(transport: paramiko.Transport, keys: RobotKeys) -> HostKey:
     """Start the SSH session, and return the server's host key."""
-    transport.banner_timeout = transport.handshake_timeout = transport.auth_timeout = _STEP_SECONDS
+    transport.banner_timeout = transport.handshake_timeout = transport.auth_timeout = STEP_SECONDS
     options = transport.get_security_options()
     pinned = {known.key.kind for known in keys.known()}
     # A server with keys of several kinds presents the first kind in this list.
     options.key_types = sorted(options.key_types, key=lambda kind: _kind_of_key(kind) not in pinned)
-    transport.start_client(timeout=_STEP_SECONDS)
+    transport.start_client(timeout=STEP_SECONDS)
     shown = transport.get_remote_server_key()
     return HostKey(shown.get_name(), shown.asbytes())
 
 
 def _kind_of_key(algorithm: str) -> str:
     return "ssh-rsa" if algorithm.startswith("rsa-sha2-") else algorithm
-
-
-def _log_in(
-    transport: paramiko.Transport, address: Address, controller: ControllerKind, user: str, credentials: Credentials
-) -> None:
-    import paramiko
-
-    try:
-        # Robots without passwords accept these users without authentication.
-        transport.auth_none(user)
-        return
-    except paramiko.BadAuthenticationType as refused:
-        allowed = refused.allowed_types
-    if "password" in allowed:
-        with contextlib.suppress(paramiko.AuthenticationException):
-            transport.auth_password(user, controller.password, fallback=False)
-            return
-    offered = 0
-    if "publickey" in allowed:
-        for key in credentials.load():
-            offered += 1
-            with contextlib.suppress(paramiko.AuthenticationException):
-                transport.auth_publickey(user, key)
-                return
-    raise _refused(address, controller, user, allowed, offered, credentials)
-
-
-def _refused(
-    address: Address,
-    controller: ControllerKind,
-    user: str,
-    allowed: list[str],
-    offered: int,
-    credentials: Credentials,
-) -> ConnectionFailedError:
-    if offered:
-        what = f"the robot refuses {user} with {credentials.offered(offered)}"
-        remedy = "Offer the right key: --identity FILE, or ssh-add FILE and --ssh-agent."
-    elif "password" in allowed:
-        if controller.password:
-            what = f"the robot refuses {user} with the password {controller.password}, which is the default on robots"
-            remedy = f"Set the password on the robot: passwd {user}; or image the robot again."
-        else:
-            what = f"the robot refuses {user} with an empty password, which is the default on robots"
-            administrator = controller.layout.administrator
-            remedy = (
-                f"Remove the password, as {administrator} on the robot: passwd -d {user}; or image the robot again."
-            )
-        remedy += " If this is not the robot, give its address with --robot HOST."
-    else:
-        what = f"the robot lets {user} in only with a key, and {credentials.offered(0)}"
-        remedy = "Offer a key of yours: --identity FILE; or ssh-add FILE and --ssh-agent."
-    return ConnectionFailedError(what, where=str(address), remedy=remedy)
 
 
 def _not_let_in(address: Address, error: BaseException) -> ConnectionFailedError:

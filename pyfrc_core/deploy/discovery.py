@@ -17,7 +17,7 @@ from typing import Any
 
 from ..errors import UsageError
 from .errors import DeployError, OnTheFieldError
-from .targets import MAX_TEAM, ControllerKind
+from .targets import MAX_TEAM, ControllerKind, DriverStation
 
 #: Time limit for each address, in seconds: enough for a radio that loses packets.
 CONNECT_SECONDS = 5.0
@@ -143,14 +143,12 @@ def find_robot(
     whose: str,
     controller: ControllerKind,
     *,
-    station_port: int | None = None,
     take_its_robot: bool = True,
 ) -> FoundRobot:
     """Connect to the first robot that responds.
 
     :param candidates: addresses, each with a description
     :param whose: the robot in the error message, such as ``team 1234``
-    :param station_port: the Driver Station's port on this computer; default: the controller's
     :param take_its_robot: also try the robot that the Driver Station is connected to
     :raises OnTheFieldError: if the Driver Station is connected to a competition field
     :raises RobotNotFoundError: with a table of all failed attempts
@@ -158,7 +156,8 @@ def find_robot(
     race = _Race()
     for address, kind in candidates:
         race.enter(address, kind)
-    race.ask_driver_station(controller, station_port or controller.station_port, take_its_robot)
+    for station in controller.stations:
+        race.ask_driver_station(station, take_its_robot)
     found = race.winner()
     if race.on_field:
         if found is not None:
@@ -202,6 +201,14 @@ def _row(tried: FailedAttempt) -> tuple[str, str, str]:
     return str(tried.address), tried.kind, tried.why
 
 
+@dataclass(frozen=True)
+class _StationSaid:
+    """The robot that a Driver Station is connected to, and whether that is on a competition field."""
+
+    robot: str | None
+    on_field: bool
+
+
 @dataclass
 class _Race:
     """All the attempts, each on a thread of its own; this one looks at what comes of them."""
@@ -213,7 +220,7 @@ class _Race:
     _over: threading.Event = field(default_factory=threading.Event)
     #: The addresses with their descriptions, in the order of the candidates.
     _entered: dict[Address, str] = field(default_factory=dict)
-    _station_responded: bool = False
+    _stations_asked: int = 0
 
     def enter(self, address: Address, kind: str) -> None:
         if address in self._entered:
@@ -221,14 +228,15 @@ class _Race:
         self._entered[address] = kind
         self._start(self._resolve, address, kind)
 
-    def ask_driver_station(self, controller: ControllerKind, port: int, take_its_robot: bool) -> None:
-        self._start(self._driver_station, controller, port, take_its_robot)
+    def ask_driver_station(self, station: DriverStation, take_its_robot: bool) -> None:
+        self._stations_asked += 1
+        self._start(self._driver_station, station, take_its_robot)
 
     def winner(self) -> FoundRobot | None:
         found: FoundRobot | None = None
         end = time.monotonic() + RESOLVE_SECONDS + CONNECT_SECONDS
-        # The result of the Driver Station is needed even if a robot responds first.
-        while self._running and (found is None or not self._station_responded):
+        # The results of the Driver Stations are needed even if a robot responds first.
+        while self._running and (found is None or self._stations_asked):
             try:
                 result = self._results.get(timeout=max(end - time.monotonic(), 0))
             except queue.Empty:
@@ -240,6 +248,11 @@ class _Race:
                 result.connected.close()
             elif isinstance(result, FailedAttempt):
                 self.tried.append(result)
+            elif isinstance(result, _StationSaid):
+                self._stations_asked -= 1
+                self.on_field = self.on_field or result.on_field
+                if result.robot is not None:
+                    self.enter(Address(result.robot), "the Driver Station's robot")
             else:
                 for next_step in result:
                     next_step()
@@ -299,20 +312,16 @@ class _Race:
             address, kind, "a server responds, but not an SSH server" if banner else "closed the connection"
         )
 
-    def _driver_station(self, controller: ControllerKind, port: int, take_its_robot: bool) -> Any:
-        following: list[Any] = []
+    def _driver_station(self, station: DriverStation, take_its_robot: bool) -> _StationSaid:
         try:
-            with socket.create_connection(("127.0.0.1", port), timeout=DRIVER_STATION_SECONDS) as station:
-                station.settimeout(CONNECT_SECONDS)
-                with station.makefile("rb") as lines:
+            with socket.create_connection(("127.0.0.1", station.port), timeout=DRIVER_STATION_SECONDS) as connected:
+                connected.settimeout(CONNECT_SECONDS)
+                with connected.makefile("rb") as lines:
                     said = json.loads(lines.readline(10_000))
-            robot, self.on_field = controller.station_robot(said)
-            if take_its_robot and robot is not None:
-                following = [partial(self.enter, Address(robot), "the Driver Station's robot")]
+            robot, on_field = station.robot(said)
         except (OSError, ValueError, AttributeError, RecursionError):
-            pass  # usually, no Driver Station runs on this computer
-        self._station_responded = True
-        return following
+            return _StationSaid(None, False)  # usually, no Driver Station runs on this computer
+        return _StationSaid(robot if take_its_robot else None, on_field)
 
 
 def _why(error: OSError, address: Address) -> str:

@@ -119,7 +119,7 @@ class RobotFacts:
         texts = fields.texts_or_none("texts")
         image = VIRTUAL_IMAGE if fields.flag("virtual") else controller.image_in(texts)
         why = None
-        if image is None:
+        if image is None and controller.has_image_file:
             why = f"there is no {controller.name} image on it"
         elif not fields.flag("home"):
             why = f"there is no {controller.layout.home} on it"

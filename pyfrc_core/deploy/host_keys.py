@@ -74,7 +74,7 @@ class KnownKey:
 
     @property
     def is_of_cable_only(self) -> bool:
-        """Return whether it is pinned only for the USB cable, so that its team is unknown."""
+        """Return whether it is pinned only for an address that all robots have, so that its team is unknown."""
         return len(self.hosts) == 1 and is_shared_host(self.hosts[0])
 
     def __str__(self) -> str:
@@ -238,7 +238,7 @@ class RobotKeys:
         return known.is_for(self._host)
 
     def _is_any_robots(self) -> bool:
-        """Return whether robots of all teams are expected: at the USB cable, outside of projects."""
+        """Return whether robots of all teams are expected: at an address that all have, outside of projects."""
         return self._keys.of_user and self._at_cable and not self._team_is_pinned()
 
     def _is_other_teams(self, key: HostKey) -> bool:
@@ -257,7 +257,7 @@ class RobotKeys:
 
     def _what(self) -> str:
         if self._is_any_robots():
-            return "the USB cable"
+            return f"the {dict(self._controller.addresses(1)).get(self._host, 'address')}"
         return self._host if self._team is None else f"team {self._team}"
 
     def _refusal(self, key: HostKey, known: list[KnownKey]) -> HostKeyError:

@@ -165,7 +165,8 @@ def same_version_on_both(version: str) -> str:
 
 def image_it(controller: ControllerKind) -> str:
     """Return how to install the season's image on a robot."""
-    return f"{controller.image_it} (image {CURRENT.controller.images[-1]}). {_SECTION}"
+    images = CURRENT.controller.images
+    return f"{controller.image_it}{f' (image {images[-1]})' if images else ''}. {_SECTION}"
 
 
 def image_problem(image: str | None, wpilib: str, controller: ControllerKind) -> str | None:

@@ -15,8 +15,8 @@ from ..errors import SettingsError, UsageError
 from ..project import Project
 from ..season import CURRENT
 from ..text_files import write_whole
-from .connection import NONE_OFFERED, Credentials
 from .discovery import parse_address
+from .login import NONE_OFFERED, Credentials
 from .progress import Questions
 from .targets import MAX_TEAM, ControllerKind, controller_of, team_of_host
 
@@ -71,10 +71,8 @@ def choose_target(project: Project | None, choice: RobotChoice, ask: Questions |
 
     :param project: None outside of a project, if the options name a robot
     :param ask: None if the user cannot be asked
-    :raises UsageError: if no robot is named and the user cannot be asked, a team number is invalid, or pyfrc cannot
-        deploy to the season's controller
+    :raises UsageError: if no robot is named and the user cannot be asked, or a team number is invalid
     """
-    controller_of(CURRENT)  # refuses a controller that pyfrc cannot deploy to, before any question
     target = find_target(project, robot=choice.robot, team=choice.team, ask=ask.text if ask else None)
     if target.robot is not None and parse_address(target.robot).is_name and not choice.resolve:
         raise UsageError(

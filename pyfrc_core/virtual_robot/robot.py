@@ -21,7 +21,7 @@ from types import TracebackType
 from typing import Any
 
 from ..deploy.agent.virtual import VARIABLE, VirtualRobotClient
-from ..deploy.targets import controller_of
+from ..deploy.targets import CONTROLLERS, ControllerKind, controller_of
 from ..errors import PyfrcError, UsageError
 from ..interruption import ending_like_ctrl_c
 from ..season import CURRENT
@@ -98,6 +98,7 @@ class VirtualRobot:
     """A virtual robot that runs until the end of the ``with`` block.
 
     :param directory: where it stores its files
+    :param controller: the controller that it stands for; default: the season's
     :param port:      the port of its SSH server; default: the port of the last start, else the first free one from
         `FIRST_PORT` on
     :param fresh:     start without programs
@@ -110,6 +111,7 @@ class VirtualRobot:
         self,
         directory: Path,
         *,
+        controller: ControllerKind | None = None,
         port: int | None = None,
         fresh: bool = False,
         on_line: Callable[[str], object] = lambda line: None,
@@ -118,7 +120,8 @@ class VirtualRobot:
         from .ssh_server import SshServer
 
         with ExitStack() as stack:
-            layout = controller_of(CURRENT).layout
+            controller = controller or controller_of(CURRENT)
+            layout = controller.layout
             disk = stack.enter_context(RobotDisk(directory, layout, fresh))
             listening = stack.enter_context(_listener(port, disk.last_port()))
             self.directory = directory
@@ -135,7 +138,7 @@ class VirtualRobot:
             stack.callback(control.close)
             client = VirtualRobotClient(layout, str(disk.paths.root), control.port, control.key, console.port)
             environment = {**os.environ, VARIABLE: client.to_text()}
-            server = SshServer(listening, disk.key, console.port, disk.paths, environment)
+            server = SshServer(listening, disk.key, console.port, disk.paths, controller.password, environment)
             supervisor.start()
             stack.callback(supervisor.close)
             stack.callback(server.close)
@@ -179,6 +182,7 @@ _CHECK_SECONDS = 0.5
 
 def show(
     directory: Path | None,
+    controller: str | None,
     port: int | None,
     fresh: bool,
     on_line: Callable[[str], object],
@@ -186,16 +190,22 @@ def show(
 ) -> None:
     """Run a virtual robot until Ctrl-C or SIGTERM.
 
+    :param controller: the name of the controller that it stands for; default: the season's
     :param on_line: called with each line of its program's output
     :param on_news: called with other messages
     :raises PyfrcError: if it cannot be started
     """
-    directory = (directory or default_directory()).absolute()
+    directory, kind = (directory or default_directory()).absolute(), _controller(controller)
     with (
         suppress(KeyboardInterrupt),
         ending_like_ctrl_c(),
         VirtualRobot(
-            directory, port=port, fresh=fresh, on_line=on_line, on_end=lambda text: on_news(f"-- {text}")
+            directory,
+            controller=kind,
+            port=port,
+            fresh=fresh,
+            on_line=on_line,
+            on_end=lambda text: on_news(f"-- {text}"),
         ) as robot,
     ):
         on_news(f"A virtual robot is running at {robot.address}; its files are in {directory}")
@@ -205,7 +215,23 @@ def show(
             threading.Event().wait(_CHECK_SECONDS)
 
 
-def run_command(command: Sequence[str], directory: Path | None, port: int | None, fresh: bool) -> int:
+def _controller(name: str | None) -> ControllerKind | None:
+    """Return the controller with this name, in upper or lower case.
+
+    :raises UsageError: if there is none
+    """
+    if name is None:
+        return None
+    found = next((each for each in CONTROLLERS if each.name.lower() == name.lower()), None)
+    if found is None:
+        names = " or ".join(each.name.lower() for each in CONTROLLERS)
+        raise UsageError(f"there is no controller {name!r}", remedy=f"Write: --controller {names}")
+    return found
+
+
+def run_command(
+    command: Sequence[str], directory: Path | None, controller: str | None, port: int | None, fresh: bool
+) -> int:
     """Run a command with a virtual robot's address as last argument, and stop the robot when it has ended.
 
     :return: the command's exit code; 128 + N if signal N has ended it, as in a shell
@@ -214,7 +240,7 @@ def run_command(command: Sequence[str], directory: Path | None, port: int | None
     program = shutil.which(command[0])
     if program is None:
         raise UsageError(f"there is no command {command[0]!r}", remedy="Write: pyfrc virtual-robot -- COMMAND")
-    directory = (directory or default_directory()).absolute()
-    with ending_like_ctrl_c(), VirtualRobot(directory, port=port, fresh=fresh) as robot:
+    directory, kind = (directory or default_directory()).absolute(), _controller(controller)
+    with ending_like_ctrl_c(), VirtualRobot(directory, controller=kind, port=port, fresh=fresh) as robot:
         code = subprocess.run([program, *command[1:], robot.address], check=False).returncode
     return code if code >= 0 else 128 - code

@@ -71,11 +71,18 @@ class SshServer:
     :param key:         the robot's host key
     :param console:     the port of its console, which is part of the server's greeting
     :param paths:       its files; its users log in, and commands begin in the home directory
+    :param password:    of its users; empty: they log in without one
     :param environment: the environment variables of commands
     """
 
     def __init__(
-        self, listening: socket.socket, key: PKey, console: int, paths: RobotPaths, environment: Mapping[str, str]
+        self,
+        listening: socket.socket,
+        key: PKey,
+        console: int,
+        paths: RobotPaths,
+        password: str,
+        environment: Mapping[str, str],
     ) -> None:
         # Clients that only search for a robot disconnect immediately, which is normal.
         logging.getLogger("paramiko").setLevel(logging.CRITICAL)
@@ -84,6 +91,7 @@ class SshServer:
         self._greeting = f"{VIRTUAL_ROBOT_GREETING} console={console}"
         self._home = paths.home
         self._users = (paths.layout.user, paths.layout.administrator)
+        self._password = password
         self._environment = environment
         self._closed = threading.Event()
         self._lock = threading.Lock()
@@ -124,7 +132,7 @@ class SshServer:
         with self._lock:
             self._transports = {each for each in self._transports if each.is_alive()} | {transport}
         try:
-            transport.start_server(server=_Session(self._run, self._users))
+            transport.start_server(server=_Session(self._run, self._users, self._password))
         except (paramiko.SSHException, OSError, EOFError):
             transport.close()
 
@@ -189,20 +197,22 @@ class _Session(paramiko.ServerInterface):
 
     :param run: runs a command with a channel as its input and output
     :param users: the users who may log in
+    :param password: their password; empty: they log in without one
     """
 
-    def __init__(self, run: Callable[[Channel, str], None], users: Sequence[str]) -> None:
+    def __init__(self, run: Callable[[Channel, str], None], users: Sequence[str], password: str) -> None:
         self._run = run
         self._users = users
+        self._password = password
 
     def get_allowed_auths(self, username: str) -> str:
-        return "none,password"
+        return "password" if self._password else "none,password"
 
     def check_auth_none(self, username: str) -> int:
-        return AUTH_SUCCESSFUL if username in self._users else AUTH_FAILED
+        return self.check_auth_password(username, "")
 
     def check_auth_password(self, username: str, password: str) -> int:
-        return AUTH_SUCCESSFUL if username in self._users and not password else AUTH_FAILED
+        return AUTH_SUCCESSFUL if username in self._users and password == self._password else AUTH_FAILED
 
     def check_channel_request(self, kind: str, chanid: int) -> int:
         return OPEN_SUCCEEDED if kind == "session" else OPEN_FAILED_ADMINISTRATIVELY_PROHIBITED

@@ -24,7 +24,7 @@ from pyfrc_core.virtual_robot.console import text_frame
 
 ROOT = sys.argv[1]
 HAS_DRIVER_STATION = sys.argv[2] == "driver-station"  # connected all the time
-DRIVER_STATION, SSH, *CONSOLES = (socket.socket(fileno=int(number)) for number in sys.argv[3:])
+SSH, DRIVER_STATION, *CONSOLES = (socket.socket(fileno=int(number)) for number in sys.argv[3:])
 CHROOT = shutil.which("chroot", path="/usr/sbin:/usr/bin:/sbin:/bin") or "chroot"
 LVUSER = ("--userspec=500:500", "--groups=")
 # What the robot's own start script does: one line, run as lvuser.

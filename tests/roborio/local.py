@@ -19,9 +19,11 @@ from importlib.metadata import distribution
 from pathlib import Path
 from types import TracebackType
 
+from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest
 from pyfrc_core.deploy.agent_stream import agent_command, agent_package
 from pyfrc_core.deploy.manifest import Manifest, build_manifest
+from pyfrc_core.deploy.targets import ControllerKind
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 #: Names with their kind, permissions and content, and which are hard links to one file.
@@ -131,32 +133,36 @@ class LocalRobot:
     """A robot's disk in a directory, and agents that work on it."""
 
     address = "local"
-    controller = ROBORIO
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: Path, controller: ControllerKind = ROBORIO) -> None:
         self.root = root
-        self.home = root / "home/lvuser"
+        self.controller = controller
+        self.paths = RobotPaths(controller.layout, str(root))
+        self.home = self.paths.home
         self._agents: Agents | None = None
         self._options: dict[str, int | bool | None] = {}
 
     @classmethod
-    def new(cls, root: Path) -> LocalRobot:
+    def new(cls, root: Path, controller: ControllerKind = ROBORIO) -> LocalRobot:
         """A robot on which nothing was ever deployed."""
-        robot = cls(root)
-        for name in ("home/lvuser", "tmp", "etc/natinst/share", "usr/local/frc/bin", "etc/profile.d"):
-            (root / name).mkdir(parents=True)
-        (root / "etc/natinst/share/scs_imagemetadata.ini").write_text('IMAGEVERSION = "FRC_roboRIO_2026_v1.2"\n')
-        (root / "etc/profile.d/natinst-path.sh").write_text("")
-        script = root / "usr/local/frc/bin/frcKillRobot.sh"
-        script.write_text("#!/bin/sh\n")
-        script.chmod(0o755)
+        robot, layout = cls(root, controller), controller.layout
+        stop = robot.paths.of(layout.restart[0])
+        for directory in (robot.home, root / "tmp", stop.parent):
+            directory.mkdir(parents=True)
+        for file in (*layout.texts.values(), *layout.profiles):
+            robot.paths.of(file).parent.mkdir(parents=True, exist_ok=True)
+            robot.paths.of(file).write_text("")
+        if controller.has_image_file:
+            robot.paths.of(layout.texts["image"]).write_text('IMAGEVERSION = "FRC_roboRIO_2026_v1.2"\n')
+        stop.write_text("#!/bin/sh\n")
+        stop.chmod(0o755)
         return robot
 
     def copy(self, root: Path) -> LocalRobot:
         """Another robot with the same on its disk, in the place of what is there."""
         shutil.rmtree(root, ignore_errors=True)
         shutil.copytree(self.root, root, symlinks=True)
-        return LocalRobot(root)
+        return LocalRobot(root, self.controller)
 
     def disk(self) -> Disk:
         """What is on its disk; equal where the agent finds the same, whenever it was written."""
@@ -185,7 +191,7 @@ class LocalRobot:
 
     def open(self, command: str) -> LocalChannel:
         """What a connection does: run the agent."""
-        assert command == agent_command(ROBORIO.python)
+        assert command == agent_command(self.controller.python)
         assert self._agents is not None
         self.channel = self._agents.channel(self.root, **self._options)
         return self.channel
@@ -209,12 +215,11 @@ class LocalRobot:
 
     def startable(self) -> dict[str, bytes] | None:
         """The files of the program that would be started now, by their names; none: there is no start command."""
-        debug = (self.root / "tmp/frcdebug").exists()
-        command = self.home / ("robotDebugCommand" if debug else "robotCommand")
-        if not command.exists():
+        command = self.paths.start_command()
+        if not command:
             return None
-        match = re.search(r"--main (/home/lvuser/\S+) (?:-v )?run\n?$", command.read_text())
-        assert match is not None, f"this is no start command: {command.read_text()!r}"
+        match = re.search(rf"--main ({self.controller.layout.home}/\S+) (?:-v )?run\n?$", command)
+        assert match is not None, f"this is no start command: {command!r}"
         main = self.root / match[1].lstrip("/")
         assert main.is_file(), f"the start command names a file that is not there: {match[1]}"
         directory = main.parent  # unresolved: seen from outside a look-alike, its root is no plain path

@@ -7,6 +7,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING
 
 from pyfrc_core.deploy.errors import ConnectionFailedError
+from pyfrc_core.deploy.targets import ControllerKind
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 from .machine import PATIENCE
@@ -18,16 +19,16 @@ if TYPE_CHECKING:
 class SshConnection:
     """A connection until the end of the ``with`` block. Host keys are not checked."""
 
-    def __init__(self, host: str, port: int, user: str = "lvuser") -> None:
+    def __init__(self, host: str, port: int, user: str | None = None, controller: ControllerKind = ROBORIO) -> None:
         import paramiko
 
         self.address = f"{host}:{port}"
-        self.controller = ROBORIO
+        self.controller = controller
         self.transport: paramiko.Transport | None = None
         try:
             self.transport = paramiko.Transport(socket.create_connection((host, port), timeout=PATIENCE))
             self.transport.banner_timeout = PATIENCE
-            self.transport.connect(username=user, password="")
+            self.transport.connect(username=user or controller.layout.user, password=controller.password)
         except (OSError, EOFError, paramiko.SSHException) as error:
             self.close()
             raise ConnectionFailedError(f"no connection: {error}") from error

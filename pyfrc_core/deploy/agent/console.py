@@ -1,14 +1,18 @@
-"""A client of the robot's console service, which sends the output of the robot program."""
+"""The output of the robot program, from the robot's console service or from a command such as ``journalctl``."""
 
 from __future__ import annotations
 
+import os
 import select
 import struct
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING, Union
 
 if TYPE_CHECKING:
     import socket
+    import subprocess
 
 #: The console's ports: for any client, and for the Driver Station.
 PORTS = (1741, 1740)
@@ -74,6 +78,61 @@ class ConsoleClient:
         if not chunk:
             self.disconnect()
         return "".join(map(console_text, messages))
+
+
+class OutputCommand:
+    """A command that prints the program's output, if it can be run. `ConsoleClient` has the same methods.
+
+    :param command: prints the output from its start on, until it is killed
+    """
+
+    def __init__(self, command: Sequence[str]) -> None:
+        self._command = command
+        self._process: subprocess.Popen[bytes] | None = None
+        self._unread = b""
+
+    def connect(self) -> None:
+        """Start the command, to receive the output from now on."""
+        import subprocess
+
+        self.disconnect()
+        with suppress(OSError):
+            self._process = subprocess.Popen(
+                self._command,
+                bufsize=0,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+            )
+
+    def disconnect(self) -> None:
+        """Stop the command."""
+        if self._process is not None:
+            assert self._process.stdout is not None
+            self._process.kill()
+            self._process.wait()
+            self._process.stdout.close()
+        self._process, self._unread = None, b""
+
+    def receive(self, seconds: float) -> str:
+        """Wait up to `seconds` for output, and return the complete lines that have arrived."""
+        if self._process is None:
+            time.sleep(seconds)
+            return ""
+        assert self._process.stdout is not None
+        pipe = self._process.stdout.fileno()
+        if not select.select([pipe], [], [], seconds)[0]:
+            return ""
+        time.sleep(min(_BATCH_SECONDS, seconds))
+        chunk = os.read(pipe, 1 << 16)
+        if not chunk:
+            self.disconnect()
+            return ""
+        lines, newline, self._unread = (self._unread + chunk).rpartition(b"\n")
+        return (lines + newline).decode(errors="replace")
+
+
+Console = Union[ConsoleClient, OutputCommand]  # noqa: UP007 - the agent runs on Python 3.9, too
 
 
 def split_frames(received: bytes) -> tuple[list[bytes], bytes]:

@@ -14,7 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Union
 
-from .console import PORTS
+from .console import PORTS, Console, ConsoleClient, OutputCommand
 from .disk import text_of
 from .release_record import Boot
 from .robot_paths import Refusal, RobotPaths
@@ -38,7 +38,6 @@ class RealRobot:
     """
 
     is_virtual = False
-    console_ports = PORTS
 
     def __init__(self, paths: RobotPaths) -> None:
         self.paths = paths
@@ -46,6 +45,11 @@ class RealRobot:
         self._code = (f"{layout.code}/".encode(), f"{paths.releases_on_robot}/".encode())
         self._home = f"{layout.home}/".encode()
         self._native_program = self._home + b"frcUserProgram"  # written in C++
+
+    def console(self) -> Console:
+        """Return a client for the program's output."""
+        output = self.paths.layout.output
+        return OutputCommand(output) if output else ConsoleClient(PORTS)
 
     def can_restart(self) -> bool:
         """Return whether the program can be stopped and started."""
@@ -107,11 +111,11 @@ class RealRobot:
     def stop(self, start: bool, meanwhile: Callable[[], None] = lambda: None) -> bool:
         """Stop the program, and start it again if wanted. Return when all old processes have ended.
 
-        The exit code of the command is ignored, since it may fail if no program runs.
+        The exit code of the command is ignored where it fails if no program runs.
 
         :param meanwhile: called repeatedly until the old processes have ended
         :return: whether the program survived the command and was ended by a signal
-        :raises Refusal: if the command is missing or cannot be executed, or the program does not end
+        :raises Refusal: if the command is missing, cannot be executed or fails, or the program does not end
         """
         before = self.processes()
         command = self.paths.layout.restart if start else self.paths.layout.stop
@@ -126,7 +130,7 @@ class RealRobot:
         if survivors:
             raise Refusal(
                 "restart",
-                f"{command[0]} has not stopped the old program: {printed or 'it printed nothing'}",
+                f"{self.paths.layout.stopper} has not stopped the old program: {printed or 'it printed nothing'}",
                 _POWER_CYCLE,
             )
         return survived
@@ -160,14 +164,17 @@ class RealRobot:
                 with suppress(subprocess.TimeoutExpired):
                     run.wait(_POLL_SECONDS)
             if run.poll() is None:
-                run.kill()
-                run.wait()
+                with suppress(PermissionError):  # a command of the administrator goes on
+                    run.kill()
+                    run.wait()
                 return f"it did not end within {_COMMAND_SECONDS:g} s"
             output.seek(0)
             printed = output.read(4096).decode(errors="replace").strip()
+        reason = printed.rpartition("\n")[2]  # bash prints it twice
         if run.returncode in _NOT_EXECUTED:
-            reason = printed.rpartition("\n")[2]  # bash prints it twice
             raise Refusal("restart", f"{command[0]} cannot be executed: {reason}", _POWER_CYCLE)
+        if run.returncode and self.paths.layout.can_fail:
+            raise Refusal("restart", f"{self.paths.layout.stopper} has failed: {reason}", _POWER_CYCLE)
         return printed
 
     def _wait_for_end(self, before: set[int], meanwhile: Callable[[], None]) -> set[int]:

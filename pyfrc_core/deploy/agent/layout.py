@@ -22,11 +22,16 @@ class Layout(NamedTuple):
     :param debug_flag:    empty without `debug_command`
     :param stop:          the path and the options of the command that stops the program
     :param restart:       of the command that stops it and starts the current one
+    :param stopper:       what messages call these commands
     :param profiles:      files that a shell sources before these commands
     :param texts:         files whose content the laptop needs, by names
     :param other_start:   a regular expression that finds start commands of programs in other languages, for Python and
         ``grep -E``
     :param other_files:   patterns of their files; one that ends with a slash is a directory, if it has files
+    :param command_mode:  the permissions of the files with start commands
+    :param can_fail:      whether the exit code of `stop` and `restart` says that they have failed
+    :param output:        a command that prints what the program prints from then on; without one, the console service
+        on the robot sends that
     """
 
     name: str
@@ -42,10 +47,14 @@ class Layout(NamedTuple):
     debug_flag: str
     stop: Sequence[str]
     restart: Sequence[str]
+    stopper: str
     profiles: Sequence[str]
     texts: Mapping[str, str]
     other_start: str
     other_files: Sequence[str]
+    command_mode: int = 0o644
+    can_fail: bool = False
+    output: Sequence[str] = ()
 
     @property
     def command_files(self) -> list[str]:

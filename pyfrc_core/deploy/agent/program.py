@@ -8,7 +8,6 @@ from contextlib import suppress
 from functools import cache, partial
 from pathlib import Path
 
-from .console import ConsoleClient
 from .disk import files_below
 from .host import Host, cpu_seconds
 from .start_monitor import STARTING, StartMonitor
@@ -41,7 +40,7 @@ class Program:
 
     def __init__(self, host: Host) -> None:
         self._host = host
-        self._console = ConsoleClient(host.console_ports)
+        self._console = host.console()
         self._monitor: StartMonitor | None = None
         #: When all processes are listed next.
         self._next_listing = 0.0

@@ -201,10 +201,14 @@ class Releases:
         if detour:
             self._write_commands(commands)
 
+    def write_command(self, name: str, text: str) -> None:
+        """Write a file with a start command."""
+        write_whole(self.paths.home / name, text, self.paths.layout.command_mode)
+
     def _write_commands(self, commands: dict[str, str | None]) -> None:
         for name, text in commands.items():
             if text is not None:
-                write_whole(self.paths.home / name, text)
+                self.write_command(name, text)
         self.flush(self.paths.home)
         for name, text in commands.items():
             if text is None:

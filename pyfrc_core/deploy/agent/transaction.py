@@ -287,7 +287,7 @@ class Deploy:
             record.update(deploy=self._about, main=self._main, debug=self._debug, commands=self._commands)
             self._releases.write_record(current, record)
         for name in self._paths.layout.command_files:
-            write_whole(self._paths.home / name, self._commands[name] or "")
+            self._releases.write_command(name, self._commands[name] or "")
         self._releases.flush(self._paths.home)
         self._releases.set_debug(self._debug)
         return {"release": current, "previous": current, "taken": None, "unchanged": not wanted}

@@ -11,6 +11,7 @@ import json
 import os
 from collections.abc import Callable
 
+from .console import Console, ConsoleClient
 from .layout import Layout
 from .release_record import Boot
 from .robot_paths import RobotPaths
@@ -34,7 +35,7 @@ class VirtualRobotClient:
         self.paths = RobotPaths(layout, root)
         self.control = control
         self.key = key
-        self.console = console
+        self.console_port = console
 
     @classmethod
     def from_environment(cls, layout: Layout) -> VirtualRobotClient | None:
@@ -45,11 +46,11 @@ class VirtualRobotClient:
     def to_text(self) -> str:
         """Return the value of the environment variable."""
         root = str(self.paths.root)
-        return json.dumps({"root": root, "control": self.control, "key": self.key, "console": self.console})
+        return json.dumps({"root": root, "control": self.control, "key": self.key, "console": self.console_port})
 
-    @property
-    def console_ports(self) -> tuple[int, ...]:
-        return (self.console,)
+    def console(self) -> Console:
+        """Return a client for the program's output."""
+        return ConsoleClient((self.console_port,))
 
     def can_restart(self) -> bool:
         """Return whether the program can be stopped and started."""

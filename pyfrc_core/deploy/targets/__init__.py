@@ -6,40 +6,31 @@ No other part of a deploy names a controller. To add one, write a module such as
 
 from __future__ import annotations
 
-from ...errors import UsageError
 from ...season import Season
-from .controller import AdministratorTask, ControllerKind
+from .controller import AdministratorTask, ControllerKind, DriverStation
 from .roborio import ROBORIO
+from .systemcore import SYSTEMCORE
 
 __all__ = [
     "CONTROLLERS",
     "MAX_TEAM",
     "AdministratorTask",
     "ControllerKind",
+    "DriverStation",
     "controller_named",
     "controller_of",
     "is_shared_host",
     "team_of_host",
 ]
 
-CONTROLLERS = (ROBORIO,)
+CONTROLLERS = (ROBORIO, SYSTEMCORE)
 #: The highest team number that an address 10.TE.AM.2 can contain.
 MAX_TEAM = 25_599
 
 
 def controller_of(season: Season) -> ControllerKind:
-    """Return the controller of a season's robots.
-
-    :raises UsageError: if pyfrc cannot deploy to it yet
-    """
-    name = season.controller.name
-    if name not in {each.name for each in CONTROLLERS}:
-        raise UsageError(
-            f"pyfrc cannot deploy to a {name} yet",
-            remedy=f"To deploy: pip install {season.requirement_of('robotpy')}, then: pyfrc test, and: "
-            "python -m robotpy deploy --skip-tests",
-        )
-    return controller_named(name)
+    """Return the controller of a season's robots."""
+    return controller_named(season.controller.name)
 
 
 def controller_named(name: str) -> ControllerKind:
@@ -54,5 +45,5 @@ def team_of_host(host: str) -> int | None:
 
 
 def is_shared_host(host: str) -> bool:
-    """Return whether a host is that of any team's robot at this computer's USB cable."""
+    """Return whether any team's robot may have this host, as at this computer's USB cable."""
     return any(host in each.shared_hosts for each in CONTROLLERS)

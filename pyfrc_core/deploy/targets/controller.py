@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from shlex import join, quote
 from typing import Any
 
 from ..agent.layout import Layout
@@ -27,30 +29,42 @@ class AdministratorTask:
 
 
 @dataclass(frozen=True)
+class DriverStation:
+    """A program on this computer from which robots are driven.
+
+    :param port:  its port on this computer, at which it sends a line of JSON
+    :param robot: returns from that JSON the host of the connected robot (None: not connected), and whether that is on
+        a competition field
+    """
+
+    port: int
+    robot: Callable[[Mapping[str, Any]], tuple[str | None, bool]]
+
+
+@dataclass(frozen=True)
 class ControllerKind:
     """A kind of computer on robots.
 
     :param layout:           its files and commands, which the agent needs
     :param python:           the path of its Python
-    :param password:         of both users
-    :param shared_hosts:     addresses that all teams' robots have, as on a USB cable
+    :param password:         of its users, unless the team has changed it
+    :param shared_hosts:     hosts that all teams' robots have, as on a USB cable
     :param machine:          the beginning of its processor architecture, as `platform.machine` returns it
     :param marker_machine:   what markers of requirements call that architecture
     :param image_it:         how to install its image
     :param leftovers:        what `remove_leftovers` removes
     :param remove_leftovers: a shell script for the administrator, which removes programs in other languages and prints
         a line for each removed path or package
-    :param save_memory:      frees memory that the image wastes
-    :param station_port:     the port on this computer at which its Driver Station sends a line of JSON
-    :param station_robot:    returns from that JSON the host of the connected robot (None: not connected), and whether
-        that is on a competition field
+    :param stations:         the Driver Stations for it
     :param addresses:        returns the hosts of a team's robot, each with a description
     :param team_of_host:     returns the team to which a host belongs, or None
-    :param image_in:         returns the version of its image, or None if it is another computer
+    :param has_image_file:   whether a file names the version of its image; then a computer without one is another
+    :param image_in:         returns the version of its image, or None
     :param image_problem:    returns why an image (the first parameter, None if unknown) is none of the season's images
         (the third) for this version of `wpilib` (the second), or None if it is one
+    :param save_memory:      frees memory that the image wastes; None: it wastes none
     :param wastes_memory:    returns whether `save_memory` is needed
-    :param repair_stop:      returns the task that replaces a stop command which did not end the program
+    :param repair_stop:      returns the task that replaces a stop command which did not end the program, if any
     """
 
     layout: Layout
@@ -62,17 +76,57 @@ class ControllerKind:
     image_it: str
     leftovers: str
     remove_leftovers: str
-    save_memory: AdministratorTask
-    station_port: int
-    station_robot: Callable[[Mapping[str, Any]], tuple[str | None, bool]]
+    stations: tuple[DriverStation, ...]
     addresses: Callable[[int], list[tuple[str, str]]]
     team_of_host: Callable[[str], int | None]
-    image_in: Callable[[Texts], str | None]
-    image_problem: Callable[[str | None, str, Sequence[str]], str | None]
-    wastes_memory: Callable[[Texts], bool]
-    repair_stop: Callable[[], AdministratorTask]
+    has_image_file: bool = False
+    image_in: Callable[[Texts], str | None] = lambda texts: None
+    image_problem: Callable[[str | None, str, Sequence[str]], str | None] = lambda image, wpilib, accepted: None
+    save_memory: AdministratorTask | None = None
+    wastes_memory: Callable[[Texts], bool] = lambda texts: False
+    repair_stop: Callable[[], AdministratorTask | None] = lambda: None
 
     @property
     def name(self) -> str:
         """Its product name."""
         return self.layout.name
+
+
+def team_of_address(host: str) -> int | None:
+    """Return the team of an address 10.TE.AM.2, or None."""
+    numbers = re.fullmatch(r"10\.([0-9]{1,3})\.([0-9]{1,2})\.2", host)
+    return int(numbers[1]) * 100 + int(numbers[2]) if numbers else None
+
+
+def address_of_team(team: int) -> str:
+    """Return the address 10.TE.AM.2 of a team's robot."""
+    return f"10.{team // 100}.{team % 100}.2"
+
+
+def removal_script(layout: Layout, paths: str) -> str:
+    """Return a shell script that removes programs in other languages, and prints a line for each removed path.
+
+    A program in Python keeps running, with its start command.
+
+    :param paths: patterns of paths for the shell
+    """
+    commands = " ".join(f"{layout.home}/{name}" for name in layout.command_files)
+    return f"""
+for profile in {" ".join(layout.profiles)}; do
+    [ ! -r $profile ] || . $profile
+done
+for command in {commands}; do
+    if grep -qE {quote(layout.other_start)} $command 2> /dev/null; then
+        rm -f $command || exit 1
+        echo "$command"
+        stop=yes
+    fi
+done
+[ -z "$stop" ] || {join(layout.stop)} > /dev/null 2>&1
+for path in {paths}; do
+    if [ -e "$path" ]; then
+        rm -rf "$path" || exit 1
+        echo "$path"
+    fi
+done
+"""

@@ -10,7 +10,15 @@ from shlex import quote
 from typing import Any
 
 from ..agent.layout import Layout
-from .controller import AdministratorTask, ControllerKind, Texts
+from .controller import (
+    AdministratorTask,
+    ControllerKind,
+    DriverStation,
+    Texts,
+    address_of_team,
+    removal_script,
+    team_of_address,
+)
 
 _HOME = "/home/lvuser"
 _PYTHON = "/usr/local/bin/python3"
@@ -38,6 +46,7 @@ _LAYOUT = Layout(
     debug_flag="/tmp/frcdebug",
     stop=(_KILL_SCRIPT, "-t"),
     restart=(_KILL_SCRIPT, "-t", "-r"),
+    stopper="frcKillRobot.sh",
     profiles=_PROFILES,
     texts={"image": "/etc/natinst/share/scs_imagemetadata.ini", "memory": _MEMORY_SETTINGS},
     other_start="[.]jar|frcUserProgram",
@@ -52,7 +61,7 @@ def _addresses(team: int) -> list[tuple[str, str]]:
     """
     name = f"roboRIO-{team}-FRC"
     return [
-        (f"10.{team // 100}.{team % 100}.2", "radio or Ethernet"),
+        (address_of_team(team), "radio or Ethernet"),
         (f"{name}.local", "name, by multicast"),
         (_USB_CABLE, "USB cable"),
         (name, "name"),
@@ -64,9 +73,7 @@ def _addresses(team: int) -> list[tuple[str, str]]:
 def _team_of_host(host: str) -> int | None:
     if named := re.fullmatch(r"roborio-([0-9]{1,5})-frc(?:\.local|\.lan|\.frc-field\.local)?", host, re.IGNORECASE):
         return int(named[1])
-    if numbers := re.fullmatch(r"10\.([0-9]{1,3})\.([0-9]{1,2})\.2", host):
-        return int(numbers[1]) * 100 + int(numbers[2])
-    return None
+    return team_of_address(host)
 
 
 def _station_robot(message: Mapping[str, Any]) -> tuple[str | None, bool]:
@@ -74,6 +81,10 @@ def _station_robot(message: Mapping[str, Any]) -> tuple[str | None, bool]:
     is_host = type(number) is int and 0 < number < 1 << 32
     host = str(ipaddress.IPv4Address(number)) if is_host else None
     return host, message.get("FMS Connected") is True
+
+
+#: NI's Driver Station, for Windows.
+NI_STATION = DriverStation(1742, _station_robot)
 
 
 def _image_in(texts: Texts) -> str | None:
@@ -130,26 +141,9 @@ def _repair_stop() -> AdministratorTask:
     )
 
 
-_START_COMMANDS = " ".join(f"{_HOME}/{name}" for name in (_LAYOUT.command, _LAYOUT.debug_command))
-# A program in Python keeps running, with its start command.
-_REMOVE_LEFTOVERS = f"""
-for paths in {" ".join(_PROFILES)}; do
-    [ ! -r $paths ] || . $paths
-done
-for command in {_START_COMMANDS}; do
-    if grep -qE {quote(_LAYOUT.other_start)} $command 2> /dev/null; then
-        rm -f $command || exit 1
-        echo "$command"
-        stop=yes
-    fi
-done
-[ -z "$stop" ] || {_KILL_SCRIPT} -t > /dev/null 2>&1
-for path in {" ".join(_PROGRAMS)} {_HOME}/deploy {_LIBRARIES}; do
-    if [ -e "$path" ]; then
-        rm -rf "$path" || exit 1
-        echo "$path"
-    fi
-done
+_REMOVE_LEFTOVERS = (
+    removal_script(_LAYOUT, f"{' '.join(_PROGRAMS)} {_HOME}/deploy {_LIBRARIES}")
+    + """
 packages=$(opkg list-installed 'frc*-openjdk-*')
 if [ -n "$packages" ]; then
     opkg remove 'frc*-openjdk*' > /dev/null || exit 1
@@ -157,6 +151,7 @@ if [ -n "$packages" ]; then
 fi
 sync
 """
+)
 
 ROBORIO = ControllerKind(
     layout=_LAYOUT,
@@ -173,10 +168,10 @@ ROBORIO = ControllerKind(
         "StartupDLLs was switched off: 24 MB more memory after the robot's next start",
         "StartupDLLs, which costs 24 MB of memory, could not be switched off",
     ),
-    station_port=1742,
-    station_robot=_station_robot,
+    stations=(NI_STATION,),
     addresses=_addresses,
     team_of_host=_team_of_host,
+    has_image_file=True,
     image_in=_image_in,
     image_problem=_image_problem,
     wastes_memory=_wastes_memory,

@@ -1,4 +1,4 @@
-"""Deploys to a roboRIO look-alike over a real SSH server: its program starts after any interruption."""
+"""Deploys to look-alikes of each controller over a real SSH server: the program starts after any interruption."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ from pathlib import Path
 
 import pytest
 from conftest import sampled
-from roborio import PATIENCE, Proxy, Roborio, require_roborio
+from roborio import PATIENCE, Roborio, require_roborio
+from roborio.computer import Computer
 from roborio.local import LocalRobot, project_of
 from roborio.ssh import SshConnection
+from systemcore import Systemcore, require_systemcore
 
 from pyfrc_core.deploy.agent.disk import free_bytes
 from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest, Watched
@@ -29,7 +31,7 @@ print("this is {name}")
 class Robot(wpilib.TimedRobot):
     {body}
 """
-CRASHING = 'def robotInit(self): raise RuntimeError("no such motor")'
+CRASHING = 'def __init__(self): raise RuntimeError("no such motor")'
 
 
 def program(directory: Path, name: str, body: str = "pass", **files: str | bytes) -> Manifest:
@@ -43,12 +45,36 @@ def roborio() -> Generator[Roborio]:
         yield roborio
 
 
+@pytest.fixture
+def systemcore() -> Generator[Systemcore]:
+    require_systemcore()
+    with Systemcore() as systemcore:
+        yield systemcore
+
+
+Kind = type[Roborio] | type[Systemcore]
+
+
+@pytest.fixture(params=[Roborio, Systemcore], ids=lambda kind: kind.controller.name)
+def kind(request: pytest.FixtureRequest) -> Kind:
+    if request.param is Roborio:
+        require_roborio()
+    else:
+        require_systemcore()
+    return request.param
+
+
+@pytest.fixture
+def computer(kind: Kind) -> Generator[Computer]:
+    with kind() as computer:
+        yield computer
+
+
 @contextlib.contextmanager
-def agent(roborio: Roborio | Proxy, user: str = "lvuser") -> Generator[AgentClient]:
+def agent(computer: Computer, user: str | None = None) -> Generator[AgentClient]:
     """An agent on it."""
-    if isinstance(roborio, Roborio):
-        roborio.wait_for_end_of_deploy()  # the one before
-    with SshConnection(roborio.host, roborio.port, user) as connection:
+    computer.wait_for_end_of_deploy()  # the one before
+    with SshConnection(computer.host, computer.port, user, computer.controller) as connection:
         robot = AgentClient.start(connection)
         try:
             yield robot
@@ -56,8 +82,8 @@ def agent(roborio: Roborio | Proxy, user: str = "lvuser") -> Generator[AgentClie
             robot.close()
 
 
-def deploy(roborio: Roborio | Proxy, project: Manifest, user: str = "lvuser") -> Deployed:
-    with agent(roborio, user) as robot:
+def deploy(computer: Computer, project: Manifest, user: str | None = None) -> Deployed:
+    with agent(computer, user) as robot:
         return robot.deploy(project, DeployRequest("robot.py", {"deploy-host": "here"}))
 
 
@@ -66,12 +92,11 @@ def started(robot: AgentClient, seconds: float = PATIENCE) -> Watched:
     return robot.watch(seconds)
 
 
-def test_a_program_is_deployed_and_runs(roborio: Roborio, tmp_path: Path) -> None:
-    project = program(tmp_path, "first", **{"Ünd so weiter/it's.txt": "x"})
-    with agent(roborio) as robot:
+def test_a_program_is_deployed_and_runs(computer: Computer, tmp_path: Path) -> None:
+    project, layout = program(tmp_path, "first", **{"Ünd so weiter/it's.txt": "x"}), computer.controller.layout
+    with agent(computer) as robot:
         facts = robot.facts
-        assert (facts.not_controller, facts.python, facts.wpilib, facts.user) == (None, "3.14.0", "2026.2.2", "lvuser")
-        assert (facts.image, facts.wastes_memory) == ("FRC_roboRIO_2026_v1.2", True)
+        assert (facts.not_controller, facts.user) == (None, layout.user)
         assert (facts.current, facts.command, facts.running, facts.releases) == (None, None, False, ())
         assert robot.deploy(project, DeployRequest("robot.py", {"git-hash": "1234"})).release == 1
         printed: list[str] = []
@@ -83,12 +108,18 @@ def test_a_program_is_deployed_and_runs(roborio: Roborio, tmp_path: Path) -> Non
         assert watched.output == "".join(printed)
         facts = robot.info()
         assert (facts.current, facts.running, facts.deploy_json) == (1, True, {"git-hash": "1234"})
-    assert (
-        roborio.run("stat", "-Lc", "%U:%G", "/home/lvuser/py", "/home/lvuser/robotCommand").stdout == "lvuser:ni\n" * 2
-    )
-    roborio.power_off()
-    roborio.power_on()
-    roborio.said("this is first")
+    for path in (layout.code, f"{layout.home}/{layout.command}"):
+        assert computer.run("stat", "-Lc", "%U:%G", path).stdout == f"{layout.owner}\n"
+    assert (computer.home / layout.command).stat().st_mode & 0o777 == layout.command_mode
+    computer.power_off()
+    computer.power_on()
+    computer.said("this is first")
+
+
+def test_facts_of_a_roborio(roborio: Roborio) -> None:
+    with agent(roborio) as robot:
+        assert (robot.facts.python, robot.facts.wpilib) == ("3.14.0", "2026.2.2")
+        assert (robot.facts.image, robot.facts.wastes_memory) == ("FRC_roboRIO_2026_v1.2", True)
 
 
 def test_the_administrator_deploys_for_the_program_s_user(roborio: Roborio, tmp_path: Path) -> None:
@@ -98,9 +129,9 @@ def test_the_administrator_deploys_for_the_program_s_user(roborio: Roborio, tmp_
 
 @pytest.mark.parametrize("debug", sampled([False, True], False))
 def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
-    roborio: Roborio, tmp_path: Path, debug: bool
+    computer: Computer, tmp_path: Path, debug: bool
 ) -> None:
-    with agent(roborio) as robot:
+    with agent(computer) as robot:
         robot.deploy(program(tmp_path, "good"), DeployRequest("robot.py", {}))
         assert started(robot).alive
         robot.deploy(program(tmp_path, "bad", CRASHING), DeployRequest("robot.py", {}, debug=debug))
@@ -109,7 +140,7 @@ def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
         assert not watched.started
         assert watched.traceback is not None
         assert watched.traceback.splitlines()[0] == "Traceback (most recent call last):"
-        assert 'File "/home/lvuser/py/robot.py", line 7, in robotInit' in watched.traceback
+        assert f'File "{computer.controller.layout.code}/robot.py", line 7, in __init__' in watched.traceback
         assert watched.traceback.endswith("\nRuntimeError: no such motor")
         assert robot.rollback().release.number == 1
         watched = started(robot)
@@ -118,39 +149,38 @@ def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
 
 
 @pytest.mark.parametrize("phase", sampled(["start", "send", "switch"], "switch"))
-def test_power_pulled_in_the_middle(roborio: Roborio, tmp_path: Path, phase: str) -> None:
-    deploy(roborio, program(tmp_path, "old"))
+def test_power_pulled_in_the_middle(computer: Computer, tmp_path: Path, phase: str) -> None:
+    deploy(computer, program(tmp_path, "old"))
     new = program(tmp_path, "new", **{"data.bin": random.Random(1).randbytes(300_000)})
 
     def pull(now: str, done: int, total: int) -> None:
-        if now == phase and roborio.is_on:
-            roborio.power_off()
+        if now == phase and computer.is_on:
+            computer.power_off()
 
-    with agent(roborio) as robot:
+    with agent(computer) as robot:
         pull("start", 0, 0)
         # At the switch, the agent may be done before the power is off.
         with contextlib.suppress(ConnectionFailedError) if phase == "switch" else pytest.raises(ConnectionFailedError):
             robot.deploy(new, DeployRequest("robot.py", {}), pull)
-    roborio.power_on()
-    said = roborio.said("Robot program startup complete")
+    computer.power_on()
+    said = computer.said("Robot program startup complete")
     assert "this is old" in said or "this is new" in said
     if phase != "switch":
         assert "this is old" in said
-    with agent(roborio) as robot:
+    with agent(computer) as robot:
         robot.deploy(new, DeployRequest("robot.py", {}))
         assert "this is new" in started(robot).output
 
 
-def test_a_full_disk(tmp_path: Path) -> None:
-    require_roborio()
+def test_a_full_disk(kind: Kind, tmp_path: Path) -> None:
     old = program(tmp_path, "old", **{"data.bin": b"1" * 500_000})
     large = program(tmp_path, "large", **{f"{number}.bin": b"%d" % number * 500_000 for number in range(8)})
-    with Roborio(disk_size="3m") as roborio:
-        disk = LocalRobot(roborio.disk)
-        deploy(roborio, old)
+    with kind(disk_size="3m") as computer:
+        disk = LocalRobot(computer.disk, computer.controller)
+        deploy(computer, old)
         before = disk.startable()
         with pytest.raises(RefusedError, match=r"the robot's disk is full: 4,\d{3},\d{3} bytes are needed") as caught:
-            deploy(roborio, large)
+            deploy(computer, large)
         assert "old logs" in str(caught.value)
         assert disk.startable() == before
         # The program fills it while the deploy goes on.
@@ -160,46 +190,51 @@ def test_a_full_disk(tmp_path: Path) -> None:
         def fill(phase: str, done: int, total: int) -> None:
             if not filling:
                 filling.append(
-                    roborio.run("sh", "-c", "head -c 4000000 /dev/zero > /home/lvuser/logs.bin", user="lvuser")
+                    computer.run(
+                        "sh",
+                        "-c",
+                        f"head -c 4000000 /dev/zero > {computer.home_directory}/logs.bin",
+                        user=computer.user,
+                    )
                 )
 
-        with agent(roborio) as robot:
+        with agent(computer) as robot:
             with pytest.raises(RefusedError, match="the robot's disk is full"):
                 robot.deploy(small, DeployRequest("robot.py", {}), fill)
             assert disk.startable() == before
             assert started(robot).started
-            roborio.run("rm", "/home/lvuser/logs.bin")
+            computer.run("rm", f"{computer.home_directory}/logs.bin")
             robot.deploy(small, DeployRequest("robot.py", {}))
             assert "this is small" in started(robot).output
 
 
 @pytest.mark.parametrize("releases", sampled([2, 3], 2))
-def test_with_no_byte_free(releases: int, tmp_path: Path) -> None:
+def test_with_no_byte_free(kind: Kind, releases: int, tmp_path: Path) -> None:
     """Not even the name of the computer that holds the lock can be written."""
-    require_roborio()
-    with Roborio(disk_size="4m") as roborio:
-        disk = LocalRobot(roborio.disk)
+    with kind(disk_size="4m") as computer:
+        disk = LocalRobot(computer.disk, computer.controller)
         programs = {}
         for number in range(1, releases + 1):
             new = program(tmp_path, f"number {number}", **{"data.bin": random.Random(number).randbytes(400_000)})
             programs[number] = {entry.path: entry.file.read_bytes() for entry in new.entries}
-            with agent(roborio) as robot:
+            with agent(computer) as robot:
                 robot.deploy(new, DeployRequest("robot.py", {}))  # its late writes are not carried over yet
-        fill = "cat /dev/zero > /home/lvuser/logs.bin; dd if=/dev/zero bs=1 count=4096 >> /home/lvuser/logs.bin"
-        roborio.run("sh", "-c", fill, user="lvuser")
-        with agent(roborio) as robot:
-            assert free_bytes(roborio.home) == 0
+        logs = f"{computer.home_directory}/logs.bin"
+        fill = f"cat /dev/zero > {logs}; dd if=/dev/zero bs=1 count=4096 >> {logs}"
+        computer.run("sh", "-c", fill, user=computer.user)
+        with agent(computer) as robot:
+            assert free_bytes(computer.home) == 0
             assert robot.rollback().release.number == releases - 1
             assert started(robot).started
             assert disk.startable() == programs[releases - 1]
         if releases > 2:
-            roborio.run("sh", "-c", f"{fill}.2", user="lvuser")
-            deploy(roborio, program(tmp_path, "another"))
+            computer.run("sh", "-c", f"{fill}.2", user=computer.user)
+            deploy(computer, program(tmp_path, "another"))
             assert b"this is another" in disk.startable()["robot.py"]
-        roborio.run("sh", "-c", f"{fill}.3", user="lvuser")
-        with agent(roborio) as robot:
+        computer.run("sh", "-c", f"{fill}.3", user=computer.user)
+        with agent(computer) as robot:
             assert robot.undeploy()
-        assert not (roborio.home / ".pyfrc/releases").exists()
+        assert not (computer.home / ".pyfrc/releases").exists()
 
 
 def test_a_kill_script_that_cannot_stop_the_program(roborio: Roborio, tmp_path: Path) -> None:
@@ -220,3 +255,44 @@ def test_a_kill_script_that_cannot_stop_the_program(roborio: Roborio, tmp_path: 
         (roborio.disk / kill_script).unlink()
         with pytest.raises(RefusedError, match=r"there is no .*frcKillRobot.sh on the robot"):
             robot.restart()
+
+
+def test_a_systemctl_that_needs_a_password(tmp_path: Path) -> None:
+    require_systemcore()
+    with Systemcore(sudo=False) as computer, agent(computer) as robot:
+        robot.deploy(program(tmp_path, "first"), DeployRequest("robot.py", {}))
+        with pytest.raises(RefusedError, match=r"systemctl has failed: sudo: .*\n  Switch the robot off and on again"):
+            robot.restart()
+
+
+def test_after_a_crash_loop_the_next_program_starts(systemcore: Systemcore, tmp_path: Path) -> None:
+    """systemd refuses to start a service again that has ended five times within ten seconds."""
+    with agent(systemcore) as robot:
+        robot.deploy(program(tmp_path, "good"), DeployRequest("robot.py", {}))
+        assert started(robot).started
+        robot.deploy(program(tmp_path, "bad", CRASHING), DeployRequest("robot.py", {}))
+        assert not started(robot).alive
+        while "repeated too quickly" not in systemcore.run("cat", "/run/journal/unit").stdout:
+            systemcore.run("systemctl", "is-active", "robot")
+        assert systemcore.run("systemctl", "start", "robot").returncode == 1
+        robot.rollback()
+        assert started(robot).started
+
+
+def test_a_program_that_does_not_end_when_it_is_asked_to(systemcore: Systemcore, tmp_path: Path) -> None:
+    body = "import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN)"
+    with agent(systemcore) as robot:
+        robot.deploy(program(tmp_path, "deaf", body), DeployRequest("robot.py", {}))
+        assert started(robot).started
+        robot.deploy(program(tmp_path, "second"), DeployRequest("robot.py", {}))
+        assert started(robot).started
+        assert not robot.program_survived, "systemd has ended it"
+
+
+def test_without_a_readable_journal_the_process_decides(systemcore: Systemcore, tmp_path: Path) -> None:
+    (systemcore.disk / "usr/local/bin/journalctl").unlink()
+    with agent(systemcore) as robot:
+        robot.deploy(program(tmp_path, "first"), DeployRequest("robot.py", {}))
+        robot.restart()
+        watched = robot.watch(PATIENCE, unheard=0.5)
+        assert (watched.verdict, watched.output) == ("unheard", "")
