@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .project_options import project_options
-from .robot_options import address_options, errors_shown, project_if_any, user_interface
+from .robot_options import errors_shown, project_if_any, robot_options, user_interface
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.team import RobotChoice
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
 
 @click.command("console", context_settings={"help_option_names": ["-h", "--help"]})
 @project_options
-@address_options
+@robot_options
 @click.option("--nc-ds", is_flag=True, help="Show the output even if no Driver Station is connected to the robot.")
 def command(
     directory: Path | None, main: Path | None, robot_class: str | None, choice: RobotChoice, nc_ds: bool
 ) -> None:
     """Show the robot program's output until Ctrl-C. Reconnects after a lost connection.
 
-    Robots send their output only while a Driver Station is connected to them; --nc-ds imitates one. The
-    console has no login, so the robot's key is not checked.
+    A roboRIO sends the output only while a Driver Station is connected to it; --nc-ds imitates one. Its
+    console has no login, so its key is not checked. A SystemCore's output is read over SSH, as by a deploy.
 
     \b
     Exit codes: 0 ended by Ctrl-C; 1 no robot was found, or the server is not a robot's console;

@@ -94,7 +94,8 @@ def command(
         talk = user_interface(choice, as_json)
         if rollback is not None:
             release = int(rollback) if rollback else None
-            address = session.rollback(project_if_any(directory, main, robot_class, choice), choice, release, talk)
+            project = project_if_any(directory, main, robot_class, choice)
+            address = session.rollback(project, choice, release, talk)
         else:
             project = chosen_project(directory, main, robot_class)
             options = session.DeployOptions(
@@ -111,10 +112,9 @@ def command(
             )
             address = session.deploy(project, options, talk)
     if netconsole or nc_ds:
-        from pyfrc_core.deploy.console import follow_console
-        from pyfrc_core.deploy.errors import NoConsoleError
+        from pyfrc_core.deploy.errors import DeployError
 
         try:
-            follow_console(address, without_driver_station=nc_ds, quiet=talk.progress.quiet)
-        except NoConsoleError as error:  # exit code 1 would mean that the robot has its old program
+            session.show_console(project, choice, talk, nc_ds, address)
+        except DeployError as error:  # exit code 1 would mean that the robot has its old program
             talk.progress.warning(str(error))

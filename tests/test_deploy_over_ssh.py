@@ -273,8 +273,8 @@ def test_after_a_crash_loop_the_next_program_starts(systemcore: Systemcore, tmp_
         robot.deploy(program(tmp_path, "bad", CRASHING), DeployRequest("robot.py", {}))
         assert not started(robot).alive
         while "repeated too quickly" not in systemcore.run("cat", "/run/journal/unit").stdout:
-            systemcore.run("systemctl", "is-active", "robot")
-        assert systemcore.run("systemctl", "start", "robot").returncode == 1
+            systemcore.run("/usr/local/bin/systemctl", "is-active", "robot")
+        assert systemcore.run("/usr/local/bin/systemctl", "start", "robot").returncode == 1
         robot.rollback()
         assert started(robot).started
 

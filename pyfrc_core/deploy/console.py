@@ -172,7 +172,7 @@ def follow_console(address: Address, without_driver_station: bool = False, quiet
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(line_buffering=True)  # flush each line, also to a pipe
     output = VisibleStream(sys.stdout)
-    report = _Reports(quiet)
+    report = ConnectionReports(quiet)
     with contextlib.suppress(KeyboardInterrupt):
         while True:
             for line in _lines_of_one_connection(address, without_driver_station, report):
@@ -180,7 +180,7 @@ def follow_console(address: Address, without_driver_station: bool = False, quiet
             time.sleep(_SECONDS_BETWEEN_TRIES)
 
 
-class _Reports:
+class ConnectionReports:
     """Reports about the connection on standard error. Each is printed once until `reset`."""
 
     def __init__(self, quiet: bool) -> None:
@@ -197,7 +197,9 @@ class _Reports:
         self._made.clear()
 
 
-def _lines_of_one_connection(address: Address, without_driver_station: bool, report: _Reports) -> Iterator[str]:
+def _lines_of_one_connection(
+    address: Address, without_driver_station: bool, report: ConnectionReports
+) -> Iterator[str]:
     """Yield the lines of one connection until it is lost."""
     where = address
     with contextlib.ExitStack() as open_now:
@@ -237,7 +239,7 @@ def _lines_of_one_connection(address: Address, without_driver_station: bool, rep
         report("lost", f"the connection was lost; reconnecting to {where}")
 
 
-def _pieces(console: socket.socket, frames: ConsoleFrames, report: _Reports) -> Iterator[bytes]:
+def _pieces(console: socket.socket, frames: ConsoleFrames, report: ConnectionReports) -> Iterator[bytes]:
     """Yield the received data until the connection is lost. Send keep-alive frames meanwhile."""
     console.settimeout(_WAKE_SECONDS)  # on Windows, Ctrl-C does not interrupt a blocking receive
     connected = kept_alive = time.monotonic()

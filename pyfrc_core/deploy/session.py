@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
 from ..errors import UsageError
@@ -16,10 +16,11 @@ from .errors import DeployError, RefusedError
 from .facts import Release, RobotFacts
 from .local_checks import CheckedProgram, DeployOptions, prepare
 from .manifest import ascii_path
+from .program_output import follow_output
 from .progress import DeployProgress, UserInterface
 from .robot_checks import BackgroundTask, other_languages_notice, refuse_unfit_robot
 from .robot_packages import check_packages
-from .target_connection import connected, connected_agent, console_address, find
+from .target_connection import connected, connected_agent, console_address, find, reconnected
 from .team import RobotChoice, choose_target
 
 if TYPE_CHECKING:
@@ -190,11 +191,30 @@ def _confirm(what: str, talk: UserInterface, confirmed: bool) -> None:
 
 
 def show_console(
-    project: Project | None, choice: RobotChoice, talk: UserInterface, without_driver_station: bool
+    project: Project | None,
+    choice: RobotChoice,
+    talk: UserInterface,
+    without_driver_station: bool,
+    address: Address | None = None,
 ) -> None:
-    """Show the robot program's output until Ctrl-C."""
-    address = console_address(choose_target(project, choice, talk.ask), choice, talk.progress)
-    follow_console(address, without_driver_station, talk.progress.quiet)
+    """Show the robot program's output until Ctrl-C.
+
+    :param without_driver_station: imitate a Driver Station, if the robot needs one for this
+    :param address: the robot's address, if it was found already
+    :raises NoConsoleError: if the robot does not send it
+    """
+    target, progress = choose_target(project, choice, talk.ask), talk.progress
+    if not target.controller.layout.output:
+        address = address or console_address(target, choice, progress)
+        follow_console(address, without_driver_station, progress.quiet)
+        return
+    found = find(target if address is None else replace(target, robot=str(address)), choice, progress)
+    with connected(target, found, choice, progress) as connection:
+        is_virtual = connection.is_virtual_robot
+    if is_virtual:
+        follow_console(found.address, quiet=progress.quiet)
+    else:
+        follow_output(lambda: reconnected(target, found.address, choice), progress.quiet)
 
 
 def _upload(robot: AgentClient, program: CheckedProgram, options: DeployOptions, talk: UserInterface) -> Deployed:

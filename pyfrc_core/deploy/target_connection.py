@@ -77,6 +77,16 @@ def connected(
         yield connection
 
 
+def reconnected(target: RobotTarget, address: Address, choice: RobotChoice) -> Connection:
+    """Log in again to a robot whose key is pinned.
+
+    :raises HostKeyError: if another robot is at the address now
+    :raises ConnectionFailedError: if the login fails
+    """
+    keys = load_robot_keys(target, address)
+    return connect(address, target.controller, keys, pin=False, credentials=choice.credentials)
+
+
 @contextmanager
 def connected_agent(
     target: RobotTarget,

@@ -22,11 +22,11 @@ _KEPT_OUTPUT = 1 << 16
 _LEFT_OUT = "[pyfrc has left out earlier output]\n"
 #: A robot class that inherits WPILib's loop, which reports the end of `robotInit`.
 _WPILIBS_LOOP = re.compile(
-    rb"^[ \t]*class[ \t]+\w+[ \t]*\([^)#]*\b(?:Timed|TimedCommand|Timeslice)Robot\b", re.MULTILINE
+    rb"^[ \t]*class[ \t]+\w+[ \t]*\([^)#]*\b(?:Timed|TimedCommand|Timeslice|OpMode)Robot\b", re.MULTILINE
 )
 #: A main loop of the program's own, which does not.
 _OWN_LOOP = re.compile(
-    rb"^[ \t]*(?:def[ \t]+startCompetition\b|[^#\n]*\bobserveUserProgramStarting\b"
+    rb"^[ \t]*(?:def[ \t]+start(?:C|_c)ompetition\b|[^#\n]*\bobserve(?:UserProgramS|_user_program_s)tarting\b"
     rb"|(?:from|import)\b[^#\n]*\bmagicbot\b)",
     re.MULTILINE,
 )

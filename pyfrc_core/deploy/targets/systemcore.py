@@ -47,7 +47,7 @@ _LAYOUT = Layout(
     command_mode=0o755,
     can_fail=True,
     # The messages of the program's processes; with --unit, those of systemd about it would come, too.
-    output=("journalctl", "--quiet", "--follow", "--lines=0", "--output=cat", "_SYSTEMD_UNIT=robot.service"),
+    output=("journalctl", "--follow", "--lines=0", "--output=cat", "_SYSTEMD_UNIT=robot.service"),
 )
 
 

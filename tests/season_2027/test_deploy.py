@@ -1,0 +1,190 @@
+"""Deploys to a look-alike of a SystemCore, and to a virtual one, with the commands of `pyfrc`."""
+
+from __future__ import annotations
+
+import json
+import re
+import socket
+import sys
+import threading
+from collections.abc import Generator, Iterator
+from contextlib import contextmanager, suppress
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+from conftest import MakeProject, Result, RobotProject
+from systemcore import Systemcore, require_systemcore
+
+ROBOT = """
+    import wpilib
+
+    print("this is version {version}")
+
+
+    class MyRobot(wpilib.TimedRobot):
+        pass
+"""
+CRASHES = """
+    import wpilib
+
+
+    class MyRobot(wpilib.TimedRobot):
+        def __init__(self):
+            raise RuntimeError("no gyro")
+"""
+JAVA = "java -jar /home/systemcore/Robot.jar\n"
+
+
+@pytest.fixture
+def robot() -> Generator[Systemcore]:
+    require_systemcore()
+    with Systemcore(wpilib=version("wpilib")) as robot:
+        yield robot
+
+
+@pytest.fixture
+def project(make_project: MakeProject) -> RobotProject:
+    return make_project({"robot.py": ROBOT.format(version=1), "other.py": "VALUE = 1\n"})
+
+
+def run(project: RobotProject, robot: Systemcore, command: str, *options: str) -> Result:
+    # In a new interpreter: the one that commands are forked from has imported WPILib, which a deploy never does, and
+    # whose threads of this season end a fork of it that ends.
+    return project.run(command, *options, "--robot", robot.where, cold=True)
+
+
+def deploy(project: RobotProject, robot: Systemcore, *options: str) -> Result:
+    return run(project, robot, "deploy", "--skip-tests", *options)
+
+
+def info(project: RobotProject, robot: Systemcore) -> dict:
+    result = run(project, robot, "deploy-info", "--json")
+    assert result.code == 0, result.output
+    return json.loads(result.stdout.splitlines()[-1])
+
+
+def test_deploy_change_roll_back_and_undeploy(project: RobotProject, robot: Systemcore) -> None:
+    first = deploy(project, robot)
+    assert first.code == 0, first.output
+    lines = [line.split()[0] for line in first.stdout.splitlines() if line.endswith(" s")]
+    assert lines == ["files", "find", "connect", "look", "upload", "start"]
+    assert "the program runs" in first.stdout
+    robot.said("this is version 1")
+    command = robot.home / "robotCommand"
+    assert command.read_text() == (
+        "/home/systemcore/venv/bin/python3 -u -O -m robotpy --main /home/systemcore/py/robot.py run\n"
+    )
+    assert command.stat().st_mode & 0o777 == 0o755
+    again = deploy(project, robot)
+    assert (again.code, "nothing has changed" in again.stdout) == (0, True), again.output
+    project.write({"robot.py": ROBOT.format(version=2)})
+    second = deploy(project, robot)
+    assert re.search(r"^upload +1 file, \d+ bytes; release 2", second.stdout, re.MULTILINE), second.output
+    robot.said("this is version 2")
+    back = run(project, robot, "deploy", "--rollback")
+    assert (back.code, "runs release 1 again" in back.stdout) == (0, True), back.output
+    known = info(project, robot)
+    assert (known["current"], known["running"]) == (1, True)
+    assert known["deploy_json"]["code-path"] == str(project.path)
+    gone = run(project, robot, "undeploy", "--yes")
+    assert (gone.code, "was removed" in gone.stdout) == (0, True), gone.output
+    assert {each.name for each in robot.home.iterdir()} == {".python", "venv"}
+    assert robot.run("/usr/local/bin/systemctl", "is-active", "robot").returncode == 1
+
+
+def test_a_program_that_crashes_is_rolled_back(project: RobotProject, robot: Systemcore) -> None:
+    assert deploy(project, robot).code == 0
+    project.write({"robot.py": CRASHES})
+    result = deploy(project, robot, "--auto-rollback")
+    assert result.code == 3, result.output
+    assert "RuntimeError: no gyro" in result.stdout
+    assert "release 1 runs again" in result.stderr
+    known = info(project, robot)
+    assert (known["current"], known["running"]) == (1, True)
+
+
+def test_a_program_in_java_is_replaced_at_the_switch_and_removed_only_on_demand(
+    project: RobotProject, robot: Systemcore
+) -> None:
+    command, jar = robot.put("/home/systemcore/robotCommand", JAVA), robot.put("/home/systemcore/Robot.jar", "")
+    project.write({"robot.py": "import wpilib, no_such_module\n"})
+    refused = deploy(project, robot)
+    assert (refused.code, command.read_text(), jar.exists()) == (1, JAVA, True), refused.output
+    project.write({"robot.py": ROBOT.format(version=1)})
+    result = deploy(project, robot)
+    assert (result.code, jar.exists()) == (0, True), result.output
+    assert "Java or C++ takes disk space" in result.stdout
+    removed = run(project, robot, "undeploy", "--java-cpp", "--yes")
+    assert (removed.code, jar.exists(), command.exists()) == (0, False, True), removed.output
+    assert removed.stdout.splitlines()[-1] == "  /home/systemcore/Robot.jar"
+    assert info(project, robot)["running"]
+
+
+def test_a_changed_password_is_asked_for_at_a_terminal_only(project: RobotProject) -> None:
+    require_systemcore()
+    with Systemcore(password="secret") as robot:
+        result = deploy(project, robot)
+        assert result.code == 1
+        assert "refuses systemcore with the password systemcore, which is the default on robots" in result.first_error
+        assert list(robot.home.glob(".pyfrc")) == []
+
+
+@contextmanager
+def driver_station(robot: Systemcore, on_field: bool) -> Iterator[None]:
+    """The Driver Station of 2027 on this computer, which is connected to the robot."""
+    said = json.dumps({"robotIp": robot.host, "fmsControlled": on_field}).encode() + b"\n"
+    with socket.create_server(("127.0.0.1", 6770)) as listener:
+
+        def serve() -> None:
+            with suppress(OSError):
+                while True:
+                    with listener.accept()[0] as connected:
+                        connected.sendall(said)
+
+        thread = threading.Thread(target=serve, daemon=True)
+        thread.start()
+        try:
+            yield
+        finally:
+            listener.shutdown(socket.SHUT_RDWR)
+            thread.join()
+
+
+def test_a_deploy_in_a_match_is_refused(project: RobotProject, robot: Systemcore) -> None:
+    with driver_station(robot, on_field=True):
+        for result in (deploy(project, robot), project.run("deploy", "--skip-tests", "--team", "1234", cold=True)):
+            assert result.code == 1
+            assert "connected to a competition field (FMS)" in result.first_error
+    assert list(robot.home.glob(".pyfrc")) == []
+
+
+def test_the_driver_stations_robot_is_found(project: RobotProject, robot: Systemcore) -> None:
+    if robot.port != 22:
+        pytest.skip("deploying through the Driver Station: needs port 22, which this computer's own SSH server has")
+    with driver_station(robot, on_field=False):
+        result = project.run("deploy", "--skip-tests", "--team", "9999", cold=True)
+    assert result.code == 0, result.output
+    assert f"find       {robot.host} (the Driver Station's robot)" in result.stdout
+
+
+def test_the_console_shows_what_the_program_prints(project: RobotProject, robot: Systemcore) -> None:
+    project.write({"robot.py": ROBOT.format(version=1) + TALKS})
+    assert deploy(project, robot).code == 0
+    with project.start("console", "--robot", robot.where, apart=True) as console:
+        assert any("still here" in line for line in console.stdout)
+
+
+#: A robot that prints a line each second, in robot time or not.
+TALKS = """
+        def robot_periodic(self):
+            print("still here", flush=True)
+"""
+
+
+def test_a_virtual_systemcore(project: RobotProject, tmp_path: Path) -> None:
+    command = [*"virtual-robot --directory".split(), str(tmp_path / "disk"), "--", sys.executable, "-m", "pyfrc"]
+    result = project.run(*command, "deploy", "--skip-tests", "--robot")
+    assert result.code == 0, result.output
+    assert "the program runs" in result.stdout
+    assert (tmp_path / "disk/root/home/systemcore/py/robot.py").exists()
