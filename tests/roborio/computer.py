@@ -181,8 +181,10 @@ class Computer:
             each.close()
         assert self._inside.stdout is not None
         ready = self._inside.stdout.readline()
-        assert ready == "ready\n", f"the look-alike does not start:\n{(self._base / 'errors').read_text()}"
-        threads = Path(f"/proc/{self._inside.pid}/task/{self._inside.pid}/children").read_text()
+        assert ready == "ready\n", (
+            f"the look-alike does not start:\n{(self._base / 'errors').read_text(encoding='utf-8')}"
+        )
+        threads = Path(f"/proc/{self._inside.pid}/task/{self._inside.pid}/children").read_text(encoding="utf-8")
         self._init = int(threads.split()[0])
         threading.Thread(target=self._listen, args=(self._inside.stdout,), daemon=True).start()
 

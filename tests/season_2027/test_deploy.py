@@ -72,7 +72,7 @@ def test_deploy_change_roll_back_and_undeploy(project: RobotProject, robot: Syst
     assert "the program runs" in first.stdout
     robot.said("this is version 1")
     command = robot.home / "robotCommand"
-    assert command.read_text() == (
+    assert command.read_text(encoding="utf-8") == (
         "/home/systemcore/venv/bin/python3 -u -O -m robotpy --main /home/systemcore/py/robot.py run\n"
     )
     assert command.stat().st_mode & 0o777 == 0o755
@@ -110,7 +110,7 @@ def test_a_program_in_java_is_replaced_at_the_switch_and_removed_only_on_demand(
     command, jar = robot.put("/home/systemcore/robotCommand", JAVA), robot.put("/home/systemcore/Robot.jar", "")
     project.write({"robot.py": "import wpilib, no_such_module\n"})
     refused = deploy(project, robot)
-    assert (refused.code, command.read_text(), jar.exists()) == (1, JAVA, True), refused.output
+    assert (refused.code, command.read_text(encoding="utf-8"), jar.exists()) == (1, JAVA, True), refused.output
     project.write({"robot.py": ROBOT.format(version=1)})
     result = deploy(project, robot)
     assert (result.code, jar.exists()) == (0, True), result.output
@@ -183,7 +183,7 @@ TALKS = """
 
 
 def test_a_virtual_systemcore(project: RobotProject, tmp_path: Path) -> None:
-    command = [*"virtual-robot --directory".split(), str(tmp_path / "disk"), "--", sys.executable, "-m", "pyfrc"]
+    command = ["virtual-robot", "--directory", str(tmp_path / "disk"), "--", sys.executable, "-m", "pyfrc"]
     result = project.run(*command, "deploy", "--skip-tests", "--robot")
     assert result.code == 0, result.output
     assert "the program runs" in result.stdout

@@ -131,7 +131,7 @@ class Service:
 
     def log(self, text: str) -> None:
         """Write a message of systemd."""
-        with JOURNAL.open("a") as stream:
+        with JOURNAL.open("a", encoding="utf-8") as stream:
             stream.write(f"{text}\n")
 
 

@@ -111,7 +111,7 @@ class Systemcore(Computer):
             (binaries / name).symlink_to(python)
         if self._wpilib is not None:
             for file in (HERE / "site-packages").rglob("*.py"):
-                self.put(f"{packages}/{file.relative_to(HERE / 'site-packages')}", file.read_text())
+                self.put(f"{packages}/{file.relative_to(HERE / 'site-packages')}", file.read_text(encoding="utf-8"))
             self.put(f"{packages}/wpilib/version.py", f'version = "{self._wpilib}"\n')
             for name in ("wpilib", "robotpy"):
                 about = f"Metadata-Version: 2.1\nName: {name}\nVersion: {self._wpilib}\n"
