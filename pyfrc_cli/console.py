@@ -8,15 +8,23 @@ from typing import TYPE_CHECKING
 import click
 
 from .project_options import project_options
-from .robot_options import errors_shown, project_if_any, robot_options, user_interface
+from .robot_options import address_options, errors_shown, project_if_any, robot_options, user_interface
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.team import RobotChoice
 
 
+def is_over_ssh() -> bool:
+    """Return whether the output of the season's robots comes over SSH, with a login."""
+    from pyfrc_core.deploy.targets import controller_of
+    from pyfrc_core.season import CURRENT
+
+    return bool(controller_of(CURRENT).layout.output)
+
+
 @click.command("console", context_settings={"help_option_names": ["-h", "--help"]})
 @project_options
-@robot_options
+@(robot_options if is_over_ssh() else address_options)
 @click.option("--nc-ds", is_flag=True, help="Show the output even if no Driver Station is connected to the robot.")
 def command(
     directory: Path | None, main: Path | None, robot_class: str | None, choice: RobotChoice, nc_ds: bool

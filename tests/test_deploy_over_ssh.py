@@ -266,7 +266,7 @@ def test_a_systemctl_that_needs_a_password(tmp_path: Path) -> None:
 
 
 def test_after_a_crash_loop_the_next_program_starts(systemcore: Systemcore, tmp_path: Path) -> None:
-    """systemd refuses to start a service again that has ended five times within ten seconds."""
+    """systemd refuses to start a service again that was started five times within ten seconds."""
     with agent(systemcore) as robot:
         robot.deploy(program(tmp_path, "good"), DeployRequest("robot.py", {}))
         assert started(robot).started
