@@ -187,7 +187,7 @@ def test_a_directory_that_is_twice_on_the_path_is_no_second_copy() -> None:
         ("import os; os._exit(3)", "ends Python with 3"),
         pytest.param(
             "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)",
-            "crashes Python (SIGSEGV)",
+            "crashes Python: signal 11 (SIGSEGV, segmentation fault)",
             marks=pytest.mark.skipif(sys.platform == "win32", reason="there are no signals"),
         ),
     ],

@@ -8,7 +8,6 @@ from __future__ import annotations
 import importlib.metadata
 import importlib.util
 import platform
-import signal
 import struct
 import subprocess
 import sys
@@ -22,6 +21,7 @@ from packaging.utils import canonicalize_name
 from .._version import __version__, requirement
 from ..config.packages import PACKAGES, quoted_requirement
 from ..errors import ProjectError
+from ..processes.crashes import crash_of
 from ..season import CURRENT, Season, SeasonSetting, refuse_unknown_wpilib
 from .check_result import CheckResult, hint, ok, problem
 from .installed import Installed, Package, Unmet
@@ -217,11 +217,8 @@ def _import(modules: list[str], path: list[str]) -> tuple[str, str]:
         return output.decode("utf-8", "replace") if isinstance(
             output, bytes
         ) else output, f"no end after {TIME_LIMIT:g} s"
-    if done.returncode < 0:
-        try:
-            return done.stdout, f"crashes Python ({signal.Signals(-done.returncode).name})"
-        except ValueError:
-            return done.stdout, f"crashes Python (signal {-done.returncode})"
+    if (crash := crash_of(done.returncode)) is not None:
+        return done.stdout, f"crashes Python: {crash}"
     return done.stdout, f"ends Python with {done.returncode}" if done.returncode else ""
 
 

@@ -8,7 +8,6 @@ import math
 import mmap
 import os
 import re
-import signal
 import struct
 import sys
 from collections.abc import Iterator
@@ -18,6 +17,7 @@ from itertools import takewhile
 
 from ..compat.cpython_private import get_frame
 from ..project.robot_files import RobotFiles, is_pyfrc
+from .crashes import crash_of
 from .exit import EXIT_HANGS, exit_now, prepare_sudden_exit
 from .standstill import Standstill
 
@@ -37,6 +37,8 @@ _NOT_STARTED = -1
 #: only on a busy machine, or was suspended: each has taken its time.
 _NO_PYTHON = "Timeout ("
 _HOPELESS_STACKS = 3
+#: What is written after stacks that no longer count. They are not removed: Windows does not shorten a mapped file.
+_FORGOTTEN = b"\0forgotten\n"
 
 _os_exit = os._exit
 
@@ -69,6 +71,8 @@ class CrashLog:
         self.time_us: memoryview | None = None
         self._mode: memoryview | None = None
         self._standstill: memoryview | None = None
+        #: The size of the file without what has been written since `forget_stacks`.
+        self._counted_from = _HEADER_SIZE
 
     def write(self, text: str) -> None:
         write_all(self.descriptor, text.encode())
@@ -89,10 +93,10 @@ class CrashLog:
             _STANDSTILL.pack_into(self._standstill, 0, standstill.seconds, robot_time, standstill.place.encode())
 
     def forget_stacks(self) -> None:
-        """Remove the stacks that C code has written while no Python code could run: it runs again."""
-        if self.time_us is not None and os.fstat(self.descriptor).st_size > _HEADER_SIZE:
-            os.ftruncate(self.descriptor, _HEADER_SIZE)
-            os.lseek(self.descriptor, 0, os.SEEK_END)
+        """Do not count the stacks any more that C code has written while no Python code could run: it runs again."""
+        if self.time_us is not None and os.fstat(self.descriptor).st_size > self._counted_from:
+            write_all(self.descriptor, _FORGOTTEN)
+            self._counted_from = os.fstat(self.descriptor).st_size
 
     def enable_fault_handler(self) -> None:
         """Have a fault in C code write its stack here, and nowhere else."""
@@ -170,8 +174,8 @@ def describe_exit(report: bytes, status: int, files: RobotFiles, meanwhile: str)
     if text.startswith(_NO_PYTHON):
         text = text[text.rindex(_NO_PYTHON) :]
         what = "the robot code hangs here, in a call that lets nothing else of Python run"
-    elif status < 0:
-        what = f"the robot's process was ended by signal {-status} ({_signal_name(-status)})"
+    elif (crash := crash_of(status)) is not None:
+        what = f"the robot's process was ended by {crash}"
     else:
         what = f"the robot's process ended itself with exit code {status}, {meanwhile}"
     if moment is not None:
@@ -209,7 +213,8 @@ def standstill_of(report: bytes, files: RobotFiles) -> Standstill | None:
 
 
 def _text_of(report: bytes) -> str:
-    return report[_HEADER_SIZE if report.startswith(_MAGIC) else 0 :].decode(errors="replace").strip()
+    written = report[_HEADER_SIZE if report.startswith(_MAGIC) else 0 :]
+    return written.rpartition(_FORGOTTEN)[2].decode(errors="replace").strip()
 
 
 def write_all(descriptor: int, data: bytes) -> None:
@@ -227,11 +232,3 @@ def _line_of_crash(text: str, files: RobotFiles) -> str | None:
             if files.is_project_file(filename):
                 return f"{files.relative(filename)}:{number}"
     return None
-
-
-def _signal_name(number: int) -> str:
-    try:
-        name = signal.Signals(number).name
-    except ValueError:
-        return "unknown"
-    return f"{name}, segmentation fault" if name == "SIGSEGV" else name

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from pyfrc_core.processes import crash_report
-from pyfrc_core.processes.crash_report import CrashLog, MomentOfExit, describe_exit, moment_of
+from pyfrc_core.processes.crash_report import CrashLog, MomentOfExit, describe_exit, moment_of, standstill_of
 from pyfrc_core.processes.exit import EXIT_HANGS
 from pyfrc_core.project.robot_files import RobotFiles
 
@@ -61,6 +61,8 @@ def test_threads_that_only_wait_for_their_turn_are_passed_over() -> None:
     [
         (-9, "the robot's process was ended by signal 9 (SIGKILL)"),
         (-99, "the robot's process was ended by signal 99 (unknown)"),
+        (0xC0000005, "the robot's process was ended by exception 0xC0000005 (access violation)"),  # on Windows
+        (0xC0000FFF, "the robot's process was ended by exception 0xC0000FFF (unknown)"),
         (0, "the robot's process ended itself with exit code 0, in the middle of the test"),
         (7, "the robot's process ended itself with exit code 7, in the middle of the test"),
         (EXIT_HANGS, f"the robot's process ended itself with exit code {EXIT_HANGS}, in the middle of the test"),
@@ -117,4 +119,25 @@ def test_a_moment_counts_once_the_robot_has_started(log: CrashLog) -> None:
     assert describe_exit(contents(log), 3, FILES, "meanwhile") == (
         f"the robot's process ended itself with exit code 3, meanwhile, at 15.02 s in {'x' * 32} mode\n\nand a text"
     )
+    os.close(log.descriptor)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="a file in memory")
+def test_stacks_of_code_that_runs_again_do_not_count_any_more(log: CrashLog, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is removed from the file: on Windows, a mapped file cannot be made shorter."""
+    monkeypatch.setattr(os, "ftruncate", None)
+    waiting = f'Timeout (0:00:03)!\nThread 0x1 (most recent call first):\n  File "{PROJECT}/robot.py", line 7 in read\n'
+    log.enable()
+    log.forget_stacks()
+    for _ in range(2):
+        assert standstill_of(contents(log), FILES) is None
+        for count in (1, 2, 3):
+            log.write(waiting)
+            stands = standstill_of(contents(log), FILES)
+            assert stands is not None
+            assert (stands.place, stands.seconds, stands.hopeless) == ("robot.py:7", 3.0 * count, count == 3)
+        log.forget_stacks()
+        log.forget_stacks()
+    log.write("os._exit(3) was called")
+    assert describe_exit(contents(log), 3, FILES, "meanwhile").endswith("meanwhile\n\nos._exit(3) was called")
     os.close(log.descriptor)
