@@ -7,10 +7,10 @@ from pathlib import Path
 import click
 
 from pyfrc_core.errors import PyfrcError
+from pyfrc_core.processes.loading import loading
 
-from .loading import loading
 from .project_options import chosen_project, from_here, project_options
-from .verbosity import hint
+from .verbosity import hint, verbosity
 
 #: How many failures are listed, and how much of the line of each.
 _MOST_FAILURES, _WIDTH = 10, 150
@@ -34,7 +34,7 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None) 
     1 the robot's code failed, or a test with the new physics.py, 2 wrong usage.
     """
     project = chosen_project(directory, main, robot_class)
-    with loading():
+    with loading(verbosity().quiet):
         from pyfrc_core.physics.create.files import create_physics
     done = create_physics(project)
     if done.problem:

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .loading import loading
+from pyfrc_core.processes.loading import loading
+
 from .project_options import chosen_project, project_options
 from .robot_options import errors_shown, json_option, project_if_any, robot_options, user_interface
+from .verbosity import verbosity
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.team import RobotChoice
@@ -88,7 +90,7 @@ def command(
     if rollback and not rollback.isdecimal():
         raise click.UsageError(f"--rollback {rollback!r}: a release is a number; pyfrc deploy-info lists them.")
     with errors_shown(choice, as_json):
-        with loading():
+        with loading(verbosity().quiet):
             from pyfrc_core.deploy import session
 
         talk = user_interface(choice, as_json)

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import click
 
 from pyfrc_core._version import requirement
+from pyfrc_core.processes.loading import loading
 from pyfrc_core.wording import counted
 
-from .loading import loading
 from .project_options import chosen_project, project_options
 from .verbosity import hint, verbosity
 
@@ -137,7 +137,7 @@ def command(
         if not each.is_dir():
             raise click.BadParameter(f"there is no directory {each}", param_hint="DIRECTORIES")
     project = chosen_project(directory, main, robot_class)
-    with loading():
+    with loading(verbosity().quiet):
         from pyfrc_core.compat.unrepeatable import explain_unrepeatable
         from pyfrc_core.fuzz.campaign.campaign import run_campaign
         from pyfrc_core.fuzz.campaign.results import CampaignOptions

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import click
 
-from .loading import loading
+from pyfrc_core.processes.loading import loading
+
 from .project_options import chosen_project, project_options
-from .verbosity import hint
+from .verbosity import hint, verbosity
 
 
 @click.command("replay", context_settings={"help_option_names": ["-h", "--help"]})
@@ -52,7 +53,7 @@ def command(
     1 it differs, or the robot's code failed; 2 wrong usage, or no such script.
     """
     project = chosen_project(directory, main, robot_class)
-    with loading():
+    with loading(verbosity().quiet):
         from pyfrc_core.compat.unrepeatable import explain_unrepeatable
         from pyfrc_core.replay import replay
     if picture is not None:

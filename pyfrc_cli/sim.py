@@ -9,7 +9,8 @@ from typing import Any
 
 import click
 
-from .loading import loading
+from pyfrc_core.processes.loading import loading
+
 from .project_options import chosen_project, project_options
 from .verbosity import verbosity
 
@@ -104,6 +105,6 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None, 
     Exit codes: 0 all went well, 1 the robot's code failed, 2 wrong usage.
     """
     project = chosen_project(directory, main, robot_class)
-    with loading():
+    with loading(verbosity().quiet):
         from pyfrc_core.sim.simulate import SimRequest, simulate
     sys.exit(simulate(project, SimRequest(**request, quiet=verbosity().quiet), partial(click.echo, nl=False)))

@@ -8,7 +8,8 @@ from typing import Literal
 
 import click
 
-from .loading import loading
+from pyfrc_core.processes.loading import loading
+
 from .project_options import chosen_project, project_options
 from .verbosity import verbosity
 
@@ -117,7 +118,7 @@ def command(
     )
     with measuring(project, coverage_options) as measured:
         # Imported here, so that lines of the robot's modules are counted while they are imported.
-        with loading():
+        with loading(verbosity().quiet):
             from pyfrc_core.test_support.options import TestOptions
             from pyfrc_core.test_support.run_tests import run_tests
 

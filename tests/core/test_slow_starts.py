@@ -12,14 +12,11 @@ from functools import partial
 from pathlib import Path
 from unittest.mock import patch
 
-import click
 import pytest
 from conftest import MakeProject
 
-from pyfrc_cli import loading
-from pyfrc_cli.verbosity import Verbosity
 from pyfrc_core import display
-from pyfrc_core.processes import standstill, worker
+from pyfrc_core.processes import loading, standstill, worker
 from pyfrc_core.processes.crash_report import CrashLog
 from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.processes.worker import ForkedWorker, Send, SpawnedWorker
@@ -55,18 +52,15 @@ def at_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
 def loading_for_a_command(quiet: bool = False) -> Iterator[Printed]:
     """Load what a command needs; what it prints meanwhile."""
     stream = Printed()
-    with (
-        click.Context(click.Command("test"), obj=Verbosity(quiet=quiet)),
-        patch.object(sys, "stderr", stream),
-        loading.loading(),
-    ):
+    with patch.object(sys, "stderr", stream), loading.loading(quiet):
         yield stream
 
 
 @pytest.fixture
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is said after seconds is said at once."""
-    monkeypatch.setattr(standstill, "REPORTED_AFTER", 0.0)
+    for module in (standstill, loading):
+        monkeypatch.setattr(module, "REPORTED_AFTER", 0.0)
 
 
 @pytest.mark.usefixtures("at_terminal", "soon")

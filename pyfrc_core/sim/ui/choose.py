@@ -14,6 +14,7 @@ from typing import Literal
 from ...browser import is_ci, why_no_browser
 from ...display import WITHOUT_DISPLAY, has_display, has_terminal
 from ...errors import UsageError
+from ...processes.loading import loading
 from ...season import CURRENT
 from ...shell import getting_tkinter
 from ..engine.extensions import WINDOW
@@ -151,7 +152,8 @@ def make_front_end(name: str, request: SimRequest, say: Say) -> FrontEnd:
             f"--ui {name} needs a display, and there is none",
             remedy=WITHOUT_DISPLAY,
         )
-    return kind.make(request, say)
+    with loading(request.quiet):
+        return kind.make(request, say)
 
 
 class WpilibWindow(FrontEnd):

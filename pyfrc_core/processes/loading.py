@@ -1,4 +1,4 @@
-"""The imports of a command, which is where most of its start goes."""
+"""Imports of many modules, which take seconds on some computers: where a virus scanner reads each file, for example."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
-from pyfrc_core.collector import collector_paused
-from pyfrc_core.display import has_terminal
-
-from .verbosity import verbosity
+from ..collector import collector_paused
+from ..display import has_terminal
+from .standstill import REPORTED_AFTER, slow_start
 
 
 @contextmanager
-def loading() -> Iterator[None]:
+def loading(quiet: bool = False) -> Iterator[None]:
     """Import many modules in the ``with`` block.
 
-    If that takes seconds, a line says so at a terminal, unless the user wants it quiet.
+    If that takes seconds, a line says so at a terminal.
+
+    :param quiet: whether the user wants no such lines
     """
-    from pyfrc_core.processes.standstill import REPORTED_AFTER, slow_start
 
     def say() -> None:
         with suppress(OSError):
@@ -28,7 +28,7 @@ def loading() -> Iterator[None]:
     timer = threading.Timer(REPORTED_AFTER, say)
     timer.daemon = True
     with collector_paused():
-        if verbosity().quiet or not has_terminal():
+        if quiet or not has_terminal():
             yield
             return
         timer.start()
