@@ -94,12 +94,6 @@ def synchronize(
     return Synced(lock, previous)
 
 
-def missing_files(lock: Lock, season: Season) -> list[LockedFile]:
-    """Return the locked files that are not in the season's cache, or have another content there."""
-    cache = cache_of(season)
-    return [each for each in lock.files if not cache.has(each)]
-
-
 def differences(project: Project, season: Season, installed: str | None) -> Iterator[str]:
     """Yield why the robot would not get what the project asks for, each as a sentence.
 
@@ -117,9 +111,10 @@ def differences(project: Project, season: Season, installed: str | None) -> Iter
         if requirement not in wanted:
             yield f"the lock is for {requirement}, which {project.pyproject.name} does not ask for"
     cache = cache_of(season)
-    for each in missing_files(lock, season):
-        wrong = "another content" if cache.path_of(each).exists() else "not on this computer"
-        yield f"{each}: {wrong} ({each.file})"
+    for each in lock.files:
+        if not cache.has(each):
+            wrong = "another content" if cache.path_of(each).exists() else "not on this computer"
+            yield f"{each}: {wrong} ({each.file})"
 
 
 def _previous(file: Path, season: Season, upgrade: bool) -> Lock | None:
@@ -154,8 +149,7 @@ class _Work:
 
     def take_all(self, lock: Lock, source: Path) -> None:
         """Copy the locked files that the cache lacks from a directory."""
-        missing = [each for each in lock.files if not self._cache.has(each)]
-        self._refuse_full_disk(missing)
+        missing = self._missing(lock)
         lacking = [each for each in missing if find_in([source], each) is None]
         if lacking:
             named = ", ".join(each.file for each in lacking[:3])
@@ -170,9 +164,7 @@ class _Work:
 
     def get_all(self, lock: Lock) -> None:
         """Get the locked files that the cache lacks."""
-        missing = [each for each in lock.files if not self._cache.has(each)]
-        self._refuse_full_disk(missing)
-        for each in missing:
+        for each in self._missing(lock):
             self._get(each)
 
     def make_lock(self, wanted: Wanted, previous: Lock | None, keep: bool) -> Lock:
@@ -266,7 +258,9 @@ class _Work:
         take(locked, source, self._cache.path_of(locked))
         self._progress.got(locked, "copied")
 
-    def _refuse_full_disk(self, missing: Sequence[LockedFile]) -> None:
+    def _missing(self, lock: Lock) -> list[LockedFile]:
+        """Return the files that the cache lacks. Refuse to go on if the disk has no space for them."""
+        missing = [each for each in lock.files if not self._cache.has(each)]
         needed = sum(each.size for each in missing)
         place = self._cache.root
         while not place.exists():
@@ -276,3 +270,4 @@ class _Work:
                 f"the disk is too full: {size_text(needed)} are needed in {self._cache.root}",
                 remedy="Free some space, and run pyfrc sync again.",
             )
+        return missing
