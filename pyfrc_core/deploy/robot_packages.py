@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 
 from ..config.packages import PACKAGES, component_of, quoted_requirement
 from ..config.robotpy import COMPONENTS, RobotPackages, unknown_components
+from ..season import CURRENT
 from ..wording import counted
 from .agent.imports import is_there
 from .facts import VIRTUAL_IMAGE
@@ -320,7 +321,7 @@ def _needed_there(needed: Requirement, facts: RobotFacts) -> bool:
     controller = controller_named(facts.controller)
     machines = {facts.machine}
     if facts.machine.startswith(controller.machine):
-        machines.add(controller.marker_machine)
+        machines.add(CURRENT.downloads.marker_machine)
     robot: dict[str, str] = {
         **{key: str(value) for key, value in default_environment().items()},
         "extra": "",

@@ -81,7 +81,9 @@ class RobotSearch:
             self._findings.append(ok(_TOPIC, "not checked: the Driver Station is connected to a competition field"))
         except RobotNotFoundError:
             self._findings.append(self._not_found())
-            self._next = Step.CONTROLLER, f"{_REMEDY} For a new one: {image_it(controller_of(CURRENT))}"
+            controller = controller_of(CURRENT)
+            remedy = " ".join(filter(None, (_REMEDY, controller.radio, f"For a new one: {image_it(controller)}")))
+            self._next = Step.CONTROLLER, remedy
         except HostKeyError as error:
             remedy = "If this is your robot, pyfrc deploy-info shows how to accept its key."
             self._next = Step.CONTROLLER, remedy

@@ -50,7 +50,6 @@ class ControllerKind:
     :param password:         of its users, unless the team has changed it
     :param shared_hosts:     hosts that all teams' robots have, as on a USB cable
     :param machine:          the beginning of its processor architecture, as `platform.machine` returns it
-    :param marker_machine:   what markers of requirements call that architecture
     :param image_it:         how to install its image
     :param leftovers:        what `remove_leftovers` removes
     :param remove_leftovers: a shell script for the administrator, which removes programs in other languages and prints
@@ -63,6 +62,7 @@ class ControllerKind:
     :param image_problem:    returns why an image (the first parameter, None if unknown) is none of the season's images
         (the third) for this version of `wpilib` (the second), or None if it is one
     :param save_memory:      frees memory that the image wastes; None: it wastes none
+    :param radio:            what its radio needs, as a sentence
     :param wastes_memory:    returns whether `save_memory` is needed
     :param repair_stop:      returns the task that replaces a stop command which did not end the program, if any
     """
@@ -72,7 +72,6 @@ class ControllerKind:
     password: str
     shared_hosts: tuple[str, ...]
     machine: str
-    marker_machine: str
     image_it: str
     leftovers: str
     remove_leftovers: str
@@ -82,6 +81,7 @@ class ControllerKind:
     has_image_file: bool = False
     image_in: Callable[[Texts], str | None] = lambda texts: None
     image_problem: Callable[[str | None, str, Sequence[str]], str | None] = lambda image, wpilib, accepted: None
+    radio: str = ""
     save_memory: AdministratorTask | None = None
     wastes_memory: Callable[[Texts], bool] = lambda texts: False
     repair_stop: Callable[[], AdministratorTask | None] = lambda: None

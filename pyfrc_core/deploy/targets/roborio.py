@@ -159,7 +159,6 @@ ROBORIO = ControllerKind(
     password="",
     shared_hosts=(_USB_CABLE,),
     machine="arm",
-    marker_machine="roborio",
     image_it="Image it with the roboRIO Imaging Tool of this season",
     leftovers=f"Java's and C++'s robot programs, their libraries, Java itself, and {_HOME}/deploy",
     remove_leftovers=_REMOVE_LEFTOVERS,

@@ -76,11 +76,11 @@ SYSTEMCORE = ControllerKind(
     password=_USER,
     shared_hosts=(_NAME, _WIFI, *_USB_CABLE),
     machine="aarch64",
-    marker_machine="systemcore",
-    image_it=f'Update its image on its web page (http://{_NAME}, settings, "OS Update")',
+    image_it=f'On its web page (http://{_NAME}), set your team number, and update its image under settings, "OS Update"',
     leftovers=f"Java's and C++'s robot programs in {_HOME}",
     remove_leftovers=removal_script(_LAYOUT, " ".join(_PROGRAMS)) + "sync\n",
     stations=(DriverStation(6770, _station_robot), NI_STATION),
     addresses=_addresses,
     team_of_host=team_of_address,
+    radio="A radio VH-109 needs firmware 2.0.0 or newer, in SystemCore mode: otherwise, there is no 10.TE.AM.2.",
 )
