@@ -47,6 +47,5 @@ def test_from_a_blank_controller_to_the_deploy(make_project: MakeProject, index:
         text, remedy = next_step(project, environment)
     assert text == "3 of 6, the controller: its image, and the connection to it"
     assert "A radio VH-109 needs firmware 2.0.0 or newer, in SystemCore mode" in remedy
-    assert (
-        '(http://robot.local), update its image (settings, "OS Update") and set your team number (image 14)' in remedy
-    )
+    assert "On its web page (http://robot.local), set your team number, and update its image" in remedy
+    assert '"OS Update" (image 14)' in remedy
