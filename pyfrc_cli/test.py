@@ -36,8 +36,9 @@ def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int 
 @click.option("--seed", type=click.IntRange(min=0), help="Random seed. Default: 0.")
 @click.option(
     "--isolation",
-    type=click.Choice(["auto", "fork", "spawn", "none"]),
-    help="Where each test that uses the robot runs: in a fork of this process, a new process, or this one.",
+    type=click.Choice(["auto", "fork", "reuse", "spawn", "none"]),
+    help="Where each test that uses the robot runs: in a fork of this process, a process that is as good as new, a new "
+    "one, or this one.",
 )
 @click.option("--no-isolation", is_flag=True, help="Run all tests in one process, like --isolation none.")
 @click.option("--coverage", is_flag=True, help="Measure which lines of the project the tests run, and report them.")
@@ -80,7 +81,7 @@ def command(
     builtin: bool,
     jobs: int | Literal["auto"] | None,
     seed: int | None,
-    isolation: Literal["auto", "fork", "spawn", "none"] | None,
+    isolation: Literal["auto", "fork", "reuse", "spawn", "none"] | None,
     no_isolation: bool,
     coverage: bool,
     coverage_html: Path | None,
@@ -117,10 +118,7 @@ def command(
         quiet=chosen.quiet,
     )
     with measuring(project, coverage_options) as measured:
-        # Imported here, so that lines of the robot's modules are counted while they are imported.
-        with loading(verbosity().quiet):
-            from pyfrc_core.test_support.options import TestOptions
-            from pyfrc_core.test_support.run_tests import run_tests
+        from pyfrc_core.test_support.options import TestOptions
 
         options = TestOptions.combined(
             project.settings.test,
@@ -131,5 +129,13 @@ def command(
             record_directory=record,
             only_changed=changed,
         )
-        status = run_tests(project, options, builtin=builtin, pytest_args=[*pytest_verbosity, *pytest_args])
+        from pyfrc_core.test_support.isolation.interpreters import opened_interpreters
+
+        with opened_interpreters(project, options) as interpreters:
+            # Imported here, so that lines of the robot's modules are counted while they are imported.
+            with loading(verbosity().quiet):
+                from pyfrc_core.test_support.run_tests import run_tests
+
+            arguments = [*pytest_verbosity, *pytest_args]
+            status = run_tests(project, options, builtin=builtin, pytest_args=arguments, interpreters=interpreters)
     sys.exit(status or measured.status)

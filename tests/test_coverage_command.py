@@ -113,7 +113,7 @@ def functions_run(report: dict[str, Any]) -> set[str]:
     return {name for name, function in functions.items() if name and function["executed_lines"]}
 
 
-@pytest.mark.parametrize("isolation", sampled(["auto", "spawn", "none"], "auto", "none"))
+@pytest.mark.parametrize("isolation", sampled(["auto", "reuse", "spawn", "none"], "auto", "reuse", "none"))
 def test_lines_in_threads_and_isolated_tests_count(project: RobotProject, isolation: str) -> None:
     tests = () if isolation != "none" else ("--", "-k", "teleop")
     report = measured(project, "test", "--isolation", isolation, *tests)

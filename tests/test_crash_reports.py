@@ -54,7 +54,7 @@ TESTS = """
 """
 
 
-@pytest.mark.parametrize("isolation", ["spawn", pytest.param("fork", marks=only_forked)])
+@pytest.mark.parametrize("isolation", ["reuse", "spawn", pytest.param("fork", marks=only_forked)])
 def test_failures_after_a_test_has_been_called(isolation: str, make_project: MakeProject) -> None:
     """In a fixture's teardown: the test's own report of its call has been sent by then."""
     project = make_project({"robot.py": ROBOT, "tests/test_robot.py": TESTS})

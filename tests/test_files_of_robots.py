@@ -63,7 +63,7 @@ def test_tests_at_the_same_time(make_project: MakeProject, name: str) -> None:
     assert result.code == 0, result.output
 
 
-@pytest.mark.parametrize("isolation", sampled(["fork", "spawn"], "fork"))
+@pytest.mark.parametrize("isolation", sampled(["fork", "reuse", "spawn"], "fork", "reuse"))
 def test_either_isolation(make_project: MakeProject, isolation: str) -> None:
     project = make_project({"robot.py": robot("random"), "pyproject.toml": SHORT_MATCH})
     result = project.run("test", "--builtin", "-j", "3", "--isolation", isolation)

@@ -291,6 +291,8 @@ def test_several_at_a_time_give_the_same_in_the_same_order(everything: RobotProj
             "spawn",
             ("test_parametrised", "test_of_module", "test_second_on", "test_unexpectedly", "test_skip", "OldStyle"),
         ),
+        # Used again, each is as good as new.
+        ("reuse", ()),
         # Together in one process, one crash is everybody's, and so is what a module keeps.
         ("none", ("test_crashes", "test_modules_are_new")),
     ],

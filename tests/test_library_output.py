@@ -58,7 +58,7 @@ def check(output: str, times: int) -> None:
 
 
 @pytest.mark.parametrize(
-    "isolation", [pytest.param("fork", marks=needs_fork), pytest.param("spawn", marks=pytest.mark.slow)]
+    "isolation", [pytest.param("fork", marks=needs_fork), "reuse", pytest.param("spawn", marks=pytest.mark.slow)]
 )
 def test_of_the_output_of_tests_that_failed(project: RobotProject, isolation: str) -> None:
     result = project.run("test", "--isolation", isolation)

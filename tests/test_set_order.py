@@ -52,7 +52,9 @@ def test_orders(control, robot, run):
 
 
 @pytest.mark.parametrize(
-    "args", [(), pytest.param(("--no-isolation",), marks=pytest.mark.slow)], ids=["isolated", "one process"]
+    "args",
+    [(), ("--isolation", "reuse"), pytest.param(("--no-isolation",), marks=pytest.mark.slow)],
+    ids=["isolated", "reused", "one process"],
 )
 def test_each_run_has_the_same_order(make_project: MakeProject, args: tuple[str, ...]) -> None:
     project = make_project({"robot.py": ROBOT, "tests/orders_test.py": TEST})

@@ -144,11 +144,31 @@ def test_a_device_in_the_robots_class_is_named(make_project: MakeProject) -> Non
 def test_a_thread_of_a_test_file_is_named_with_its_line(make_project: MakeProject) -> None:
     tests = "    import vision_library\n" + TESTS.lstrip("\n")
     (explained,), outcomes = run(make_project({"robot.py": ROBOT, "tests/test_a.py": tests}))
-    assert "starts a new Python" in explained
+    assert "runs in an interpreter that imports the robot again" in explained
     assert "tests/test_a.py:1 starts the thread 'frames'" in explained.replace("\\", "/")
     assert outcomes == {"test_forked": "FAILED", "test_another": "PASSED"}
 
 
-def test_a_system_without_fork_is_the_reason(make_project: MakeProject) -> None:
-    (explained,), _ = run(make_project({"robot.py": ROBOT, "tests/test_a.py": TESTS}), "-p", "no_fork")
-    assert "this system cannot fork" in explained
+def test_where_nothing_is_forked_interpreters_are_used_again(make_project: MakeProject) -> None:
+    explained, outcomes = run(make_project({"robot.py": ROBOT, "tests/test_a.py": TESTS}), "-p", "no_fork")
+    assert explained == []
+    assert outcomes == {"test_forked": "FAILED", "test_another": "PASSED"}
+
+
+def test_what_a_test_has_left_is_the_reason_for_a_new_interpreter(make_project: MakeProject) -> None:
+    tests = """
+        import json
+
+
+        def test_forked(robot):
+            json.robot_of_test = robot
+
+
+        def test_another(control, robot):
+            with control.run_robot():
+                control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+    """
+    project = make_project({"robot.py": ROBOT, "tests/test_a.py": tests})
+    (explained,), outcomes = run(project, "-p", "no_fork")
+    assert "A new interpreter for each test, because a test has left an object of the class robot." in explained
+    assert outcomes == {"test_forked": "PASSED", "test_another": "PASSED"}

@@ -72,6 +72,12 @@ def forget_noise() -> None:
     _noisy_libraries.clear()
 
 
+def forget_all_noise() -> None:
+    """Forget mechanisms, too: the modules that have made them are imported again."""
+    forget_noise()
+    _noisy_mechanisms.clear()
+
+
 def is_unrepeatable(name: str) -> bool:
     """Return whether a SimDevice, given by its name or by a path into `hal_data`, has values that do not repeat."""
     return any(_DEVICES[module].search(name) for module in unrepeatable_libraries())

@@ -52,6 +52,8 @@ def is_announced(kind: str) -> bool:
 
 def measure_here() -> None:
     """Measure in this new interpreter, if it is part of a run that is measured."""
+    if before_every_exit:  # it does already
+        return
     for kind, variable in _KINDS.items():
         if variable in os.environ:
             _begin(kind, json.loads(os.environ[variable]))

@@ -16,8 +16,9 @@ from ..errors import PyfrcError, RobotCodeError, text_of
 from .crash_report import CrashLog
 from .exit import flush_output
 from .fork import FORK_IS_SAFE, wait_for_any
+from .interpreter import spawn_worker
 from .standstill import StandstillNotice
-from .worker import ForkedWorker, Send, SpawnedWorker, Worker
+from .worker import ForkedWorker, Send, Worker
 
 if TYPE_CHECKING:
     from ..project import Project
@@ -38,7 +39,7 @@ class _FailedThere(Exception):
 
 def can_fork(project: Project) -> bool:
     """Return whether robot code may run in forks of this process: where that is safe, and the settings allow it."""
-    return FORK_IS_SAFE and project.settings.test.isolation != "spawn"
+    return FORK_IS_SAFE and project.settings.test.isolation not in ("reuse", "spawn")
 
 
 def run_in_subprocess(
@@ -56,7 +57,7 @@ def run_in_subprocess(
     call = partial(_send_result, partial(work, replace(project)))
     output = subprocess.DEVNULL if quietly else None
     flush_output()
-    worker = SpawnedWorker(call, stdout=output, stderr=output, environment=ENVIRONMENT)
+    worker = spawn_worker(call, stdout=output, stderr=output, environment=ENVIRONMENT)
     notice = StandstillNotice()
     try:
         worker.wait(lambda: print_standstill(worker, notice, project.files))

@@ -22,6 +22,8 @@ FORK_IS_SAFE = hasattr(os, "fork") and sys.platform not in ("win32", "darwin")
 
 # Seconds between two looks at whether a process has ended while another one holds its pipe open. Decides nothing else.
 _LOOK_SECONDS = 0.05
+# The same for files of a new interpreter.
+_FILES_LOOK_SECONDS = 0.005
 # Robot code may replace the one in `time`.
 _sleep = time.sleep
 # A signal that comes just before Python begins to wait is handled after the wait, which only another signal ends.
@@ -145,7 +147,7 @@ class Fork:
 def wait_for_any(descriptors: Sequence[int]) -> None:
     """Return when one of these has something to read, or a short while has passed."""
     if not descriptors:  # of new interpreters, whose messages are in files; Windows refuses to select from nothing
-        _sleep(_LOOK_SECONDS)
+        _sleep(_FILES_LOOK_SECONDS)
         return
     # `poll`, where there is one, needs no descriptor of its own.
     with getattr(selectors, "PollSelector", selectors.DefaultSelector)() as selector:

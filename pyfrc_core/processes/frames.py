@@ -41,7 +41,7 @@ def decode(stream: bytes) -> Iterator[Any]:
 
 
 def read_frame(stream: IO[bytes]) -> Any:
-    """Return the next object of a buffered stream.
+    """Return the next object of a stream, of which no byte is read that follows it.
 
     :raises EOFError: when the stream ends before its end
     """
@@ -52,7 +52,10 @@ def read_frame(stream: IO[bytes]) -> Any:
 
 
 def _read_exactly(stream: IO[bytes], size: int) -> bytes:
-    data = stream.read(size)
-    if len(data) < size:
-        raise EOFError("the stream has ended")
+    data = b""
+    while len(data) < size:
+        more = stream.read(size - len(data))
+        if not more:
+            raise EOFError("the stream has ended")
+        data += more
     return data

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import IO, Any, Protocol
 
 from ..collector import collector_paused
+from .frames import encode, read_frame
 from .owner import end_with
 
 #: Where no module of the user's is in Python's way, and where this package is found.
@@ -62,7 +63,7 @@ class Start:
     def job(self) -> bytes:
         """Return what the interpreter reads from its standard input."""
         owner = os.getpid() if self.ends_with_owner else None
-        return pickle.dumps(_Job(sys.path, str(Path.cwd()), owner, pickle.dumps(self.call)))
+        return encode(_Job(sys.path, str(Path.cwd()), owner, pickle.dumps(self.call)))
 
 
 @dataclass(frozen=True)
@@ -123,7 +124,8 @@ def open_interpreter(how: Start) -> subprocess.Popen[bytes]:
 
 def main() -> None:
     """Run the job on standard input: what a new interpreter does."""
-    job: _Job = pickle.load(sys.stdin.buffer)
+    with open(0, "rb", buffering=0, closefd=False) as stdin:  # what follows the job is not read here
+        job: _Job = read_frame(stdin)
     if job.owner is not None:
         end_with(job.owner)
     sys.path[:] = job.path

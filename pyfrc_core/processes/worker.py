@@ -3,32 +3,28 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
-import tempfile
 import time
 import traceback
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from pathlib import Path
-from typing import IO, Any, NoReturn
+from typing import IO, Any, NoReturn, TypeVar
 
 from ..project.robot_files import RobotFiles
-from . import fork, spawn
+from . import fork
 from .crash_report import CrashLog, describe_exit, moment_of, standstill_of
 from .exit import end_child_processes, exit_now, flush_output
 from .frames import decode, encode
 from .memory_file import memory_file
 from .standstill import Standstill, loading_for
 
-#: Seconds between two looks at a process that is waited for. Decides nothing else.
-_LOOK_SECONDS = 0.25
-
 _now = time.monotonic  # which robot code may replace
 
 #: Sends an object to the process that has started this one.
 Send = Callable[[object], object]
+
+Result = TypeVar("Result")
 
 #: What a worker does, in its own process: it sends messages, and returns the exit code, or None for 0.
 Work = Callable[[Send, CrashLog], int | None]
@@ -97,7 +93,7 @@ class ForkedWorker(Worker):
         super().__init__()
         self._crash_log: IO[bytes] = memory_file()
         descriptor = self._crash_log.fileno()
-        self._fork = fork.Fork(lambda send: work_and_exit(partial(work, _sender(send)), descriptor))
+        self._fork = fork.Fork(lambda send: work_and_exit(partial(work, sender(send)), descriptor))
 
     def fileno(self) -> int | None:
         return self._fork.fileno()
@@ -127,62 +123,6 @@ class ForkedWorker(Worker):
         return os.pread(descriptor := self._crash_log.fileno(), os.fstat(descriptor).st_size, 0)
 
 
-class SpawnedWorker(Worker):
-    """A new interpreter; its messages are in a file, and read when it has ended.
-
-    :param work: can be pickled
-    :param stdout, stderr, environment: see `spawn.Start`
-    """
-
-    def __init__(
-        self,
-        work: Work,
-        stdout: int | IO[bytes] | None = subprocess.DEVNULL,
-        stderr: int | IO[bytes] | None = subprocess.DEVNULL,
-        environment: Mapping[str, str] | None = None,
-    ) -> None:
-        super().__init__()
-        self._directory = tempfile.TemporaryDirectory(prefix="pyfrc-process-")
-        call = partial(_work_in_new_interpreter, work, Path(self._directory.name))
-        self._process = spawn.start(spawn.Start(call, stdout, stderr, environment))
-
-    def poll(self) -> None:
-        if not self.finished and (status := self._process.poll()) is not None:
-            self._end(status)
-
-    def wait(self, look: Callable[[], object] = lambda: None) -> None:
-        """Wait until it has ended; when that is interrupted, end it.
-
-        :param look: called from time to time
-        """
-        try:
-            while not self.finished:
-                try:
-                    self._end(self._process.wait(_LOOK_SECONDS))
-                except subprocess.TimeoutExpired:
-                    look()
-        except BaseException:
-            self.kill()
-            raise
-
-    def kill(self) -> None:
-        if not self.finished:
-            self._process.kill()
-            self._end(self._process.wait())
-
-    def close(self) -> None:
-        self.kill()
-        self._directory.cleanup()
-
-    def _end(self, status: int) -> None:
-        self.status = status
-        self._received = _contents(_messages_in(Path(self._directory.name)))
-        self.finished = True
-
-    def _crash_report(self) -> bytes:
-        return _contents(_crash_log_in(Path(self._directory.name)))
-
-
 def wait_for_any(workers: Sequence[Worker]) -> None:
     """Return when at least one of these has something new, or may have ended."""
     running = [worker for worker in workers if not worker.finished]
@@ -200,39 +140,27 @@ def work_and_exit(work: Callable[[CrashLog], int | None], crash_log: int) -> NoR
 
     :param crash_log: the descriptor of an empty file, open for reading and writing
     """
-    status = 1
+    status = None
     try:
         log = CrashLog(crash_log)
         log.enable()
-        try:
-            status = work(log) or 0
-        except BaseException:
-            log.write(traceback.format_exc())
+        status = do_work(lambda: work(log) or 0, log)
+    finally:
+        exit_now(1 if status is None else status)  # without waiting for what the work has left running
+
+
+def do_work(work: Callable[[], Result], log: CrashLog) -> Result | None:
+    """Return the result of work in this process; None if it has raised something, which is then in the log."""
+    try:
+        return work()
+    except BaseException:
+        log.write(traceback.format_exc())
+        return None
     finally:
         end_child_processes()
         flush_output()
-        exit_now(status)  # without waiting for what the work has left running
 
 
-def _work_in_new_interpreter(work: Work, directory: Path) -> NoReturn:
-    with (
-        _messages_in(directory).open("wb", buffering=0) as messages,
-        _crash_log_in(directory).open("w+b", buffering=0) as crash_log,
-    ):
-        work_and_exit(partial(work, _sender(messages.write)), crash_log.fileno())
-
-
-def _sender(send: Callable[[bytes], object]) -> Send:
+def sender(send: Callable[[bytes], object]) -> Send:
+    """Return what sends objects, by a function that sends bytes."""
     return lambda content: send(encode(content))
-
-
-def _messages_in(directory: Path) -> Path:
-    return directory / "messages"
-
-
-def _crash_log_in(directory: Path) -> Path:
-    return directory / "crash"
-
-
-def _contents(file: Path) -> bytes:
-    return file.read_bytes() if file.is_file() else b""

@@ -48,28 +48,51 @@ def taking_turns() -> Iterator[None]:
             del os.environ[_VARIABLE]
 
 
-def take() -> None:
-    """Wait until this process may run the robot. It must end after the run."""
-    directory = os.environ.pop(_VARIABLE, None)  # a command that robot code or a test starts does not wait for this one
+def agreed() -> str | None:
+    """Return by what processes of this command agree: for `take` in one that was started before `taking_turns`."""
+    return os.environ.get(_VARIABLE)
+
+
+def take(agreed: str | None = None) -> None:
+    """Wait until this process may run the robot, which it may until `give_back`, or until it ends."""
+    global _turn
+    # Removed: a command that robot code or a test starts does not wait for this one.
+    directory = os.environ.pop(_VARIABLE, agreed)
     if directory is not None:
-        _Turn(Path(directory))
+        _turn = _turn or _Turn(Path(directory))
+        _turn.begin()
+
+
+def give_back() -> None:
+    """End the turn of this process, if it has one: its run is over."""
+    if _turn is not None:
+        _turn.end()
 
 
 class _Turn:
     """The turn of one process: that of a run until it is given back, or the process ends."""
 
     def __init__(self, directory: Path) -> None:
+        self._directory = directory
         #: "together" or "alone", once it is known.
         self._how = directory / "how"
         self._wrote = False
         self._file: IO[bytes] | None = None
-        if self._read_how() != "together":
-            self._file = (directory / "turn").open("ab")
-            _lock(self._file)
-            if self._read_how() == "together":
-                self._give_back()
         sys.addaudithook(self._on_event)
         active_run.when_started = self._on_started
+
+    def begin(self) -> None:
+        self._wrote = False
+        if self._read_how() != "together":
+            self._file = (self._directory / "turn").open("ab")
+            _lock(self._file)
+            if self._read_how() == "together":
+                self.end()
+
+    def end(self) -> None:
+        if self._file is not None:
+            self._file.close()
+            self._file = None
 
     def _read_how(self) -> str:
         try:
@@ -80,12 +103,7 @@ class _Turn:
     def _on_started(self) -> None:
         if self._file is not None and not self._wrote and self._read_how() != "alone":
             self._how.write_text("together")
-            self._give_back()
-
-    def _give_back(self) -> None:
-        assert self._file is not None
-        self._file.close()
-        self._file = None
+            self.end()
 
     def _on_event(self, event: str, args: tuple[Any, ...]) -> None:
         if self._wrote or not (event in _CHANGING_FILES or (event == "open" and _is_for_writing(*args))):
@@ -95,6 +113,10 @@ class _Turn:
             self._wrote = True
             with contextlib.suppress(OSError):  # the command is over
                 self._how.write_text("alone")
+
+
+#: That of this process.
+_turn: _Turn | None = None
 
 
 def _is_for_writing(file: object, mode: str | None, flags: int) -> bool:

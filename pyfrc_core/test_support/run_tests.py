@@ -12,6 +12,7 @@ import pytest
 from ..errors import PyfrcError, UsageError
 from ..processes.fork import FORK_IS_SAFE
 from ..processes.prefork import PreforkedProcess
+from ..processes.reuse import Interpreters
 from ..project import Project
 from ..runtime.threads.fork_obstacles import reasons_not_to_fork
 from ..season import CURRENT
@@ -50,11 +51,13 @@ def run_tests(
     *,
     builtin: bool = False,
     pytest_args: Sequence[str] = (),
+    interpreters: Interpreters | None = None,
 ) -> int:
     """Run the project's tests, or the ready-made ones, and return pytest's exit code.
 
     :param builtin: run the ready-made tests if the project has none
     :param pytest_args: passed on to pytest
+    :param interpreters: those that were started for tests that cannot be forked
     :raises NoTestsError: when the project has no tests, and `builtin` is not set
     :raises RobotCodeError: when the robot's code cannot be imported
     """
@@ -78,7 +81,7 @@ def run_tests(
         passes = RememberedPasses(project, options, pytest_args, builtin)
         plugins = [
             plugin,
-            IsolatedTests(plugin),
+            IsolatedTests(plugin, interpreters),
             SummaryPlugin(project, whole=not any(map(_selects, pytest_args))),
             _NoUnusedHypothesis(),
             passes,

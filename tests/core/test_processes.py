@@ -30,8 +30,9 @@ from pyfrc_core.processes.exit import (
 )
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork
 from pyfrc_core.processes.frames import decode, encode
+from pyfrc_core.processes.interpreter import spawn_worker
 from pyfrc_core.processes.prefork import PreforkedProcess
-from pyfrc_core.processes.worker import ForkedWorker, Send, SpawnedWorker, Work, Worker, wait_for_any
+from pyfrc_core.processes.worker import ForkedWorker, Send, Work, Worker, wait_for_any
 from pyfrc_core.project import Project
 from pyfrc_core.project.robot_files import RobotFiles
 
@@ -44,7 +45,7 @@ PATIENCE = 60
 #: This file counts as the project's.
 FILES = RobotFiles(Path(__file__).parent)
 
-BOTH = [pytest.param(ForkedWorker, marks=only_forked), SpawnedWorker]
+BOTH = [pytest.param(ForkedWorker, marks=only_forked), spawn_worker]
 
 
 def finish(worker: Worker) -> list[Any]:
@@ -112,7 +113,7 @@ def test_interpreters_are_waited_for_where_nothing_can_be_selected_from(
     for name in ("PollSelector", "SelectSelector", "DefaultSelector"):
         if hasattr(selectors, name):
             monkeypatch.setattr(getattr(selectors, name), "select", select)
-    assert finish(begin(SpawnedWorker, send_three)) == [0, 1, 2]
+    assert finish(begin(spawn_worker, send_three)) == [0, 1, 2]
 
 
 @only_forked

@@ -25,6 +25,7 @@ from ...compat import pytest_private
 from ...compat.unrepeatable import real_time_libraries
 from ...display import has_terminal
 from ...processes.fork import FORK_IS_SAFE
+from ...processes.reuse import Interpreters
 from ...processes.worker import wait_for_any
 from ...processors import usable_processors
 from ...project.robot_files import RobotFiles
@@ -37,6 +38,7 @@ from ..options import Jobs
 from ..pytest_plugin import PyFrcPlugin, seed_section
 from ..reporting import BUG, bug_of
 from .durations import Durations, longest_first
+from .interpreters import start_interpreters
 from .messages import replay
 from .processes import TestProcess, forked_test, spawned_test
 from .uncaptured import UncapturedOutput, uncaptured_output
@@ -45,14 +47,20 @@ from .uncaptured import UncapturedOutput, uncaptured_output
 _ROBOT_LIBRARIES = frozenset({"wpilib", "hal", "ntcore", "commands2", "magicbot"})
 
 _IMPORTS_LATE = "Each robot test imports the robot again, which is slower: on import, {}. Do that in robotInit."
-_STARTS_PYTHON = "Each robot test starts a new Python, which is some 20 times slower: on import, {}."
+_NOT_FORKED = "Each robot test runs in an interpreter that imports the robot again, which is slower: on import, {}."
+_NOT_AS_GOOD_AS_NEW = "A new interpreter for each test, because a test has left {}."
 
 
 class IsolatedTests:
-    """The part of the plugin that runs tests in processes of their own."""
+    """The part of the plugin that runs tests in processes of their own.
 
-    def __init__(self, plugin: PyFrcPlugin) -> None:
+    :param interpreters: those that were started ahead for tests that cannot be forked; this ends them
+    """
+
+    def __init__(self, plugin: PyFrcPlugin, interpreters: Interpreters | None = None) -> None:
         self._plugin = plugin
+        #: For tests that are not forked.
+        self._interpreters = interpreters
         self._running: dict[pytest.Item, TestProcess] = {}
         self._announced: pytest.Item | None = None
         self._explained = False
@@ -83,6 +91,7 @@ class IsolatedTests:
                 for process in self._running.values():
                     process.worker.kill()
                 self._running.clear()
+                self._end_interpreters(session.config)
                 durations.save()
         return True
 
@@ -129,9 +138,22 @@ class IsolatedTests:
                 plugin = self._plugin
                 if item is waiting[0]:
                     self._announce(item)
-                self._running[item] = forked_test(item, plugin, self._output) if forked else spawned_test(item, plugin)
+                if forked:
+                    self._running[item] = forked_test(item, plugin, self._output)
+                else:
+                    if self._interpreters is None:
+                        self._interpreters = start_interpreters(plugin.project, plugin.options)
+                    more = len(items) - 1 - items.index(item)
+                    self._running[item] = spawned_test(item, plugin, self._interpreters, more)
         self._finish(session, waiting, down_to=0)
         _tear_down_shared(session, previous, None)
+
+    def _end_interpreters(self, config: pytest.Config) -> None:
+        if self._interpreters is None:
+            return
+        if config.get_verbosity() > 0 and (reason := self._interpreters.why_not_again()):
+            self._explain(config, _NOT_AS_GOOD_AS_NEW.format(reason))
+        self._interpreters.close()
 
     def _groups(self, session: pytest.Session, jobs: int) -> Iterator[list[int]]:
         """Yield the positions of tests, in the order in which to start them.
@@ -171,6 +193,7 @@ class IsolatedTests:
             del self._running[item]
             if self._output is not None:
                 self._output.flush()
+                process.show()
             _report(item, process, self._plugin.project.files, seed_section(self._plugin.options))
             process.close()
             item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
@@ -210,10 +233,9 @@ class IsolatedTests:
 
     def _can_fork(self, config: pytest.Config) -> bool:
         isolation = self._plugin.options.isolation
-        if isolation == "spawn":
+        if isolation in ("reuse", "spawn"):
             return False
         if isolation == "auto" and not FORK_IS_SAFE:
-            self._explain(config, "Each robot test starts a new Python: this system cannot fork a process safely.")
             return False
         if self._plugin.imports_late:
             self._explain(config, _IMPORTS_LATE.format(self._plugin.imports_late))
@@ -229,7 +251,7 @@ class IsolatedTests:
                 "the robot's tests cannot be forked: importing the robot, or a test file, has made devices or threads, "
                 f"which a fork would lack ({reasons}). Leave out --isolation fork."
             )
-        self._explain(config, _STARTS_PYTHON.format(reasons))
+        self._explain(config, _NOT_FORKED.format(reasons))
         return False
 
     def _explain(self, config: pytest.Config, text: str) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import signal
+import sys
 import tempfile
+from collections.abc import Callable
 from functools import partial
 from typing import IO
 
@@ -11,9 +13,11 @@ import pytest
 
 from ...compat.pytest_private import capture_into
 from ...processes.crash_report import CrashLog
+from ...processes.interpreter import SpawnedWorker
+from ...processes.reuse import Interpreters
 from ...processes.standstill import StandstillNotice
-from ...processes.worker import ForkedWorker, Send, SpawnedWorker, Worker
-from ...runtime.turns import take
+from ...processes.worker import ForkedWorker, Send, Worker
+from ...runtime.turns import agreed, take
 from ..pytest_plugin import PyFrcPlugin
 from .messages import ReportSender
 from .uncaptured import UncapturedOutput
@@ -43,19 +47,18 @@ class TestProcess:
 
     __test__ = False  # pytest: not a test class, for all its name
 
-    def __init__(self, worker: Worker, captured: Captured, nodeid: str) -> None:
+    def __init__(self, worker: Worker, captured: Callable[[], str], close: Callable[[], object], nodeid: str) -> None:
         self.worker = worker
         self.notice = StandstillNotice(nodeid)
-        self._captured = captured
+        #: Return what the process printed since its last report.
+        self.captured = captured
+        #: Remove what the process has left, once it is reported.
+        self.close = close
 
-    def captured(self) -> str:
-        """Return what the process printed since its last report."""
-        return self._captured.text()
-
-    def close(self) -> None:
-        """Remove what the process has left, once it is reported."""
-        self.worker.close()
-        self._captured.close()
+    def show(self) -> None:
+        """Print what it has printed, where pytest captures nothing: a fork has printed that itself."""
+        if isinstance(self.worker, SpawnedWorker):
+            sys.stdout.write(self.captured())
 
 
 def forked_test(item: pytest.Item, plugin: PyFrcPlugin, output: UncapturedOutput | None) -> TestProcess:
@@ -65,14 +68,22 @@ def forked_test(item: pytest.Item, plugin: PyFrcPlugin, output: UncapturedOutput
     """
     captured = Captured()
     files = captured.stdout.fileno(), captured.stderr.fileno()
-    return TestProcess(ForkedWorker(partial(_run_in_fork, item, plugin, files, output)), captured, item.nodeid)
+    worker = ForkedWorker(partial(_run_in_fork, item, plugin, files, output))
+
+    def close() -> None:
+        worker.close()
+        captured.close()
+
+    return TestProcess(worker, captured.text, close, item.nodeid)
 
 
-def spawned_test(item: pytest.Item, plugin: PyFrcPlugin) -> TestProcess:
-    """Begin a test in a new interpreter, which collects the tests again and runs one of them."""
+def spawned_test(item: pytest.Item, plugin: PyFrcPlugin, interpreters: Interpreters, more: int) -> TestProcess:
+    """Begin a test in another interpreter, which collects the tests again and runs one of them.
+
+    :param more: how many tests are known to follow
+    """
     from .spawned import TestJob, run_in_interpreter
 
-    captured = Captured()
     job = TestJob(
         [str(argument) for argument in item.config.invocation_params.args],
         str(item.config.invocation_params.dir),
@@ -80,10 +91,10 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin) -> TestProcess:
         plugin.project.main_file,
         plugin.project.class_name,
         plugin.options,
+        agreed(),
     )
-    return TestProcess(
-        SpawnedWorker(partial(run_in_interpreter, job), captured.stdout, captured.stderr), captured, item.nodeid
-    )
+    worker = interpreters.begin(partial(run_in_interpreter, job), more)
+    return TestProcess(worker, worker.printed, partial(interpreters.end, worker), item.nodeid)
 
 
 # -- on the other side -----------------------------------------------------------------------------------------------

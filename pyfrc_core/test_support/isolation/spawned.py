@@ -24,6 +24,7 @@ class TestJob:
 
     :param args: pytest's arguments
     :param directory: where pytest was called
+    :param turns: see `turns.agreed`
     """
 
     __test__ = False  # pytest: not a test class, for all its name
@@ -34,6 +35,7 @@ class TestJob:
     main_file: Path
     class_name: str | None
     options: TestOptions
+    turns: str | None = None
 
 
 class OnlyOneTest:
@@ -55,7 +57,7 @@ class OnlyOneTest:
         from ...runtime.turns import take
         from .messages import ReportSender
 
-        take()
+        take(self._job.turns)
         self._plugin.crash_log = self._log
         self._log.enable_fault_handler()  # pytest has one of its own
         for item in session.items:

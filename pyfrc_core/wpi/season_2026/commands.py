@@ -38,6 +38,11 @@ def scheduled_commands() -> tuple[Any, ...]:
     return tuple(getattr(commands2.CommandScheduler.getInstance(), SCHEDULED_COMMANDS.name, ()))
 
 
+def names_of_scheduled() -> list[str]:
+    """Return the names of the commands that run; none if commands2 has not been imported."""
+    return [name_of(command) for command in scheduled_commands()] if "commands2" in sys.modules else []
+
+
 def watch_commands(
     began: Callable[[Any], None], finished: Callable[[Any], None], interrupted: Callable[[Any], None]
 ) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import wpilib
 from wpilib import Field2d
 from wpimath.geometry import Pose2d
+from wpiutil import Sendable, SendableBuilder, SendableRegistry
 
 from ..widgets import Chooser, Widget
 from . import network
@@ -46,13 +47,34 @@ def show_field(name: str, field: Field2d) -> None:
 def shown(name: str) -> object | None:
     """Return the object that dashboards show under a name; None if there is none."""
     try:
-        return wpilib.SmartDashboard.getData(name)
+        found = wpilib.SmartDashboard.getData(name)
     except RuntimeError:  # nothing has this name
         return None
+    return None if isinstance(found, _Nothing) else found
+
+
+class _Nothing(Sendable):
+    """What a dashboard shows instead of an object that is gone."""
+
+    def initSendable(self, builder: SendableBuilder) -> None:
+        """Show nothing."""
+
+
+def forget_shown() -> None:
+    """Release the objects that dashboards show: `SmartDashboard` keeps them for as long as the process lives."""
+    for entry in network.entry_names():
+        if entry.startswith(_SMART_DASHBOARD) and entry.endswith(_TYPE):
+            name = entry.removeprefix(_SMART_DASHBOARD).removesuffix(_TYPE)
+            if shown(name) is not None:
+                nothing = _Nothing()
+                wpilib.SmartDashboard.putData(name, nothing)
+                # To a table that there is not: its entries end.
+                SendableRegistry.publish(SendableRegistry.getUniqueId(nothing), wpilib.SendableBuilderImpl())
 
 
 #: The tables whose entries dashboards show.
 _TABLES = ("/SmartDashboard/", "/Shuffleboard/")
+_SMART_DASHBOARD, _TYPE = "/SmartDashboard/", "/.type"
 _CHOOSER = "String Chooser"
 
 #: Whether a field can be shown before there is a robot.

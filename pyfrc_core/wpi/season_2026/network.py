@@ -184,6 +184,18 @@ def persistent_values() -> Iterator[tuple[str, str, Any]]:
             yield name, type_name, _tables().getEntry(name).getValue().value()
 
 
+#: Entries that WPILib publishes for itself, in C++, as soon as there is a robot.
+OF_WPILIB = ("/FMSInfo/", "/LiveWindow/.status/", "/Shuffleboard/.metadata/")
+
+
+def forget_entries() -> None:
+    """Publish no entry any longer that is published by no object of the robot's."""
+    for topic in _tables().getTopics():
+        topic.setPersistent(False)
+        topic.setRetained(False)
+        _tables().getEntry(topic.getName()).unpublish()
+
+
 # -- what is written to it ---------------------------------------------------------------------------------------------
 
 

@@ -66,7 +66,15 @@ def shown(name: str) -> object | None:
     return _shown.get(name, name)  # of what robot code has published, no more is known than the name
 
 
-_CHOOSER = "Selectable"
+def forget_shown() -> None:
+    """Release the objects that dashboards can change: `tunables` keeps them for as long as the process lives."""
+    for entry in network.entry_names():
+        if entry.startswith(_TUNABLES) and entry.endswith(_TYPE):
+            tunables.remove(entry.removeprefix(_TUNABLES).removesuffix(_TYPE))
+    _shown.clear()
+
+
+_CHOOSER, _TYPE = "Selectable", "/.type"
 
 #: Whether a field can be shown before there is a robot, whose constructor connects tunables to NetworkTables.
 WITHOUT_ROBOT = False

@@ -190,6 +190,18 @@ def persistent_values() -> Iterator[tuple[str, str, Any]]:
             yield name, type_name, _tables().get_entry(name).get_value().value()
 
 
+#: Entries that WPILib publishes for itself, in C++, as soon as there is a robot.
+OF_WPILIB = ("/FMSInfo/", "/DriverStation/")
+
+
+def forget_entries() -> None:
+    """Publish no entry any longer that is published by no object of the robot's."""
+    for topic in _tables().get_topics():
+        topic.set_persistent(False)
+        topic.set_retained(False)
+        _tables().get_entry(topic.get_name()).unpublish()
+
+
 # -- what is written to it ---------------------------------------------------------------------------------------------
 
 

@@ -1,0 +1,97 @@
+"""Interpreters that are used again while they are as good as new: where processes cannot be forked.
+
+One is started for each piece of work that runs at the same time. While each is as good as new after its work, there
+are no more than these. From the first on that is not, others are started ahead, so that the next work finds one ready.
+An interpreter that crashes, or is ended because it hangs, is replaced in the same way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from ..processors import usable_processors
+from .interpreter import Interpreter, Prepare, SpawnedWorker
+from .worker import Work
+
+
+class Interpreters:
+    """The interpreters of one command.
+
+    :param prepare: called in each before its first work; None: each does one piece of work
+    :param ahead: how many to start now, for the first work
+    :param keeps_output: whether their workers return what was printed
+    :param environment: variables that differ from this process's
+    """
+
+    def __init__(
+        self,
+        prepare: Prepare | None,
+        ahead: int = 0,
+        *,
+        keeps_output: bool = False,
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
+        self._prepare, self._keeps_output, self._environment = prepare, keeps_output, environment
+        self._reason = ""
+        #: Those that were started ahead, and those that have done their work, which may have left something.
+        self._unused: list[Interpreter] = []
+        self._used: list[Interpreter] = []
+        self._working: list[Interpreter] = []
+        self._start_ahead(ahead)
+
+    def begin(self, work: Work, more: int = 0) -> SpawnedWorker:
+        """Begin a piece of work. Give its worker to `end` afterwards.
+
+        :param more: how many are known to follow
+        """
+        interpreter = self._take()
+        self._working.append(interpreter)
+        worker = interpreter.begin(work)
+        if self._reason or self._prepare is None:
+            self._start_ahead(min(more, usable_processors()))
+        return worker
+
+    def end(self, worker: SpawnedWorker) -> None:
+        """Take back the interpreter of a worker, whose result is not needed any more."""
+        worker.close()
+        interpreter = worker.interpreter
+        self._working.remove(interpreter)
+        if worker.goes_on:
+            self._used.append(interpreter)
+        else:
+            interpreter.close()
+
+    def why_not_again(self) -> str:
+        """Return what the first piece of work has left of which that is true; empty if each left nothing."""
+        for interpreter in self._used:
+            if not self._reason:
+                self._note(interpreter.left_over())
+        return self._reason
+
+    def close(self) -> None:
+        """End all interpreters."""
+        for interpreter in (*self._unused, *self._used, *self._working):
+            interpreter.close()
+        self._unused, self._used, self._working = [], [], []
+
+    def _take(self) -> Interpreter:
+        """Return an interpreter that is as good as new, started now if there is none."""
+        self._used.sort(key=lambda each: not each.is_restored)
+        while self._used and (self._used[0].is_restored or not self._unused):
+            interpreter = self._used.pop(0)
+            left = interpreter.left_over()
+            if left is not None and not left:
+                return interpreter
+            self._note(left)
+            interpreter.close()
+        return self._unused.pop(0) if self._unused else self._start()
+
+    def _note(self, left: Sequence[str] | None) -> None:
+        self._reason = self._reason or "; ".join(left or ())
+
+    def _start_ahead(self, number: int) -> None:
+        while len(self._unused) < number:
+            self._unused.append(self._start())
+
+    def _start(self) -> Interpreter:
+        return Interpreter(self._prepare, keeps_output=self._keeps_output, environment=self._environment)

@@ -1,0 +1,22 @@
+"""Devices of the simulated HAL, and what WPILib waits for in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ...hal import existing_devices
+from ...hal.reset import forget_inputs
+from .part import Part
+
+
+class Devices(Part):
+    """The devices: each ends with the object that has made it."""
+
+    def __init__(self) -> None:
+        self._before = existing_devices()
+
+    def left_over(self) -> Iterator[str]:
+        left = [device for device in existing_devices() if device not in self._before]
+        yield from (f"the device {device}" for device in left)
+        if not left:
+            forget_inputs()

@@ -1,0 +1,53 @@
+"""The interpreters for tests that are not forked, which are started before this process has imported what it needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...processes.fork import FORK_IS_SAFE
+from ...processes.reuse import Interpreters
+from ...processors import usable_processors
+from ..options import TestOptions
+
+if TYPE_CHECKING:
+    from ...processes.interpreter import InitialState
+    from ...project import Project
+
+
+@contextmanager
+def opened_interpreters(project: Project, options: TestOptions) -> Iterator[Interpreters | None]:
+    """Start the interpreters for tests that are not forked; None if tests are forked, or run in this process."""
+    if options.isolation in ("none", "fork") or (options.isolation == "auto" and FORK_IS_SAFE):
+        yield None
+        return
+    with closing(start_interpreters(project, options)) as interpreters:
+        yield interpreters
+
+
+def start_interpreters(project: Project, options: TestOptions) -> Interpreters:
+    """Return the interpreters, of which as many are started now as tests run at a time."""
+    prepare = None if options.isolation == "spawn" else partial(_prepare, project.main_file)
+    jobs = usable_processors() if options.jobs == "auto" else min(options.jobs, usable_processors())
+    return Interpreters(prepare, jobs, keeps_output=True)
+
+
+# -- on the other side -----------------------------------------------------------------------------------------------
+
+
+def _prepare(main_file: Path) -> InitialState:
+    """Import what each test needs; return the state in which each is to begin."""
+    from ...measure.processes import measure_here
+
+    measure_here()
+    from ...project import Project
+    from ...runtime.as_good_as_new.state import ProcessState
+    from ...runtime.patches.install import patches
+    from . import messages, spawned  # noqa: F401
+
+    project = Project(main_file)
+    patches.install(project.files)
+    return ProcessState(project.files)

@@ -1,0 +1,202 @@
+"""A process that has run a robot is put back into the state of a new one; what cannot be put back is noticed."""
+
+from __future__ import annotations
+
+import sys
+import textwrap
+import time
+from collections.abc import Iterator
+from contextlib import closing
+from functools import partial
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from pyfrc_core.processes.crash_report import CrashLog
+from pyfrc_core.processes.interpreter import InitialState, SpawnedWorker
+from pyfrc_core.processes.reuse import Interpreters
+from pyfrc_core.processes.worker import Send, wait_for_any
+from pyfrc_core.project.robot_files import RobotFiles
+
+#: Wall seconds, for what takes a hundredth of that.
+PATIENCE = 60
+
+
+def prepare(root: Path) -> InitialState:
+    """Return the state of an interpreter for the robots of a project."""
+    from pyfrc_core.runtime.as_good_as_new.state import ProcessState
+    from pyfrc_core.runtime.patches.install import patches
+
+    files = RobotFiles(root)
+    patches.install(files)
+    return ProcessState(files)
+
+
+def run_code(code: str, root: Path) -> None:
+    """Run code as a module of the project's tests: its threads are real ones at once."""
+    module = sys.modules["leaky"] = ModuleType("leaky")
+    module.__file__ = str(root / "tests" / "leaky.py")
+    exec(compile(textwrap.dedent(code), module.__file__, "exec"), vars(module))
+
+
+def do(code: str, root: Path, send: Send, log: CrashLog) -> None:
+    """Run code, and send what it leaves in ``found``."""
+    run_code(code, root)
+    send(vars(sys.modules["leaky"]).get("found"))
+
+
+def notice(code: str, root: Path, send: Send, log: CrashLog) -> None:
+    """Run code, and send what is noticed of it."""
+    from pyfrc_core.runtime.as_good_as_new.state import ProcessState
+
+    state = prepare(root)
+    assert isinstance(state, ProcessState)
+    run_code(code, root)
+    send(list(state.left_over()))
+
+
+@pytest.fixture
+def interpreters(tmp_path: Path) -> Iterator[Interpreters]:
+    with closing(Interpreters(partial(prepare, tmp_path))) as interpreters:
+        yield interpreters
+
+
+def finished(worker: SpawnedWorker) -> SpawnedWorker:
+    """Wait for a worker, and return it."""
+    deadline = time.monotonic() + PATIENCE
+    while not worker.finished:
+        assert time.monotonic() < deadline
+        wait_for_any([worker])
+    return worker
+
+
+def result_of(interpreters: Interpreters, code: str, root: Path) -> object:
+    """Run code in one of these, and return what it has found."""
+    worker = finished(interpreters.begin(partial(do, code, root)))
+    messages = list(worker.messages())
+    assert messages, worker.describe_exit(RobotFiles(root), "here")
+    interpreters.end(worker)
+    return messages[0]
+
+
+#: What code leaves; what is said of it; and whether it can be put back.
+LEAKS = {
+    "thread": (
+        """
+        import threading
+        threading.Thread(target=threading.Event().wait, name="camera", daemon=True).start()
+        """,
+        "the thread 'camera'",
+        False,
+    ),
+    "device in a library": (
+        """
+        import json, wpilib
+        json.motor = wpilib.PWMSparkMax(3)
+        """,
+        "the device pwm[3]",
+        False,
+    ),
+    "function": (
+        """
+        import math
+        math.sqrt = abs
+        """,
+        "the replaced math.sqrt",
+        True,
+    ),
+    "method": (
+        """
+        import wpilib
+        wpilib.Timer.getFPGATimestamp = lambda: 0.0
+        """,
+        "getFPGATimestamp",
+        True,
+    ),
+    "variable": ("import os; os.environ['PLANTED'] = 'x'", "the environment variable PLANTED", True),
+    "directory": ("import os; os.chdir(os.sep)", "the current directory", True),
+    "entry": (
+        """
+        import json, ntcore
+        json.publisher = ntcore.NetworkTableInstance.getDefault().getDoubleTopic("/planted").publish()
+        json.publisher.set(1.0)
+        """,
+        "the entry /planted of NetworkTables",
+        False,
+    ),
+    "entry of a dashboard": (
+        "import wpilib; wpilib.SmartDashboard.putNumber('planted', 1.0)",
+        "the entry /SmartDashboard/planted of NetworkTables",
+        True,
+    ),
+    "command": (
+        """
+        import commands2, wpilib
+        wpilib.DriverStation.refreshData()
+        from wpilib.simulation import DriverStationSim
+        DriverStationSim.setEnabled(True)
+        DriverStationSim.notifyNewData()
+        commands2.RunCommand(lambda: None).withName("planted").schedule()
+        """,
+        "the command planted",
+        True,
+    ),
+    "object": (
+        """
+        import json
+        class Registered: pass
+        json.registered = [Registered()]
+        """,
+        "an object of the class leaky.Registered",
+        False,
+    ),
+    "module": ("", "the module leaky", True),
+    "signal": ("import signal; signal.signal(signal.SIGTERM, lambda *_: None)", "SIGTERM", True),
+    "stream": ("import io, sys; sys.stdout = io.StringIO()", "sys.stdout", True),
+    "log": ("import logging; logging.getLogger().setLevel(logging.DEBUG)", "the logger root", True),
+    "chance": ("import random; random.random()", "the state of random", True),
+    "search path": ("import sys; sys.path.append('planted')", "sys.path", True),
+}
+
+
+@pytest.mark.parametrize(("code", "said", "restored"), LEAKS.values(), ids=LEAKS)
+def test_what_code_leaves_is_noticed(
+    code: str, said: str, restored: bool, interpreters: Interpreters, tmp_path: Path
+) -> None:
+    """Each is noticed; what can be put back is, and all else has the next interpreter take over."""
+    worker = finished(interpreters.begin(partial(notice, code, tmp_path)))
+    (noticed,) = worker.messages()
+    assert any(said in each for each in noticed), noticed
+    interpreters.end(worker)
+
+    first = result_of(interpreters, "import os; found = os.getpid()", tmp_path)
+    result_of(interpreters, code, tmp_path)
+    second = result_of(interpreters, "import os; found = os.getpid()", tmp_path)
+    assert (first == second) is restored, interpreters.why_not_again()
+    assert restored or said in interpreters.why_not_again()
+
+
+def test_the_next_one_finds_nothing(interpreters: Interpreters, tmp_path: Path) -> None:
+    everything = "\n".join(textwrap.dedent(code) for code, _, restored in LEAKS.values() if restored)
+    look = "import math, os, sys; found = os.getpid(), math.sqrt(4), os.getcwd(), 'PLANTED' in os.environ, sys.path"
+    before = result_of(interpreters, look, tmp_path)
+    result_of(interpreters, everything, tmp_path)
+    assert result_of(interpreters, look, tmp_path) == before
+    assert interpreters.why_not_again() == ""
+
+
+def test_one_that_crashes_is_replaced(interpreters: Interpreters, tmp_path: Path) -> None:
+    worker = finished(interpreters.begin(partial(do, "import os; os._exit(5)", tmp_path)))
+    assert worker.status == 5
+    assert "leaky.py:1" in worker.describe_exit(RobotFiles(tmp_path), "here")
+    interpreters.end(worker)
+    assert result_of(interpreters, "found = 1", tmp_path) == 1
+
+
+def test_what_is_printed_belongs_to_its_work(tmp_path: Path) -> None:
+    with closing(Interpreters(partial(prepare, tmp_path), keeps_output=True)) as interpreters:
+        for text in ("first", "second"):
+            worker = finished(interpreters.begin(partial(do, f"print('{text}')", tmp_path)))
+            assert worker.printed() == f"{text}\n"
+            interpreters.end(worker)
