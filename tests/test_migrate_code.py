@@ -398,6 +398,22 @@ CODE = {
         fire = driver.get_hid().get_raw_button(10) or stick.get_raw_button(5)
         """,
     ),
+    "a PlayStation controller by numbers": (
+        """
+        from wpilib import PS4Controller
+        pad = PS4Controller(0)
+        turn, fire = pad.getRawAxis(5), pad.getRawButton(1)
+        def test_it(hal_data):
+            hal_data["joysticks"][0]["axes"][5] = hal_data["joysticks"][0]["buttons"][2] = 1
+        """,
+        """
+        from wpilib import DualShock4Controller
+        pad = DualShock4Controller(0)
+        turn, fire = pad.get_hid().get_raw_axis(3), pad.get_hid().get_raw_button(2)
+        def test_it(hal_data):
+            hal_data["joysticks"][0]["axes"][3] = hal_data["joysticks"][0]["buttons"][0] = 1
+        """,
+    ),
     "an Xbox controller in hal_data": (
         """
         import wpilib

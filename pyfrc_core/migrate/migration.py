@@ -101,7 +101,7 @@ def migrate(
         names.corrections,
         report,
         drivers=any(b"wpilib_drivers" in text for text in python),
-        xbox_ports=rewritten.xbox_ports,
+        gamepads=rewritten.gamepads,
     )
     for name, old, new in _settings_files(root, settings, (code or root) if first_time else None):
         if new != old:

@@ -14,7 +14,7 @@ from .rewrite import robot_init
 from .rewrite.calls import Calls, key_of
 from .rewrite.file import FileRewriter
 from .rewrite.finish import new_text, rewrite_annotation
-from .rewrite.gamepads import xbox_ports
+from .rewrite.gamepads import Gamepad, gamepads_by_port
 from .rewrite.hal_data import HalData
 from .rewrite.leftovers import Leftovers
 from .types.inference import Inference
@@ -28,11 +28,11 @@ class Rewritten:
     """What becomes of a project's Python files.
 
     :param files: the new content of each that changes, by its name
-    :param xbox_ports: the ports of its Xbox controllers
+    :param gamepads: those that it has, by their ports
     """
 
     files: Mapping[str, bytes]
-    xbox_ports: frozenset[int]
+    gamepads: Mapping[int, Gamepad]
 
 
 @dataclass(frozen=True)
@@ -84,14 +84,14 @@ def rewrite_all(
         if new != module.tree.bytes:
             changed[name] = new
     progress("rewriting", len(modules), len(modules))
-    return Rewritten(changed, project.xbox_ports)
+    return Rewritten(changed, project.gamepads)
 
 
 class _Project:
     """What is known of all files together."""
 
     def __init__(self, modules: Mapping[str, Module], table: Table, inference: Inference) -> None:
-        self.xbox_ports = xbox_ports(modules.values(), inference, table)
+        self.gamepads = gamepads_by_port(modules.values(), inference, table)
         self.camel_names = table.camel_names()
         sites = [node for module in modules.values() for node, _ in module.sites]
         self.shared = {binding.path for module in modules.values() for binding in module.scope.bindings.get("*", ())}
@@ -112,7 +112,7 @@ class _Project:
 
 def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
     calls = Calls(file, project.dashboard_reads)
-    hal_data = HalData(file, project.xbox_ports)
+    hal_data = HalData(file, project.gamepads)
     leftovers = Leftovers(file, project.own_names, project.camel_names)
     sites = file.module.sites
     for own in file.module.classes:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from .report import Report
-from .rewrite.gamepads import xbox_number
+from .rewrite.gamepads import Gamepad
 
 #: The packages that WPILib for Python consists of; all have one version.
 _WPILIB = re.compile(
@@ -34,9 +34,9 @@ class Settings:
     """The settings files of one project.
 
     :param version: of WPILib in the new season
-    :param corrections: what is known about vendors' packages, and the numbers of gamepads
+    :param corrections: what is known about vendors' packages
     :param drivers: the robot needs the package of the PWM motor controllers
-    :param xbox_ports: where the robot has Xbox controllers
+    :param gamepads: those that the robot has, by their ports
     """
 
     def __init__(
@@ -46,15 +46,14 @@ class Settings:
         report: Report,
         *,
         drivers: bool,
-        xbox_ports: frozenset[int],
+        gamepads: Mapping[int, Gamepad],
     ) -> None:
         self._version = version
-        self._corrections = corrections
         self._versions: Mapping[str, str] = corrections["vendor_versions"]
         self._vendors: Mapping[str, str] = corrections["vendors"]
         self._report = report
         self._drivers = drivers
-        self._xbox_ports = xbox_ports
+        self._gamepads = gamepads
 
     def pyproject(self, name: str, text: str) -> str:
         """Return the new text of pyproject.toml; of a project without one, the text is ""."""
@@ -110,16 +109,16 @@ class Settings:
         """Return the new text of sim/config.json, where labels have the numbers of axes and buttons."""
 
         def joystick(found: re.Match[str]) -> str:
-            is_xbox = int(found["port"]) in self._xbox_ports
-            return _LABELS.sub(lambda labels: renumbered(labels, is_xbox=is_xbox), found[0])
+            gamepad = self._gamepads.get(int(found["port"]))
+            return _LABELS.sub(lambda labels: renumbered(labels, gamepad), found[0])
 
-        def renumbered(labels: re.Match[str], *, is_xbox: bool) -> str:
-            return _NUMBER.sub(lambda found: f'"{new(labels["kind"], int(found[1]), is_xbox=is_xbox)}"', labels[0])
+        def renumbered(labels: re.Match[str], gamepad: Gamepad | None) -> str:
+            return _NUMBER.sub(lambda found: f'"{new(labels["kind"], int(found[1]), gamepad)}"', labels[0])
 
-        def new(kind: str, number: int, *, is_xbox: bool) -> int:
-            of_xbox = xbox_number(self._corrections, kind, number) if is_xbox else None
-            if of_xbox is not None:
-                return of_xbox
+        def new(kind: str, number: int, gamepad: Gamepad | None) -> int:
+            known = gamepad.number(kind, number) if gamepad is not None else None
+            if known is not None:
+                return known
             return max(0, number - 1) if kind == "buttons" else number
 
         return _JOYSTICK.sub(joystick, text)

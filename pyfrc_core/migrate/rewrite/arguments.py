@@ -12,7 +12,7 @@ from ..types.scopes import Scope
 from ..types.values import written_number
 from .edits import changed, fill, in_parentheses
 from .file import FileRewriter, Found
-from .gamepads import xbox_number
+from .gamepads import Gamepad, gamepad_of
 
 _GENERIC_HID = "wpilib.interfaces.GenericHID"
 
@@ -32,8 +32,9 @@ class Arguments:
         for path in paths:
             if path in self._corrections["buttons"]:
                 self._button(node, scope, self._corrections["buttons"][path])
-            if path in self._corrections["axes"] and self._is_xbox(node, scope):
-                self._xbox_number(node.args[self._corrections["axes"][path]], "axes")
+            gamepad = self._gamepad(node, scope) if path in self._corrections["axes"] else None
+            if gamepad is not None:
+                self._number(node.args[self._corrections["axes"][path]], gamepad, "axes")
             if path in self._corrections["pov_arguments"]:
                 self._direction(node, self._corrections["pov_arguments"][path])
             if path in self._corrections["hid_arguments"]:
@@ -75,8 +76,9 @@ class Arguments:
             return
         arg = node.args[position]
         value = arg.value
-        if isinstance(value, cst.Integer) and self._is_xbox(node, scope):
-            self._xbox_number(arg, "buttons")
+        gamepad = self._gamepad(node, scope)
+        if isinstance(value, cst.Integer) and gamepad is not None:
+            self._number(arg, gamepad, "buttons")
             return
         if isinstance(value, cst.Integer):
             number = cst.Integer(str(int(value.evaluated_value) - 1)) if value.evaluated_value else value
@@ -86,9 +88,9 @@ class Arguments:
         if types or (isinstance(value, cst.Attribute) and value.attr.value == "value"):
             return  # a constant of an enumeration
         old = written_number(self._file.inference, value, scope)
-        new = xbox_number(self._corrections, "buttons", old) if old is not None and self._is_xbox(node, scope) else None
-        if old is not None and new is not None and new != old - 1:
-            self._file.say(arg, f"Button {old} of an Xbox controller is {new} now.", f"Write {new} for {old}.")
+        new = gamepad.number("buttons", old) if gamepad is not None and old is not None else None
+        if gamepad is not None and old is not None and new is not None and new != old - 1:
+            self._file.say(arg, f"Button {old} of {gamepad.name} is {new} now.", f"Write {new} for {old}.")
             return
         self._file.edit(
             arg,
@@ -100,22 +102,21 @@ class Arguments:
             node, "Buttons count from 0 now: 1 is subtracted here.", "Better subtract it from the constant.", done=True
         )
 
-    def _is_xbox(self, node: cst.Call, scope: Scope) -> bool:
-        """Return whether a call is one of an Xbox controller, or gets one as its first argument."""
+    def _gamepad(self, node: cst.Call, scope: Scope) -> Gamepad | None:
+        """Return the gamepad that a call is one of, or that it gets as its first argument."""
         asked = [node.func.value] if isinstance(node.func, cst.Attribute) else []
         asked += [arg.value for arg in node.args[:1]]
         types = [each for part in asked for each in self._file.inference.infer(part, scope)]
-        return any(isinstance(each, Obj) and each.path in self._corrections["xbox"]["classes"] for each in types)
+        return gamepad_of(self._file.table, [each.path for each in types if isinstance(each, Obj)])
 
-    def _xbox_number(self, arg: cst.Arg, kind: str) -> None:
-        number = arg.value.evaluated_value if isinstance(arg.value, cst.Integer) else -1
-        new = xbox_number(self._corrections, kind, number)
+    def _number(self, arg: cst.Arg, gamepad: Gamepad, kind: str) -> None:
+        new = gamepad.number(kind, arg.value.evaluated_value) if isinstance(arg.value, cst.Integer) else None
         if new is not None:
             self._file.edit(arg, changed(value=cst.Integer(str(new))))
         else:
-            numbers = self._corrections["xbox"][kind]
+            numbers = gamepad.axes if kind == "axes" else gamepad.buttons
             now = ", ".join(f"{old} is {new}" for old, new in numbers.items() if str(new) != old)
-            self._file.say(arg, f"The {kind} of an Xbox controller have other numbers.", f"{now}.")
+            self._file.say(arg, f"The {kind} of {gamepad.name} have other numbers.", f"{now}.")
 
     def _direction(self, node: cst.Call, position: int) -> None:
         if len(node.args) <= position or not node.args:

@@ -1,8 +1,9 @@
-"""What became of gamepads: the numbers of an Xbox controller's axes and buttons, the deadband of sticks."""
+"""What became of gamepads: the numbers of their axes and buttons, the deadband of their sticks."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import libcst as cst
@@ -16,10 +17,39 @@ from .file import FileRewriter
 _HIDS = {"wpilib.interfaces.GenericHID", "commands2.button.CommandGenericHID"}
 
 
-def xbox_ports(modules: Iterable[Module], inference: Types, table: Table) -> frozenset[int]:
-    """Return the ports at which a project's code has an Xbox controller and nothing else."""
-    xbox: set[int] = set()
-    others: set[int] = set()
+@dataclass(frozen=True)
+class Gamepad:
+    """A kind of gamepad, whose axes and buttons have other numbers now.
+
+    :param name: as messages have it, such as "an Xbox controller"
+    :param classes: the paths of its classes
+    :param axes: the new number by the old one, as texts of digits
+    :param buttons: the same, of the buttons that still have a number
+    """
+
+    name: str
+    classes: tuple[str, ...]
+    axes: Mapping[str, int] = field(hash=False)
+    buttons: Mapping[str, int] = field(hash=False)
+
+    def number(self, kind: str, old: int) -> int | None:
+        """Return the new number of an axis or a button; None if it has no such one.
+
+        :param kind: `axes` or `buttons`
+        """
+        return (self.axes if kind == "axes" else self.buttons).get(str(old))
+
+
+def gamepad_of(table: Table, paths: Iterable[str]) -> Gamepad | None:
+    """Return the gamepad that one of these classes is; None for others, such as a `Joystick`."""
+    found = (each for each in table.corrections["gamepads"] if not set(paths).isdisjoint(each["classes"]))
+    first = next(found, None)
+    return None if first is None else Gamepad(first["name"], tuple(first["classes"]), first["axes"], first["buttons"])
+
+
+def gamepads_by_port(modules: Iterable[Module], inference: Types, table: Table) -> Mapping[int, Gamepad]:
+    """Return the gamepad at each port at which a project's code has one and nothing else."""
+    found: dict[int, set[Gamepad | None]] = {}
     for module in modules:
         for node, scope in module.sites:
             if not isinstance(node, cst.Call) or not node.args:
@@ -28,17 +58,8 @@ def xbox_ports(modules: Iterable[Module], inference: Types, table: Table) -> fro
             if any(_HIDS.intersection(table.ancestors(path)) for path in made):
                 port = written_number(inference, node.args[0].value, scope)
                 if port is not None:
-                    (xbox if made[0] in table.corrections["xbox"]["classes"] else others).add(port)
-    return frozenset(xbox - others)
-
-
-def xbox_number(corrections: Mapping[str, Any], kind: str, number: int) -> int | None:
-    """Return the new number of an axis or a button of an Xbox controller; None if it has no such one.
-
-    :param kind: `axes` or `buttons`
-    """
-    found = corrections["xbox"][kind].get(str(number))
-    return None if found is None else int(found)
+                    found.setdefault(port, set()).add(gamepad_of(table, made))
+    return {port: each for port, (each, *others) in found.items() if each is not None and not others}
 
 
 class Sticks:

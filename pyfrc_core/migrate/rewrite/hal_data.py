@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import libcst as cst
 
 from ..types.scopes import Scope
 from ..types.values import values, written_number
 from .edits import changed, in_parentheses
 from .file import FileRewriter
-from .gamepads import xbox_number
+from .gamepads import Gamepad
 
 
 class HalData:
     """What a file's tests and physics do with `hal_data`.
 
-    :param xbox_ports: where the project has an Xbox controller
+    :param gamepads: those that the project has, by their ports
     """
 
-    def __init__(self, rewriter: FileRewriter, xbox_ports: frozenset[int]) -> None:
+    def __init__(self, rewriter: FileRewriter, gamepads: Mapping[int, Gamepad]) -> None:
         self._file = rewriter
-        self._xbox_ports = xbox_ports
+        self._gamepads = gamepads
         self._with_number: set[cst.CSTNode] = set()
 
     def subscript(self, node: cst.Subscript, scope: Scope) -> None:
@@ -55,12 +57,13 @@ class HalData:
         if isinstance(number, cst.Attribute) or self._file.inference.infer(number, scope):
             return  # a constant of an enumeration
         old = written_number(self._file.inference, number, scope)
-        new = self._of_xbox(part, scope, "buttons", old)
+        gamepad = self._gamepad(part, scope)
+        new = gamepad.number("buttons", old) if gamepad is not None and old is not None else None
         if isinstance(number, cst.Integer):
             new = max(0, number.evaluated_value - 1) if new is None else new
             self._file.edit(index, changed(value=cst.Integer(str(new))))
-        elif old is not None and new is not None and new != old - 1:
-            self._file.say(node, f"Button {old} of an Xbox controller is {new} now.", f"Write {new} for {old}.")
+        elif gamepad is not None and old is not None and new is not None and new != old - 1:
+            self._file.say(node, f"Button {old} of {gamepad.name} is {new} now.", f"Write {new} for {old}.")
         else:
             self._file.edit(
                 index,
@@ -74,7 +77,8 @@ class HalData:
         old = written_number(self._file.inference, index.value, scope)
         if old is not None and old < 2:
             return  # of the left stick, which has not changed
-        new = self._of_xbox(part, scope, "axes", old)
+        gamepad = self._gamepad(part, scope)
+        new = gamepad.number("axes", old) if gamepad is not None and old is not None else None
         if new is not None and isinstance(index.value, cst.Integer):
             self._file.edit(index, changed(value=cst.Integer(str(new))))
             return
@@ -85,14 +89,10 @@ class HalData:
             done=True,
         )
 
-    def _of_xbox(self, part: cst.Subscript, scope: Scope, kind: str, number: int | None) -> int | None:
-        """Return the new number of an axis or a button, if it is one of an Xbox controller.
-
-        :param part: the axes or the buttons of a joystick
-        """
-        if number is None or self._port(part.value, scope) not in self._xbox_ports:
-            return None
-        return xbox_number(self._file.table.corrections, kind, number)
+    def _gamepad(self, part: cst.Subscript, scope: Scope) -> Gamepad | None:
+        """Return the gamepad whose axes or buttons a part of `hal_data` is."""
+        port = self._port(part.value, scope)
+        return None if port is None else self._gamepads.get(port)
 
     def _port(self, joystick: cst.CSTNode, scope: Scope) -> int | None:
         """Return the port of a joystick of `hal_data`."""
