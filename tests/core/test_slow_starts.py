@@ -19,7 +19,8 @@ from pyfrc_core import display
 from pyfrc_core.processes import loading, standstill, worker
 from pyfrc_core.processes.crash_report import CrashLog
 from pyfrc_core.processes.fork import FORK_IS_SAFE
-from pyfrc_core.processes.worker import ForkedWorker, Send, SpawnedWorker
+from pyfrc_core.processes.interpreter import spawn_worker
+from pyfrc_core.processes.worker import ForkedWorker, Send
 from pyfrc_core.project import find_project
 from pyfrc_core.sim.engine import simulation
 from pyfrc_core.sim.simulate import SimRequest, simulate
@@ -106,7 +107,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
 def test_an_interpreter_is_loading_until_its_robot_begins(tmp_path: Path, clock: list[float]) -> None:
     go = tmp_path / "go"
-    process = SpawnedWorker(partial(begin_a_robot, go))
+    process = spawn_worker(partial(begin_a_robot, go))
     try:
         clock[0] = 102.5
         assert process.loading() is None
