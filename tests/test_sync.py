@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import threading
+import time
 from collections import namedtuple
 from collections.abc import Iterator
 from importlib import metadata
@@ -165,6 +166,7 @@ def test_a_new_requirement_leaves_the_other_versions_as_they_are(laptop: Laptop)
     assert f"  - robotpy-commands-v2 {WPILIB}\n  simple-lib 1.0 -> 2.0\n" in printed
 
 
+@pytest.mark.slow
 def test_another_version_of_wpilib_replaces_all_its_packages(laptop: Laptop) -> None:
     laptop.sync()
     newer = f"{CURRENT.year}.99.0"
@@ -191,12 +193,14 @@ def test_without_a_version_the_robot_gets_this_computers(laptop: Laptop) -> None
     assert laptop.lock.requirements == ("robotpy",)
 
 
+@pytest.mark.slow
 def test_only_requires_are_taken_where_the_version_is_ignored(laptop: Laptop) -> None:
     laptop.project.write({"pyproject.toml": pyproject(version="ignored", requires='"simple-lib", "pyfrc"')})
     laptop.sync()
     assert laptop.packages == {"simple-lib": "1.0"}
 
 
+@pytest.mark.slow
 def test_requirements_may_have_markers_of_the_robot(laptop: Laptop) -> None:
     machine = CURRENT.downloads.marker_machine
     requires = f"\"simple-lib; platform_machine == '{machine}'\", \"nowhere; platform_machine == 'x86_64'\""
@@ -230,6 +234,7 @@ def test_a_killed_download_goes_on_where_it_ended(laptop: Laptop) -> None:
     with laptop.project.start("sync", env=index.environment(laptop.home)) as command:
         while not part.exists() or part.stat().st_size < 196_608:  # what is written in whole pieces
             assert command.poll() is None
+            time.sleep(0.001)
         command.kill()
         command.wait()
     index.may_go_on.set()
@@ -241,6 +246,7 @@ def test_a_killed_download_goes_on_where_it_ended(laptop: Laptop) -> None:
     assert laptop.cached()[name] == index.python.read_bytes()
 
 
+@pytest.mark.slow
 def test_a_file_that_was_replaced_meanwhile_is_downloaded_from_its_beginning(laptop: Laptop) -> None:
     index, name = laptop.index, laptop.index.python.name
     cache = laptop.home / CACHE / CURRENT.downloads.python_cache
@@ -264,6 +270,7 @@ def test_a_file_with_another_content_than_the_locked_is_refused(laptop: Laptop, 
     assert other.lock == laptop.lock
 
 
+@pytest.mark.slow
 def test_what_a_network_sends_instead_of_python_is_not_taken_for_it(laptop: Laptop) -> None:
     laptop.index.python.write_text("<html>Log in first</html>")
     refused = laptop.run()
@@ -343,6 +350,7 @@ def test_wheels_of_a_directory_are_locked_without_an_address(laptop: Laptop, tmp
             "simple-lib<1",
         ),
     ],
+    ids=["nowhere", "only for others", "another version", "contradiction"],
 )
 def test_what_cannot_be_found_is_named_and_what_to_do(laptop: Laptop, requires: str, message: str) -> None:
     laptop.index.add("needs-c", "1.0", ["only-for-pcs>=1"])
