@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 from ..config.packages import PACKAGES, component_of, quoted_requirement
 from ..config.robotpy import COMPONENTS, RobotPackages, unknown_components
 from ..season import CURRENT
+from ..sync.wanted import robot_environment
 from ..wording import counted
 from .agent.imports import is_there
 from .facts import VIRTUAL_IMAGE
@@ -316,18 +317,13 @@ def _needed_there(needed: Requirement, facts: RobotFacts) -> bool:
     """Return whether a requirement's marker applies to the robot, under each of its machine names."""
     if needed.marker is None:
         return True
-    from packaging.markers import default_environment
-
     controller = controller_named(facts.controller)
     machines = {facts.machine}
     if facts.machine.startswith(controller.machine):
         machines.add(CURRENT.downloads.marker_machine)
-    robot: dict[str, str] = {
-        **{key: str(value) for key, value in default_environment().items()},
+    robot = {
+        **robot_environment(CURRENT),
         "extra": "",
-        "os_name": "posix",
-        "sys_platform": "linux",
-        "platform_system": "Linux",
         "python_full_version": facts.python,
         "python_version": ".".join(facts.python.split(".")[:2]),
     }

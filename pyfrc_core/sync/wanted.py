@@ -5,14 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..config.robotpy import load_robot_packages
 from ..errors import SettingsError
 from ..season import Season
-
-if TYPE_CHECKING:
-    from packaging.requirements import Requirement
 
 
 @dataclass(frozen=True)
@@ -72,8 +68,3 @@ def robot_environment(season: Season) -> Mapping[str, str]:
         "python_version": ".".join(version.split(".")[:2]),
         "sys_platform": "linux",
     }
-
-
-def applies(needed: Requirement, season: Season) -> bool:
-    """Return whether a requirement's marker applies to the season's robots."""
-    return needed.marker is None or needed.marker.evaluate({**robot_environment(season), "extra": ""})
