@@ -33,6 +33,279 @@ def remarks(tmp_path: Path, code: str) -> list[Remark]:
 
 #: Code, and what it becomes.
 CODE = {
+    "cameras": (
+        """
+        from cscore import CameraServer as CS, VideoMode
+        def main():
+            CS.enableLogging()
+            camera = CS.startAutomaticCapture()
+            camera.setVideoMode(VideoMode.PixelFormat.kMJPEG, 320, 240, 30)
+            sink, out = CS.getVideo(), CS.putVideo("a", 320, 240)
+            time, image = sink.grabFrame(None)
+            out.notifyError(sink.getError())
+        """,
+        """
+        from cscore import CameraServer as CS
+        from wpiutil import PixelFormat
+        def main():
+            CS.enable_logging()
+            camera = CS.start_automatic_capture()
+            camera.set_video_mode(PixelFormat.MJPEG, 320, 240, 30)
+            sink, out = CS.get_video(), CS.put_video("a", 320, 240)
+            time, image = sink.grab_frame(None)
+            out.notify_error(sink.get_error())
+        """,
+    ),
+    "what the dashboard shows": (
+        """
+        import wpilib
+        import wpilib.drive
+        from commands2 import Command, CommandScheduler
+        from wpilib import SmartDashboard
+        from wpimath.controller import PIDController
+        class Shoot(Command): pass
+        class R(wpilib.TimedRobot):
+            def robotPeriodic(self):
+                SmartDashboard.putData("Field", wpilib.Field2d())
+                SmartDashboard.putData(PIDController(1, 0, 0))
+                SmartDashboard.putData("Shoot", Shoot())
+                SmartDashboard.putData(CommandScheduler.getInstance())
+                SmartDashboard.putData("Arm", wpilib.Mechanism2d(1, 1))
+        if __name__ == "__main__":
+            wpilib.run(R)
+        """,
+        """
+        import wpilib
+        import telemetry
+        import tunables
+        from commands2 import Command, CommandScheduler
+        from wpimath import PIDController
+        class Shoot(Command): pass
+        class R(wpilib.TimedRobot):
+            def robot_periodic(self):
+                telemetry.log("Field", wpilib.Field2d())
+                tunables.publish("PIDController", PIDController(1, 0, 0))
+                tunables.publish("Shoot", Shoot())
+                tunables.publish("Scheduler", CommandScheduler.get_instance())
+                telemetry.log("Arm", wpilib.Mechanism2d(1, 1))
+        if __name__ == "__main__":
+            pass
+        """,
+    ),
+    "PlayStation controllers": (
+        """
+        import wpilib
+        from commands2.button import CommandPS4Controller, JoystickButton
+        pad = wpilib.PS5Controller(0)
+        print(pad.getRawButton(2), pad.getRawAxis(5), pad.getL2Axis())
+        shoot = JoystickButton(wpilib.PS4Controller(1), 1)
+        fast = CommandPS4Controller(2).getR2Axis()
+        """,
+        """
+        import wpilib
+        from commands2.button import CommandDualShock4Controller, JoystickButton
+        pad = wpilib.DualSenseController(0)
+        print(pad.get_hid().get_raw_button(0), pad.get_hid().get_raw_axis(3), pad.get_l2())
+        shoot = JoystickButton(wpilib.DualShock4Controller(1).get_hid(), 2)
+        fast = CommandDualShock4Controller(2).get_r2()
+        """,
+    ),
+    "what is put into containers": (
+        """
+        import rev
+        import wpilib
+        KINDS = {"drive": rev.SparkMax}
+        class Robot(wpilib.TimedRobot):
+            def __init__(self):
+                self.objects, self.motors, self.mine = {}, [], []
+                field = wpilib.Field2d()
+                for name in ("a", "b"):
+                    self.objects[name] = field.getObject(name)
+                    self.motors.append(wpilib.Talon(0))
+                    self.mine.append(3)
+                self.spark = KINDS["drive"](1, rev.SparkMax.MotorType.kBrushless)
+                self.requirements.add(3)
+            def show(self):
+                self.objects["a"].setPoses([])
+                for motor in self.motors:
+                    motor.set(self.mine[0])
+                self.spark.set(1)
+        """,
+        """
+        import rev
+        import wpilib_drivers
+        import wpilib
+        KINDS = {"drive": rev.SparkMax}
+        class Robot(wpilib.TimedRobot):
+            def __init__(self):
+                self.objects, self.motors, self.mine = {}, [], []
+                field = wpilib.Field2d()
+                for name in ("a", "b"):
+                    self.objects[name] = field.get_object(name)
+                    self.motors.append(wpilib_drivers.Talon(0))
+                    self.mine.append(3)
+                self.spark = KINDS["drive"](wpilib.CANPort.CAN_S0, 1, rev.SparkMax.MotorType.BRUSHLESS)
+                self.requirements.add(3)
+            def show(self):
+                self.objects["a"].set_poses([])
+                for motor in self.motors:
+                    motor.set_throttle(self.mine[0])
+                self.spark.set_throttle(1)
+        """,
+    ),
+    "one of two gamepads": (
+        """
+        from commands2.button import CommandPS4Controller, CommandXboxController
+        def made(sony):
+            return CommandPS4Controller(0) if sony else CommandXboxController(0)
+        pad = made(True)
+        start = pad.options() if pad.L1() else pad.start()
+        """,
+        """
+        from commands2.button import CommandDualShock4Controller, CommandXboxController
+        def made(sony):
+            return CommandDualShock4Controller(0) if sony else CommandXboxController(0)
+        pad = made(True)
+        start = pad.options() if pad.l1() else pad.menu()
+        """,
+    ),
+    "CTRE's devices": (
+        """
+        from phoenix6 import CANBus, hardware
+        from phoenix6.hardware import TalonFX
+        UPPER = "canivore"
+        bus = CANBus(UPPER)
+        left = TalonFX(1)
+        right = TalonFX(2, "rio")
+        arm = TalonFX(3, canbus=UPPER)
+        gyro = hardware.Pigeon2(device_id=4)
+        encoder = hardware.CANcoder(5, bus)
+        own = CANBus.roborio()
+        left.set(right.get())
+        left.setNeutralMode(1)
+        angle = gyro.getRotation2d().degrees()
+        turned = left.get_position().value
+        """,
+        """
+        from phoenix6 import CANBus, hardware
+        import phoenix6
+        import wpilib
+        from wpilib import CANPort
+        from phoenix6.hardware import TalonFX
+        UPPER = "canivore"
+        bus = CANBus(UPPER)
+        left = TalonFX(1, CANBus(CANPort.CAN_S0))
+        right = TalonFX(2, CANBus(CANPort.CAN_S0))
+        arm = TalonFX(3, canbus=CANBus(UPPER))
+        gyro = hardware.Pigeon2(device_id=4, canbus=phoenix6.CANBus(wpilib.CANPort.CAN_S0))
+        encoder = hardware.CANcoder(5, bus)
+        own = CANBus(CANPort.CAN_S0)
+        left.set_throttle(right.get_throttle())
+        left.config_neutral_mode(1)
+        angle = gyro.get_rotation2d().degrees()
+        turned = left.get_position().value
+        """,
+    ),
+    "classes made of generic ones, and of devices": (
+        """
+        import rev
+        import wpilib
+        from commands2 import Subsystem
+        from phoenix6 import hardware, swerve
+        class Drive(Subsystem, swerve.SwerveDrivetrain[hardware.TalonFX, hardware.TalonFX, hardware.CANcoder]):
+            def show(self):
+                state = self.get_state()
+                print(state.pose.X(), state.speeds.vx)
+                return self.runOnce(self.show)
+        class Motor(rev.SparkMax):
+            def __init__(self, number):
+                super().__init__(number, rev.SparkMax.MotorType.kBrushless)
+        """,
+        """
+        import rev
+        import wpilib
+        from commands2 import Subsystem
+        from phoenix6 import hardware, swerve
+        class Drive(Subsystem, swerve.SwerveDrivetrain[hardware.TalonFX, hardware.TalonFX, hardware.CANcoder]):
+            def show(self):
+                state = self.get_state()
+                print(state.pose.x, state.velocity.vx)
+                return self.run_once(self.show)
+        class Motor(rev.SparkMax):
+            def __init__(self, number):
+                super().__init__(wpilib.CANPort.CAN_S0, number, rev.SparkMax.MotorType.BRUSHLESS)
+        """,
+    ),
+    "trajectories": (
+        """
+        from wpimath.controller import RamseteController
+        from wpimath.geometry import Pose2d
+        from wpimath.trajectory import TrajectoryConfig, TrajectoryGenerator
+        path = TrajectoryGenerator.generateTrajectory(Pose2d(), [], Pose2d(3, 0, 0), TrajectoryConfig(1, 1))
+        there = path.sample(path.totalTime() / 2)
+        speeds = RamseteController(2.0, 0.7).calculate(Pose2d(), there)
+        print(there.pose.X(), there.velocity, path.initialPose().Y(), speeds.vx)
+        """,
+        """
+        from wpimath import DrivetrainSplineTrajectoryGenerator, LTVUnicycleController, Pose2d, TrajectoryConfig
+        path = DrivetrainSplineTrajectoryGenerator.generate(Pose2d(), [], Pose2d(3, 0, 0), TrajectoryConfig(1, 1))
+        there = path.sample_at(path.duration() / 2)
+        speeds = LTVUnicycleController(0.02).calculate(Pose2d(), there)
+        print(there.pose.x, there.forward_velocity(), path.initial_pose().y, speeds.vx)
+        """,
+    ),
+    "lists of lights that patterns are applied to": (
+        """
+        import wpilib
+        class Lights:
+            LENGTH = 60
+            def __init__(self):
+                self.strip = wpilib.AddressableLED(1)
+                self.buffer = [wpilib.AddressableLED.LEDData() for _ in range(self.LENGTH)]
+                self.other = [self.strip.LEDData()] * 5
+                self.strip.setData(self.buffer)
+            def show(self):
+                wpilib.LEDPattern.rainbow(255, 128).applyTo(self.buffer)
+                self.buffer[0].setRGB(1, 2, 3)
+        """,
+        """
+        import wpilib
+        class Lights:
+            LENGTH = 60
+            def __init__(self):
+                self.strip = wpilib.AddressableLED(1)
+                self.buffer = wpilib.AddressableLEDBuffer(self.LENGTH)
+                self.other = wpilib.AddressableLEDBuffer(5)
+                self.strip.set_data(self.buffer)
+            def show(self):
+                wpilib.LEDPattern.rainbow(255, 128).apply_to(self.buffer)
+                self.buffer[0].set_rgb(1, 2, 3)
+        """,
+    ),
+    "lists of lights without a pattern": (
+        """
+        import wpilib
+        buffer = [wpilib.AddressableLED.LEDData() for _ in range(9)]
+        buffer[3] = wpilib.AddressableLED.LEDData(1, 2, 3)
+        """,
+        """
+        import wpilib
+        buffer = [wpilib.AddressableLED.LEDData() for _ in range(9)]
+        buffer[3] = wpilib.AddressableLED.LEDData(1, 2, 3)
+        """,
+    ),
+    "a rumble of both sides in an expression": (
+        """
+        from wpilib.interfaces import GenericHID
+        stick, Side = GenericHID(0), GenericHID.RumbleType
+        shake = lambda: stick.setRumble(Side.kBothRumble, 1)
+        """,
+        """
+        from wpilib import GenericHID
+        stick, Side = GenericHID(0), GenericHID.RumbleType
+        shake = lambda: (stick.set_rumble(Side.LEFT_RUMBLE, 1), stick.set_rumble(Side.RIGHT_RUMBLE, 1))
+        """,
+    ),
     "buttons in hal_data": (
         """
         from wpilib import XboxController
@@ -869,16 +1142,31 @@ BY_HAND = {
         "takes other arguments",
     ),
     "a list of lights": (
-        "import wpilib\nlights = [wpilib.AddressableLED.LEDData() for _ in range(9)]\n"
+        "import wpilib\nlights = [wpilib.AddressableLED.LEDData(number, 0, 0) for number in range(9)]\n"
         "wpilib.LEDPattern.rainbow(255, 128).applyTo(lights)  # here\n",
         "AddressableLEDBuffer",
     ),
     "hardware": ("import wpilib\nlight = wpilib.Relay(1)  # here\n", "wpilib.Relay is gone."),
-    "an import": ("from wpilib import Relay  # here\n", "wpilib.Relay is gone."),
-    "a module": ("from wpilib.shuffleboard import Shuffleboard  # here\n", "Shuffleboard is gone"),
+    "an import": ("from wpilib import Relay  # here\nlight = Relay(1)\n", "wpilib.Relay is gone."),
+    "a module": (
+        "from wpilib.shuffleboard import Shuffleboard  # here\nShuffleboard.update()\n",
+        "Shuffleboard is gone",
+    ),
     "a member": ("import wpilib\nprint(wpilib.Encoder(0, 1).getPeriod())  # here\n", "use get_rate"),
     "a vendor": ("import pathplannerlib.auto  # here\n", "has no release for 2027"),
     "a channel": ("import wpilib\nPORT = 9\nled = wpilib.AddressableLED(PORT)  # here\n", "channels 0 to 5"),
+    "one port for a strip and a switch": (
+        "import wpilib\nswitch = wpilib.DigitalInput(2)\nled = wpilib.AddressableLED(2)  # here\n",
+        "as the DigitalInput in robot.py:2",
+    ),
+    "the bus of a CTRE device": (
+        "from phoenix6.hardware import TalonFX\ndef made(bus):\n    return TalonFX(1, bus)  # here\n",
+        "takes a phoenix6.CANBus, not its name",
+    ),
+    "a button that is an axis": (
+        "import wpilib\nfast = wpilib.PS4Controller(0).getRawButton(7)  # here\n",
+        "other numbers",
+    ),
     "a POV's angle": ("import wpilib\nangle = wpilib.Joystick(0).getPOV()  # here\n", "not an angle"),
     "a button of an Xbox controller": (
         "import wpilib\nBUMPER = 5\nheld = wpilib.XboxController(0).getRawButton(BUMPER)  # here\n",
@@ -911,3 +1199,45 @@ def test_what_is_to_do_by_hand_is_said_at_its_line(tmp_path: Path, name: str) ->
     code, said = BY_HAND[name]
     here = next(number for number, line in enumerate(code.splitlines(), 1) if line.endswith("# here"))
     assert [each for each in remarks(tmp_path, code) if each.line == here and said in str(each) and not each.done]
+
+
+#: Code with one line that runs, but means something else, which ends in `# here`, and what is said there.
+TO_CHECK = {
+    "analog inputs": (
+        "import wpilib\nsensor = wpilib.AnalogInput(0)\nangle = sensor.getVoltage() / 5 * 360  # here\n",
+        "0 to 3.3 V; the roboRIO's measured 0 to 5 V",
+    ),
+    "a simulated analog input": (
+        "from wpilib.simulation import AnalogInputSim\nAnalogInputSim(0).setVoltage(2.5)  # here\n",
+        "takes 3.3 V for its whole range",
+    ),
+    "a class that is imported": (
+        "from wpilib import AnalogPotentiometer\npot = AnalogPotentiometer(0, 270)  # here\n",
+        "takes 3.3 V for its whole range",
+    ),
+    "one port for a motor and a sensor": (
+        "import wpilib\nmotor = wpilib.PWMSparkMax(0)\nencoder = wpilib.Encoder(1, 0)  # here\n",
+        "Encoder has channel 0, as the PWMSparkMax in robot.py:2. SystemCore's ports 0 to 5 are for PWM, digital, "
+        "analog and LEDs together. Give each its own; free: 2, 3, 4, 5.",
+    ),
+    "an import of what is gone, which nothing uses": (
+        "from wpilib import DigitalInput, SmartDashboard  # here\nswitch = DigitalInput(0)\n",
+        "SmartDashboard is gone, and its import, which is not used, is removed.",
+    ),
+    "a port that there is not": ("import wpilib\nswitch = wpilib.DigitalInput(9)  # here\n", "has channel 9."),
+}
+
+
+@pytest.mark.parametrize("name", TO_CHECK)
+def test_another_meaning_is_said_at_its_line(tmp_path: Path, name: str) -> None:
+    code, said = TO_CHECK[name]
+    here = next(number for number, line in enumerate(code.splitlines(), 1) if line.endswith("# here"))
+    assert [each.line for each in remarks(tmp_path, code) if said in str(each) and each.done] == [here]
+
+
+def test_a_module_with_the_name_of_a_new_one_is_reported(tmp_path: Path) -> None:
+    """CTRE's generated projects have a telemetry.py."""
+    (tmp_path / "telemetry.py").write_text("class Telemetry:\n    pass\n", "utf-8")
+    (remark,) = remarks(tmp_path, "from telemetry import Telemetry\nlog = Telemetry()\n")
+    assert (remark.file, remark.done) == ("telemetry.py", False)
+    assert "WPILib 2027 has a module telemetry, too" in str(remark)

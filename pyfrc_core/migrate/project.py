@@ -11,12 +11,16 @@ import libcst as cst
 from .names.table import Table
 from .report import Report
 from .rewrite import robot_init
+from .rewrite.arguments import Arguments
 from .rewrite.calls import Calls, key_of
 from .rewrite.file import FileRewriter
 from .rewrite.finish import new_text, rewrite_annotation
 from .rewrite.gamepads import Gamepad, gamepads_by_port
 from .rewrite.hal_data import HalData
+from .rewrite.imports import NEW_MODULES
+from .rewrite.leds import led_lists, rewrite_list
 from .rewrite.leftovers import Leftovers
+from .rewrite.ports import Ports
 from .types.inference import Inference
 from .types.scopes import Module
 
@@ -73,8 +77,9 @@ def rewrite_all(
         except (cst.ParserSyntaxError, UnicodeDecodeError) as error:
             line = getattr(error, "raw_line", 1)
             report.add(source.name, line, "This is no valid Python, so the file stays as it is.", "Correct it first.")
+    _report_taken_names(modules, table, report)
     inference = Inference(table, list(modules.values()))
-    project = _Project(modules, table, inference)
+    project = _Project(modules, inference)
     changed = {}
     for position, (name, module) in enumerate(modules.items()):
         progress("rewriting", position, len(modules))
@@ -83,6 +88,7 @@ def rewrite_all(
         new = _rewrite(file, project, comments=comments).encode(module.tree.encoding)
         if new != module.tree.bytes:
             changed[name] = new
+    project.ports.report(report)
     progress("rewriting", len(modules), len(modules))
     return Rewritten(changed, project.gamepads)
 
@@ -90,9 +96,12 @@ def rewrite_all(
 class _Project:
     """What is known of all files together."""
 
-    def __init__(self, modules: Mapping[str, Module], table: Table, inference: Inference) -> None:
+    def __init__(self, modules: Mapping[str, Module], inference: Inference) -> None:
+        table = inference.table
         self.gamepads = gamepads_by_port(modules.values(), inference, table)
         self.camel_names = table.camel_names()
+        self.led_lists = led_lists(inference, modules.values())
+        self.ports = Ports(table)
         sites = [node for module in modules.values() for node, _ in module.sites]
         self.shared = {binding.path for module in modules.values() for binding in module.scope.bindings.get("*", ())}
         readers = {each for each in table.corrections["dashboard_table"] if not each.startswith("put")}
@@ -110,8 +119,20 @@ class _Project:
         self.own_names = frozenset(names)
 
 
+def _report_taken_names(modules: Mapping[str, Module], table: Table, report: Report) -> None:
+    """Report the project's modules with the name of a new one of WPILib's: only one of the two can be imported."""
+    taken = {each.partition(".")[0] for each in (*table.modules.values(), *NEW_MODULES)}
+    taken -= {each.partition(".")[0] for each in table.modules}
+    for name, module in modules.items():
+        first = module.name.partition(".")[0]
+        if first in taken:
+            taken.remove(first)
+            what = f"WPILib 2027 has a module {first}, too, which this one hides, or which hides this one."
+            report.add(name, 1, what, f"Give this one another name, such as robot_{first}, in your imports, too.")
+
+
 def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
-    calls = Calls(file, project.dashboard_reads)
+    calls = Calls(file, project.dashboard_reads, Arguments(file, project.led_lists, project.ports))
     hal_data = HalData(file, project.gamepads)
     leftovers = Leftovers(file, project.own_names, project.camel_names)
     sites = file.module.sites
@@ -127,6 +148,8 @@ def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
     for node, scope in sites:
         if isinstance(node, cst.Comparison):
             calls.comparison(node, scope)
+        elif node in project.led_lists:
+            rewrite_list(file, node, scope)
     for node, scope in sites:
         if isinstance(node, cst.Call):
             robot_init.super_call(file, node, scope)

@@ -48,6 +48,7 @@ class ControllerSoftware:
     :param home:           home directory of the user that runs the robot program
     :param channels:       which channels it has, in a sentence for who asks for another one
     :param few:            what it has few of
+    :param analog_volts:   what its analog inputs measure, from 0
     """
 
     name: str
@@ -56,6 +57,7 @@ class ControllerSoftware:
     home: str
     channels: str
     few: str
+    analog_volts: float
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,7 @@ SEASON_2026 = Season(
         channels="The roboRIO has PWM 0 to 9, DIO 0 to 9, analog inputs 0 to 3, and relays 0 to 3. Its expansion port "
         "(MXP) has PWM 10 to 19, DIO 10 to 25, and analog inputs 4 to 7. Solenoids: 0 to 7 (CTRE), 0 to 15 (REV).",
         few="8 encoders, 8 counters, 8 interrupts and 1 AddressableLED",
+        analog_volts=5.0,
     ),
     packages=Packages(
         wpilib="2026.2.2",

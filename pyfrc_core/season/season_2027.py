@@ -29,6 +29,7 @@ SEASON_2027 = Season(
         home="/home/systemcore",
         channels="Solenoids: 0 to 7 (CTRE), 0 to 15 (REV).",
         few="8 encoders",
+        analog_volts=3.3,
     ),
     packages=Packages(
         wpilib="2027.0.0a7",

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from conftest import MakeProject
 
+from pyfrc_core.config.sim import SimConfig
+from pyfrc_core.fuzz.inputs.values import SPANS
+from pyfrc_core.sim.ui.models.devices import panels_of
+
 ROBOT = """
     import wpilib
     import wpilib_drivers
@@ -73,6 +77,34 @@ def test_keys(make_project: MakeProject) -> None:
                 def test_how_many(hal_data):
                     lists = "pwm", "dio", "analog_in", "addressable_led"
                     assert [len(hal_data[key]) for key in lists] == [20, 31, 8, 6]
+            """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 0, result.output
+
+
+def test_analog_inputs_measure_0_to_3_3_volts(make_project: MakeProject) -> None:
+    """A sensor's whole range is what the simulator's slider and fuzz give; it was 5 V on the roboRIO."""
+    (panel,) = panels_of({"analog_in[0].voltage": 0.0}, SimConfig())
+    highest = panel.rows[0].high
+    assert (highest, SPANS["volts"].high) == (3.3, 3.3)
+    project = make_project(
+        {
+            "robot.py": """
+                import wpilib
+
+
+                class MyRobot(wpilib.TimedRobot):
+                    def __init__(self):
+                        super().__init__()
+                        self.pot = wpilib.AnalogPotentiometer(0, 270.0)
+            """,
+            "tests/test_it.py": f"""
+                def test_it(control, hal_data, robot):
+                    with control.run_robot():
+                        hal_data["analog_in"][0]["voltage"] = {highest}
+                        assert abs(robot.pot.get() - 270) < 1e-3
             """,
         }
     )

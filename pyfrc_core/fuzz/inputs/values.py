@@ -12,7 +12,10 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 from ...runtime.scripts.targets import PLUGGED
+from ...season import CURRENT
 from ...wpi import station
+
+_VOLTS = CURRENT.controller.analog_volts
 
 #: Steps beside a constant, relative to it.
 _STEPS = (0.001, -0.001, 0.01, -0.01, 0.1, -0.1)
@@ -140,7 +143,7 @@ _DEAD_BANDS = (0.01, 0.019, 0.02, 0.021, 0.05, 0.051, 0.1, 0.101)
 SPANS: dict[InputKind, Span] = {
     "axis": Span(-1, 1, (0.0, *(sign * edge for edge in _DEAD_BANDS for sign in (1, -1)))),
     "trigger": Span(0, 1, (0.0, 1.0, 1.0, 0.5, *_DEAD_BANDS)),
-    "volts": Span(0, 5, (0.0, 0.0, 5.0, 5.0, 5.0, 2.5, 0.001, 4.999)),
+    "volts": Span(0, _VOLTS, (0.0, 0.0, _VOLTS, _VOLTS, _VOLTS, _VOLTS / 2, 0.001, _VOLTS - 0.001)),
     # The roboRIO browns out at 6.3 V (the second edition's 6.75 V); below 4.5 V it is off.
     "battery": Span(4.5, 13.5, (12.0, 12.6, 6.3, 6.3, 6.2, 6.7, 6.8, 4.6)),
     "count": Span(-1_000_000, 1_000_000, (0, 0, 1, -1), whole=True),
@@ -188,7 +191,7 @@ _SCALES: dict[InputKind, tuple[float, ...]] = {
     "radians per second": _RADIANS,
     "m/s2": (1.0, 9.80665),
     "turns": (1.0, 1 / 360, 0.5 / math.pi),
-    "volts": (1.0, 1.0, 5 / 360, 5 / 270, 0.5 / math.pi * 5),
+    "volts": (1.0, 1.0, _VOLTS / 360, _VOLTS / 270, 0.5 / math.pi * _VOLTS),
 }
 
 _DIGITS = 3

@@ -27,21 +27,19 @@ _HID = "wpilib.GenericHID"
 _COMMAND_HID = "commands2.button.CommandGenericHID"
 
 
-def compare(old: Packages, new: Packages, moved: Mapping[str, str], named: frozenset[str]) -> dict[str, object]:
+def compare(old: Packages, new: Packages, moved: Mapping[str, str]) -> dict[str, object]:
     """Return the table.
 
     :param moved: corrections: old path to new path, or to the new name of a member
-    :param named: members that must be in the table even if nothing about them changed
     """
-    return _Comparison(old, new, moved, named).table()
+    return _Comparison(old, new, moved).table()
 
 
 class _Comparison:
-    def __init__(self, old: Packages, new: Packages, moved: Mapping[str, str], named: frozenset[str]) -> None:
+    def __init__(self, old: Packages, new: Packages, moved: Mapping[str, str]) -> None:
         self._old = old
         self._new = new
         self._moved = moved
-        self._named = named
         self._by_name: dict[str, list[str]] = {}
         for path in new.entries:
             self._by_name.setdefault(normalized(path.rpartition(".")[2]), []).append(path)
@@ -95,10 +93,13 @@ class _Comparison:
         )
         return fitting[0] if fitting else ""
 
+    def _new_entry(self, path: str) -> Entry | None:
+        return self._new.entries.get(self._new.aliases.get(path, path))
+
     def _nested_path(self, outer: str, name: str) -> str:
         target = self._path(outer)
         while target:
-            owner = self._new.entries.get(target)
+            owner = self._new_entry(target)
             if not isinstance(owner, Class):
                 return ""
             for each, member in owner.members.items():
@@ -112,9 +113,9 @@ class _Comparison:
         line = "" if target == path else target or "-"
         if isinstance(entry, Class):
             members = " ".join(self._members(path, target, entry))
-            return f"{line}({' '.join(entry.bases)}){_parameters(entry, self._new.entries.get(target))};{members}"
+            return f"{line}({' '.join(entry.bases)}){_parameters(entry, self._new_entry(target))};{members}"
         if isinstance(entry, Function):
-            return f"{line}:{entry.returns}{_parameters(entry, self._new.entries.get(target))}"
+            return f"{line}:{entry.returns}{_parameters(entry, self._new_entry(target))}"
         return f"{line}:{entry.type}" if line or entry.type else ""
 
     def _members(self, path: str, target: str, entry: Class) -> list[str]:
@@ -130,8 +131,7 @@ class _Comparison:
             spelling = "" if counterpart == snake_case(name) else f"={counterpart}"
             type_ = member.returns if isinstance(member, Function) else member.type
             extra = _parameters(member, new)
-            if spelling or type_ or extra or name != snake_case(name) or f"{path}.{name}" in self._named:
-                found.append(f"{name}{spelling}{f':{type_}' if type_ else ''}{extra}")
+            found.append(f"{name}{spelling}{f':{type_}' if type_ else ''}{extra}")
         return [*found, *self._inherited(path, target, entry)]
 
     def _inherited(self, path: str, target: str, entry: Class) -> list[str]:
@@ -141,7 +141,7 @@ class _Comparison:
             if name in entry.members or not _matters(name, member) or not target:
                 continue
             theirs = self._member(base, self._path(base), name)[0]
-            kept = self._in_class(self._new.entries.get(target), [theirs])[0]
+            kept = self._in_class(self._new_entry(target), [theirs])[0]
             ours = kept or self._member(path, target, name)[0]
             if ours != theirs and theirs != "-" and "." not in theirs:
                 type_ = member.returns if isinstance(member, Function) else ""
@@ -161,8 +161,8 @@ class _Comparison:
         """Return the member's new name and what it is; "-" if the class and its bases have none."""
         if f"{path}.{name}" in self._moved:
             corrected = self._moved[f"{path}.{name}"]
-            return corrected, self._in_class(self._new.entries.get(target), [corrected])[1]
-        owner = self._new.entries.get(target)
+            return corrected, self._in_class(self._new_entry(target), [corrected])[1]
+        owner = self._new_entry(target)
         spellings = [snake_case(name), name]
         found = self._in_class(owner, spellings)
         if not found[0]:
@@ -185,7 +185,7 @@ class _Comparison:
             if normalized(name) == alike:
                 return name, member
         for base in owner.bases:
-            found = self._in_class(self._new.entries.get(base), names, alike)
+            found = self._in_class(self._new_entry(base), names, alike)
             if found[0]:
                 return found
         return "", None

@@ -5,7 +5,8 @@ After `--`, those of the new season:
 
     python -m pyfrc_core.migrate.names.make_table .venv/lib/python3.11/site-packages -- .venv27/lib/.../site-packages
 
-It was made from wpilib 2026.2.2 and robotpy-rev 2026.0.4, and from wpilib 2027.0.0a7 and robotpy-rev 2027.0.0a7.post1.
+It was made from wpilib 2026.2.2, robotpy-rev 2026.0.4 and phoenix6 26.3.0, and from wpilib 2027.0.0a7, robotpy-rev
+2027.0.0a7.post1 and phoenix6 26.70.0a2.
 
 A correction that names what is not there is an error, so that corrections do not outlive what they correct.
 """
@@ -14,7 +15,6 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 from .compare import compare
@@ -32,20 +32,9 @@ def main(old_sites: list[Path], new_sites: list[Path]) -> int:
     wrong += [path for path in moved.values() if "." in path and not _exists(new, path)]
     for path in wrong:
         print(f"corrections.toml: there is no {path}", file=sys.stderr)
-    text = json.dumps(compare(old, new, moved, frozenset(_paths(corrections()))), indent=0, sort_keys=True)
+    text = json.dumps(compare(old, new, moved), indent=0, sort_keys=True)
     (HERE / "table.json").write_text(text + "\n", encoding="utf-8")
     return 1 if wrong else 0
-
-
-def _paths(part: object) -> Iterator[str]:
-    """Return all texts of the corrections; the paths among them are what the table must have."""
-    if isinstance(part, str):
-        yield part
-    elif isinstance(part, dict | list):
-        for each in part:
-            yield from _paths(each)
-        for each in part.values() if isinstance(part, dict) else ():
-            yield from _paths(each)
 
 
 def _exists(packages: Packages, path: str) -> bool:

@@ -7,6 +7,7 @@ dictionary: each module, class, function and constant by its shortest public pat
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -28,7 +29,15 @@ PACKAGES = (
     "wpilog",
     "romi",
     "xrp",
+    "cscore",
     "rev",
+    "phoenix6",
+)
+
+#: Modules of vendors whose names are the same in both seasons.
+_UNCHANGED = tuple(
+    f"phoenix6.{module}"
+    for module in ("configs", "controls", "mechanisms", "phoenix_native", "signals", "sim", "spns", "units", "wpiutils")
 )
 
 _CONTAINERS = {"list", "List", "tuple", "Tuple", "Sequence", "Iterable", "set", "Annotated", "Optional", "Union"}
@@ -115,7 +124,7 @@ class Packages:
             if name.startswith("_") or isinstance(found, str):
                 continue
             origin, node = found
-            if (origin.split(".")[0] == module.split(".")[0]) != at_home:
+            if (origin.split(".")[0] == module.split(".")[0]) != at_home or origin.startswith(_UNCHANGED):
                 continue
             private, public = f"{origin}.{_name_of(node)}", f"{module}.{name}"
             if private in self._public:
@@ -135,8 +144,10 @@ class Packages:
                 parts = file.relative_to(root.parent).with_suffix("").parts
                 if parts[-1] == "__init__":
                     parts = parts[:-1]
-                if not any(part.startswith("_") or part in ("testing", "src", "tests") for part in parts):
-                    found.append(".".join(parts))
+                module = ".".join(parts)
+                hidden = any(part.startswith("_") or part in ("testing", "src", "tests") for part in parts)
+                if not hidden and not module.startswith(_UNCHANGED):
+                    found.append(module)
         return list(dict.fromkeys(found))
 
     def _home(self, module: str) -> Path:
@@ -177,12 +188,8 @@ class Packages:
         names: dict[str, _Definition | _Imported | str] = {}
         self._names[module] = names
         tree = self._tree(module)
-        statements = [] if tree is None else list(tree.body)
-        while statements:
-            statement = statements.pop(0)
-            if isinstance(statement, ast.Try | ast.If):
-                statements[:0] = statement.body
-            elif isinstance(statement, ast.ClassDef | ast.FunctionDef | ast.AnnAssign | ast.Assign):
+        for statement in _statements([] if tree is None else tree.body):
+            if isinstance(statement, ast.ClassDef | ast.FunctionDef | ast.AnnAssign | ast.Assign):
                 if name := _name_of(statement):
                     names.setdefault(name, (module, statement))
             elif isinstance(statement, ast.Import):
@@ -223,9 +230,11 @@ class Packages:
         if isinstance(node, ast.ClassDef):
             inside = f"{within}{node.name}."
             found = Class([each for base in node.bases if (each := self._type(base, module, within))])
-            for member in node.body:
+            for member in _statements(node.body):
                 if isinstance(member, ast.FunctionDef):
                     self._add_function(found, member, module, inside)
+                    if member.name == "__init__":
+                        self._add_attributes(found, member, module, inside)
                 elif isinstance(member, ast.ClassDef):
                     found.members[member.name] = self._entry(member, module, inside)
                 elif isinstance(member, ast.AnnAssign) and isinstance(member.target, ast.Name):
@@ -238,6 +247,22 @@ class Packages:
         if isinstance(node, ast.AnnAssign):
             return Value(self._type(node.annotation, module, within))
         return Value()
+
+    def _add_attributes(self, owner: Class, constructor: ast.FunctionDef, module: str, within: str) -> None:
+        """Add the public attributes that a constructor assigns."""
+        for each in ast.walk(constructor):
+            if not isinstance(each, ast.Assign | ast.AnnAssign):
+                continue
+            target = each.target if isinstance(each, ast.AnnAssign) else each.targets[0]
+            if not isinstance(target, ast.Attribute) or ast.unparse(target.value) != "self":
+                continue
+            if target.attr.startswith("_"):
+                continue
+            if isinstance(each, ast.AnnAssign):
+                type_ = self._type(each.annotation, module, within)
+            else:
+                type_ = self._assigned(each.value, module, within)
+            owner.members.setdefault(target.attr, Value(type_))
 
     def _assigned(self, value: ast.expr, module: str, within: str) -> str:
         return self._type(value.func, module, within) if isinstance(value, ast.Call) else ""
@@ -307,6 +332,15 @@ class Packages:
             owner, _, last = owner.rpartition(".")
             name = f"{last}.{name}"
         return path if path in self.entries else ""
+
+
+def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """Return the statements of a block, and those of its conditions where they are true."""
+    for each in body:
+        if isinstance(each, ast.Try | ast.If):
+            yield from _statements(each.body)
+        else:
+            yield each
 
 
 def _name_of(node: ast.AST) -> str:

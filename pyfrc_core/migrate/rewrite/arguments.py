@@ -9,19 +9,29 @@ import libcst as cst
 
 from ..types.atoms import Many, Obj, Ref
 from ..types.scopes import Scope
-from ..types.values import written_number
+from ..types.values import values, written_number
+from .buses import Buses
 from .edits import changed, fill, in_parentheses
 from .file import FileRewriter, Found
 from .gamepads import Gamepad, gamepad_of
+from .ports import Ports
 
+_ENCODER = "wpilib.Encoder"
 _GENERIC_HID = "wpilib.interfaces.GenericHID"
 
 
 class Arguments:
-    """The arguments of a file's calls."""
+    """The arguments of a file's calls.
 
-    def __init__(self, rewriter: FileRewriter) -> None:
+    :param led_lists: the lists that become buffers
+    :param ports: of the project's devices
+    """
+
+    def __init__(self, rewriter: FileRewriter, led_lists: frozenset[cst.CSTNode], ports: Ports) -> None:
         self._file = rewriter
+        self._led_lists = led_lists
+        self._ports = ports
+        self._buses = Buses(rewriter)
         self._corrections: Mapping[str, Any] = rewriter.table.corrections
 
     def changed_meaning(self, node: cst.Call, scope: Scope, paths: list[str]) -> None:
@@ -47,14 +57,17 @@ class Arguments:
                 self._file.say(node, f"{path} takes other arguments.", self._corrections["other_arguments"][path])
             if path in self._corrections["no_lists"] and node.args:
                 types = self._file.inference.infer(node.args[0].value, scope)
-                if any(isinstance(each, Many) for each in types):
+                made = values(self._file.inference, node.args[0].value, scope)
+                is_buffer = bool(made) and self._led_lists.issuperset(made)
+                if any(isinstance(each, Many) for each in types) and not is_buffer:
                     self._file.say(node, f"{path} takes no list any more.", self._corrections["no_lists"][path])
             if path in self._corrections["by_channel"] and node.args:
                 self._by_channel(node, scope, self._corrections["by_channel"][path])
+            if self._ports.kind(path):
+                self._note_ports(node, scope, path)
             if path in self._corrections["channels"]:
                 self._limit(node, scope, self._corrections["channels"][path])
-            if path in self._corrections["can_bus"]["classes"]:
-                self._bus(node, scope)
+            if self._buses.device(node, scope, path):
                 break
 
     def keywords(self, node: cst.Call, found: Found) -> None:
@@ -184,6 +197,12 @@ class Arguments:
         if channel is not None:
             self._file.say(node, f"Channel {channel} must be in use here.", note, done=True)
 
+    def _note_ports(self, node: cst.Call, scope: Scope, path: str) -> None:
+        for arg in node.args[: 2 if path == _ENCODER else 1]:
+            number = written_number(self._file.inference, arg.value, scope)
+            if number is not None:
+                self._ports.use(self._file.name_in_report, self._file.line(node), path, number)
+
     def _limit(self, node: cst.Call, scope: Scope, count: int) -> None:
         channel = written_number(self._file.inference, node.args[0].value, scope) if node.args else None
         if channel is not None and channel >= count:
@@ -192,18 +211,3 @@ class Arguments:
                 f"Channel {channel} does not exist on SystemCore.",
                 f"It has the channels 0 to {count - 1}: write the one that you wire it to.",
             )
-
-    def _bus(self, node: cst.Call, scope: Scope) -> None:
-        bus = self._corrections["can_bus"]["bus"]
-        root = node.func
-        while isinstance(root, cst.Attribute):
-            root = root.value
-        spelled = cst.parse_expression(self._file.imports.spell(bus, root, scope))
-        self._file.edit(node, lambda updated: updated.with_changes(args=[_first(spelled, updated), *updated.args]))
-        self._file.say(node, "A CAN device names its bus now.", self._corrections["can_bus"]["note"], done=True)
-
-
-def _first(value: cst.BaseExpression, call: cst.Call) -> cst.Arg:
-    if not call.args:
-        return cst.Arg(value)
-    return cst.Arg(value, comma=cst.Comma(whitespace_after=cst.SimpleWhitespace(" ")))

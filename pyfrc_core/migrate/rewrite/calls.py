@@ -24,21 +24,30 @@ class Calls:
     """The calls of a file.
 
     :param dashboard_reads: the keys that the project reads from SmartDashboard
+    :param arguments: of the calls
     """
 
-    def __init__(self, rewriter: FileRewriter, dashboard_reads: frozenset[str]) -> None:
+    def __init__(self, rewriter: FileRewriter, dashboard_reads: frozenset[str], arguments: Arguments) -> None:
         self._file = rewriter
         self._reads = dashboard_reads
-        self._arguments = Arguments(rewriter)
+        self._arguments = arguments
         self._sticks = Sticks(rewriter)
         self._repeated = RepeatedLogs(rewriter)
         self._corrections: Mapping[str, Any] = rewriter.table.corrections
 
     def call(self, node: cst.Call, scope: Scope) -> None:
         """Rewrite a call."""
+        base = self._base(node, scope)
+        if base is not None:
+            self._arguments.keywords(node, base)
+            if self._file.first_time:
+                self._arguments.changed_meaning(node, scope, [base.path])
+            return
         found = self._called(node, scope)
         if found is None:
             return
+        if self._left_for_both(node, scope):
+            self._file.edit(node, _both_calls)
         paths = self._paths(found)
         self._arguments.keywords(node, found)
         if found.member is not None and found.member.is_value and not node.args:
@@ -59,16 +68,29 @@ class Calls:
         self._sticks.call(node, scope, found.path)
         self._arguments.changed_meaning(node, scope, paths)
 
+    def _base(self, node: cst.Call, scope: Scope) -> Found | None:
+        """Return the class whose constructor `super().__init__(...)` is."""
+        if not isinstance(node.func, cst.Attribute) or node.func.attr.value != "__init__":
+            return None
+        for each in self._file.inference.infer(node.func.value, scope):
+            if isinstance(each, OwnObj) and each.above:
+                own = [*self._file.inference.lineage(each.own)[0][1:]]
+                theirs = [] if own else self._file.inference.lineage(each.own)[1]
+                for path in theirs:
+                    if (name := self._file.table.name(path)) is not None:
+                        return Found("", "", path, name)
+        return None
+
     def _called(self, node: cst.Call, scope: Scope) -> Found | None:
         if isinstance(node.func, cst.Attribute):
             found = self._file.look_up(node.func, scope)
-            return found[0] if found and found[0].member is not None and not any(each.stays for each in found) else None
-        if isinstance(node.func, cst.Name):
-            for each in self._file.inference.infer(node.func, scope):
-                if isinstance(each, Ref) and (name := self._file.table.name(each.path)) is not None:
-                    return Found("", "", each.path, name)
-                if isinstance(each, Bound) and (member := self._file.table.member(each.owner, each.name)) is not None:
-                    return Found(each.owner, each.owner, f"{each.owner}.{each.name}", member[1])
+            if found and not any(each.stays for each in found):
+                return found[0] if found[0].member is not None else None
+        for each in self._file.inference.infer(node.func, scope):
+            if isinstance(each, Ref) and (name := self._file.table.name(each.path)) is not None:
+                return Found("", "", each.path, name)
+            if isinstance(each, Bound) and (member := self._file.table.member(each.owner, each.name)) is not None:
+                return Found(each.owner, each.owner, f"{each.owner}.{each.name}", member[1])
         return None
 
     def _paths(self, found: Found) -> list[str]:
@@ -97,9 +119,7 @@ class Calls:
     def replace(self, node: cst.Call, scope: Scope, template: str) -> None:
         """Replace a call by a template."""
         root = self._file.consume(node.func, scope)
-        text = ""
-        for position, part in enumerate(template.replace("<", "\0").replace(">", "\0").split("\0")):
-            text += self._file.imports.spell(part, root, scope) if position % 2 else part
+        text = self._file.imports.fill_in(template, root, scope)
 
         def edit(updated: cst.Call) -> cst.BaseExpression:
             parts = {str(index): arg.value for index, arg in enumerate(updated.args)}
@@ -225,11 +245,8 @@ class Calls:
         if found.path == _ADD_TO_TAB and len(node.value.args) == 2:
             self._add_to_tab(node.value)
         func = node.value.func
-        for arg in node.value.args:
-            if isinstance(arg.value, cst.Attribute) and self._is_both(arg.value, scope):
-                self._file.handled.add(arg.value)
-                self._file.edit(arg.value, renamed("LEFT_RUMBLE"))
-                self._file.edit(node, _for_both)
+        if self._left_for_both(node.value, scope):
+            self._file.edit(node, _for_both)
         if (
             self._file.first_time
             and any(path in self._corrections["returns_new"]["methods"] for path in paths)
@@ -260,6 +277,16 @@ class Calls:
             done=True,
         )
 
+    def _left_for_both(self, node: cst.Call, scope: Scope) -> bool:
+        """Let a call set the rumble of the left side, if it sets both."""
+        values = [each.value for each in node.args if isinstance(each.value, cst.Attribute)]
+        for value in values:
+            if value not in self._file.handled and self._is_both(value, scope):
+                self._file.handled.add(value)
+                self._file.edit(value, renamed("LEFT_RUMBLE"))
+                return True
+        return False
+
     def _is_both(self, node: cst.Attribute, scope: Scope) -> bool:
         return any(each.path == _BOTH for each in self._file.look_up(node, scope))
 
@@ -270,9 +297,16 @@ def _without_call(updated: cst.Call) -> cst.BaseExpression:
 
 
 def _for_both(statement: cst.Expr) -> cst.FlattenSentinel[cst.BaseSmallStatement]:
-    code = cst.Module([]).code_for_node(statement).replace("LEFT_RUMBLE", "RIGHT_RUMBLE")
-    line = cst.ensure_type(cst.parse_statement(code), cst.SimpleStatementLine)
-    return cst.FlattenSentinel([statement, line.body[0]])
+    return cst.FlattenSentinel([statement, cst.Expr(_right(statement.value))])
+
+
+def _both_calls(call: cst.Call) -> cst.Tuple:
+    """Return two calls where one expression stands, as in a lambda."""
+    return cst.Tuple([cst.Element(call), cst.Element(_right(call))])
+
+
+def _right(call: cst.BaseExpression) -> cst.BaseExpression:
+    return cst.parse_expression(cst.Module([]).code_for_node(call).replace("LEFT_RUMBLE", "RIGHT_RUMBLE"))
 
 
 def key_of(node: cst.Call) -> str | None:

@@ -113,12 +113,7 @@ class FileRewriter:
                     found.append(Found("", "", path, known))
                     continue
             if isinstance(owner, Ref | Obj):
-                members = self.member_of([owner.path], name)
-                known = self.table.name(owner.path)
-                # The table has every name that is spelled differently, but not all that have not changed.
-                if not members and known is not None and known.is_class and name == snake_case(name):
-                    members = [_unchanged(name)]
-                found += members
+                found += self.member_of([owner.path], name)
             elif isinstance(owner, OwnObj | OwnRef):
                 mine, theirs = self.inference.lineage(owner.own)
                 members = self.member_of(theirs, name)
@@ -155,9 +150,7 @@ class FileRewriter:
             self.say(node, f"{node.attr.value} can be several things here.", f"Their new names: {names}.")
             return
         for each in found:
-            note = self.table.corrections["notes"].get(each.path)
-            if note is not None and self.first_time:
-                self.say(node, f"{node.attr.value} has another meaning.", note, done=True)
+            self._say_note(node, each.path)
         first, target = found[0], new.pop()
         if target is None:
             self._say_gone(node, first)
@@ -166,6 +159,19 @@ class FileRewriter:
             self._rename_member(node, scope, target, is_value=is_value)
         elif target != first.path:
             self._respell(node, scope, first.path, target)
+
+    def _say_note(self, node: cst.Attribute | cst.Name, path: str) -> None:
+        """Report another meaning; of a class, where it is called."""
+        note = self.table.corrections["notes"].get(path)
+        known = self.table.name(path)
+        if (
+            note is None
+            or not self.first_time
+            or (known is not None and known.is_class and node not in self.module.called)
+        ):
+            return
+        name = node.attr.value if isinstance(node, cst.Attribute) else node.value
+        self.say(node, f"{name} has another meaning.", note, done=True)
 
     def _new_name(self, found: Found) -> str | None:
         if found.owner:
@@ -238,6 +244,7 @@ class FileRewriter:
         old = refs[0].path
         new = self.table.new_path(old)
         self.imports.count(node.value, scope, self.imports.uses)
+        self._say_note(node, old)
         if new is None:
             self.say(node, f"{old} is gone.", self.table.advice(old))
             return
@@ -281,7 +288,9 @@ class FileRewriter:
         known = self.table.name(path) is not None or path in self.table.modules
         new = self.table.new_path(ref)
         if new is None:
-            if not (self.imports.consumed.get(alias) and not self.imports.uses.get(alias)):
+            if self.imports.is_unused(alias):
+                self.say(node, f"{ref} is gone, and its import, which is not used, is removed.", done=True)
+            elif not (self.imports.consumed.get(alias) and not self.imports.uses.get(alias)):
                 self.say(node, f"{ref} is gone.", self.table.advice(ref))
         elif not known and isinstance(alias.name, cst.Name) and ref not in self.table.modules:
             old_last, new_last = ref.rpartition(".")[2], new.rpartition(".")[2]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
 import libcst as cst
@@ -10,7 +11,8 @@ from ..names.table import Table
 from ..types.scopes import Module, Scope, dotted, import_source
 from .edits import chain
 
-_NEW_MODULES = ("telemetry", "tunables", "wpilib_drivers", "wpilog", "ntcore", "wpilib", "wpimath", "wpiutil", "hal")
+#: The modules of 2027 that names of 2026 are in.
+NEW_MODULES = ("telemetry", "tunables", "wpilib_drivers", "wpilog", "ntcore", "wpilib", "wpimath", "wpiutil", "hal")
 
 
 class Imports:
@@ -24,7 +26,7 @@ class Imports:
         self._table = table
         self._shared = shared
         self._packages = {name.partition(".")[0] for name in table.modules}
-        self._new_modules = sorted({*table.modules.values(), *_NEW_MODULES} - {""}, key=len, reverse=True)
+        self._new_modules = sorted({*table.modules.values(), *NEW_MODULES} - {""}, key=len, reverse=True)
         self._wanted_names: dict[str, set[str]] = {}
         self._wanted_modules: dict[str, str] = {}
         #: How often each name of a `from` import is still used as it is, by alias.
@@ -53,6 +55,12 @@ class Imports:
             if isinstance(line, cst.SimpleStatementLine) and (len(line.body) > 1 or line.trailing_whitespace.comment)
             for statement in line.body
         }
+        texts = " ".join(
+            node.value for node, _ in [*module.sites, *module.annotations] if isinstance(node, cst.SimpleString)
+        )
+        self._said = {node.value for node, _ in module.sites if isinstance(node, cst.Name)} | set(
+            re.findall(r"\w+", texts)
+        )
         self._bound = {name for scope in _scopes(module) for name in scope.bindings}
 
     # Spelling
@@ -80,6 +88,16 @@ class Imports:
                 self._wanted_names.setdefault(module, set()).add(first)
                 return rest
         return f"{self._module_name(module)}.{rest}"
+
+    def fill_in(self, text: str, root: cst.BaseExpression | None, scope: Scope) -> str:
+        """Return a text with each `<path>` as this file says it."""
+        parts = text.replace("<", "\0").replace(">", "\0").split("\0")
+        return "".join(self.spell(part, root, scope) if position % 2 else part for position, part in enumerate(parts))
+
+    def is_unused(self, alias: cst.ImportAlias) -> bool:
+        """Return whether this file says nothing of a name that it imports, and no other file gets it from here."""
+        name = alias.asname.name if alias.asname else alias.name
+        return not self._shared and isinstance(name, cst.Name) and name.value not in self._said
 
     def _is_from(self, root: cst.BaseExpression | None, scope: Scope) -> bool:
         if not isinstance(root, cst.Name):
@@ -227,6 +245,9 @@ class Imports:
                 changed = True
                 continue
             new = self._table.new_path(self._table.canonical(path))
+            if new is None and self.is_unused(alias):
+                changed = True
+                continue
             if new is None:
                 kept.setdefault(source, []).append(alias)
                 continue

@@ -60,6 +60,7 @@ _OPERATORS: dict[type[cst.CSTNode], str] = {
     cst.BitAnd: "__and__",
     cst.BitOr: "__or__",
 }
+_TIMES = 4
 _AUTONOMOUS = "robotpy_ext.autonomous.StatefulAutonomous"
 
 
@@ -70,10 +71,12 @@ class Inference:
     """
 
     def __init__(self, table: Table, modules: Sequence[Module]) -> None:
-        self._table = table
+        self.table = table
         self.modules = {module.name: module for module in modules}
         self._packages = {name.rpartition(".")[0] for name in self.modules if "." in name}
         self._memo: dict[object, Atoms | None] = {}
+        #: What was found the last time, for what depends on itself.
+        self._before: dict[object, Atoms | None] = {}
         self._classes = {each.node: each for module in modules for each in module.classes}
         self._functions = {each.node: each for module in modules for each in module.functions}
         self._calls: dict[str, list[tuple[cst.Call, Scope]]] = {}
@@ -89,6 +92,20 @@ class Inference:
                     name = node.func.value if isinstance(node.func, cst.Name) else node.func.attr.value
                     self._calls.setdefault(name, []).append((node, scope))
 
+        self._settle()
+
+    def _settle(self) -> None:
+        """Infer everything until nothing new is found: what depends on itself needs more than one time."""
+        for _ in range(_TIMES):
+            for module in self.modules.values():
+                for node, scope in module.sites:
+                    if isinstance(node, cst.Name | cst.Attribute | cst.Call):
+                        self.infer(node, scope)
+            settled = self._memo == self._before
+            self._before, self._memo = self._memo, {}
+            if settled:
+                break
+
     # Expressions
 
     def infer(self, node: cst.CSTNode, scope: Scope) -> Atoms:
@@ -97,7 +114,8 @@ class Inference:
         if key not in self._memo:
             self._memo[key] = None
             self._memo[key] = self._infer(node, scope)
-        return self._memo[key] or NOTHING
+        found = self._memo[key]
+        return (self._before.get(key) or NOTHING) if found is None else found
 
     def _infer(self, node: cst.CSTNode, scope: Scope) -> Atoms:
         if isinstance(node, cst.Name):
@@ -134,10 +152,15 @@ class Inference:
             return many([self.infer(node.elt, scope.module.comprehensions.get(node.elt, scope))])
         if isinstance(node, cst.Subscript):
             found = self.infer(node.value, scope)
-            return items(found) | self._results(found, "__getitem__")
+            generic = frozenset(each for each in found if isinstance(each, OwnRef) or self._is_class(each))
+            return items(found) | self._results(found, "__getitem__") | generic
         if isinstance(node, cst.Lambda):
             return frozenset({OwnCallable(self._functions[node])}) if node in self._functions else NOTHING
         return NOTHING
+
+    def _is_class(self, atom: Atom) -> bool:
+        name = self.table.name(atom.path) if isinstance(atom, Ref) else None
+        return name is not None and name.is_class
 
     def named(self, name: str, scope: Scope) -> Atoms:
         """Return what a name can be in a scope."""
@@ -168,6 +191,8 @@ class Inference:
                 found = elements(found)
             if binding.unpacked:
                 found = elements(found) | found
+        if binding.kind == "item":
+            found = many([self.infer(binding.node, binding.scope)])
         return found
 
     def annotated(self, node: cst.CSTNode, scope: Scope) -> Atoms:
@@ -195,7 +220,7 @@ class Inference:
     def _module(self, path: str) -> Atoms:
         if path in self.modules or path in self._packages:
             return frozenset({OwnModuleRef(path, self.modules.get(path))})
-        return frozenset({Ref(path)}) if path in self._table.modules else NOTHING
+        return frozenset({Ref(path)}) if path in self.table.modules else NOTHING
 
     def _imported(self, path: str) -> Atoms:
         found = self._module(path)
@@ -219,17 +244,17 @@ class Inference:
             return self._own_attribute(owner, name)
         if isinstance(owner, Ref):
             path = f"{owner.path}.{name}"
-            if path in self._table.modules or self._table.name(path) is not None:
-                return frozenset({Ref(self._table.canonical(path))})
+            if path in self.table.modules or self.table.name(path) is not None:
+                return frozenset({Ref(self.table.canonical(path))})
             return self._member(owner, owner.path, name)
         return self._member(owner, owner.path, name) if isinstance(owner, Obj) else NOTHING
 
     def _member(self, receiver: Atom, path: str, name: str) -> Atoms:
-        for each in self._table.ancestors(path):
+        for each in self.table.ancestors(path):
             nested = f"{each}.{name}"
-            if self._table.name(nested) is not None:
+            if self.table.name(nested) is not None:
                 return frozenset({Ref(nested)})
-        found = self._table.member(path, name)
+        found = self.table.member(path, name)
         if found is None:
             return NOTHING
         owner, member = found
@@ -238,7 +263,7 @@ class Inference:
 
     def own_bases(self, own: OwnClass) -> list[OwnRef | Ref]:
         """Return the classes that a class of the team's is derived from directly."""
-        atoms = union(self.infer(each.value, own.outer) for each in own.node.bases)
+        atoms = [atom for each in own.node.bases for atom in self.infer(each.value, own.outer)]
         return [each for each in atoms if isinstance(each, OwnRef | Ref)]
 
     def lineage(self, own: OwnClass) -> tuple[list[OwnClass], list[str]]:
@@ -254,7 +279,8 @@ class Inference:
 
     def own_bindings(self, own: OwnClass, name: str) -> list[Binding]:
         """Return what a class itself binds as an attribute, in its body and by `self.name = ...`."""
-        return [*own.scope.bindings.get(name, ()), *own.assigned.get(name, ())]
+        found = [*own.scope.bindings.get(name, ()), *own.assigned.get(name, ())]
+        return found if any(each.kind != "item" for each in found) else []
 
     def _own_attribute(self, owner: OwnRef | OwnObj, name: str) -> Atoms:
         mine, theirs = self.lineage(owner.own)
@@ -316,12 +342,12 @@ class Inference:
         if isinstance(called, OwnCallable):
             return self._returned(called.function)
         if isinstance(called, Ref):
-            name = self._table.name(called.path)
+            name = self.table.name(called.path)
             if name is None:
                 return NOTHING
             return frozenset({Obj(called.path)}) if name.is_class else of_type(name.type, called)
         if isinstance(called, Bound):
-            found = self._table.member(called.owner, called.name)
+            found = self.table.member(called.owner, called.name)
             return NOTHING if found is None else of_type(found[1].type, called.receiver)
         return NOTHING
 
@@ -357,7 +383,7 @@ class Inference:
         if call is None or scope is None:
             return NOTHING
         paths = [f"{each.owner}.{each.name}" for each in self.infer(call.func, scope) if isinstance(each, Bound)]
-        types = self._table.corrections["callbacks"]
+        types = self.table.corrections["callbacks"]
         return frozenset(Obj(types[path]) for path in paths if path in types)
 
     def _passed(self, node: cst.Param, function: OwnFunction) -> Atoms:
@@ -391,6 +417,6 @@ class Inference:
         robots = [
             own
             for own in self._classes.values()
-            if any("wpilib.RobotBase" in self._table.ancestors(path) for path in self.lineage(own)[1])
+            if any("wpilib.RobotBase" in self.table.ancestors(path) for path in self.lineage(own)[1])
         ]
         return frozenset(OwnObj(each) for each in robots)

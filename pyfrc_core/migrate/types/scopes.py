@@ -11,13 +11,16 @@ from pathlib import Path
 
 import libcst as cst
 
+#: What puts its last argument into a container.
+_PUTS = {"add", "append", "appendleft", "insert", "setdefault"}
+
 
 @dataclass(eq=False)
 class Binding:
     """One thing that binds a name.
 
     :param kind: `import` (a path), `from` (a path), `class`, `function`, `value`, `annotation`, `parameter`,
-                 `element` (of a `for`), `enter` (of a `with`)
+                 `element` (of a `for`), `enter` (of a `with`), `item` (what is put into a list or dictionary)
     :param scope: where `node` is evaluated
     :param path: of an import
     :param unpacked: the name is one of several that the value is unpacked to
@@ -175,11 +178,16 @@ class _Builder(cst.CSTVisitor):
     def visit_Call(self, node: cst.Call) -> None:
         self._site(node)
         self._module.called.add(node.func)
+        if isinstance(node.func, cst.Attribute) and node.func.attr.value in _PUTS and node.args:
+            self._put(node.func.value, node.args[-1].value)
 
     def visit_Comparison(self, node: cst.Comparison) -> None:
         self._site(node)
 
     def visit_Expr(self, node: cst.Expr) -> None:
+        self._site(node)
+
+    def visit_BinaryOperation(self, node: cst.BinaryOperation) -> None:
         self._site(node)
 
     def visit_Subscript(self, node: cst.Subscript) -> None:
@@ -259,6 +267,17 @@ class _Builder(cst.CSTVisitor):
             if owner is not None:
                 found = owner.assigned.setdefault(target.attr.value, [])
                 found.append(Binding(kind, value, self._scope, "", unpacked))
+        elif isinstance(target, cst.Subscript) and kind == "value" and not unpacked:
+            self._put(target.value, value)
+
+    def _put(self, container: cst.BaseExpression, value: cst.CSTNode) -> None:
+        """Note what is put into a list or dictionary, where its own name is bound."""
+        if isinstance(container, cst.Attribute):
+            self._assign(container, "item", value)
+        elif isinstance(container, cst.Name):
+            bindings = self._scope.find(container.value)
+            if bindings and all(each.kind in ("value", "item") for each in bindings):
+                bindings[0].scope.bindings[container.value].append(Binding("item", value, self._scope))
 
     def _self_class(self, name: str) -> OwnClass | None:
         scope: Scope | None = self._scope
@@ -329,6 +348,7 @@ class _Builder(cst.CSTVisitor):
             function.returned.append((node.value, self._scope))
 
     def visit_ListComp(self, node: cst.ListComp) -> bool:
+        self._site(node)
         return self._comprehension(node.for_in, [node.elt])
 
     def visit_SetComp(self, node: cst.SetComp) -> bool:

@@ -174,7 +174,8 @@ def _analog_in(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
     for channel, fields in _channels(tree, "analog_in"):
         if "voltage" in fields:
             what = f"{_titled('Analog input', channel, config.analog)}: the voltage that the robot measures"
-            yield Row("slider", (fields["voltage"][0],), _named(channel, config.analog), 0.0, 5.0, 2, "V", what)
+            highest = CURRENT.controller.analog_volts
+            yield Row("slider", (fields["voltage"][0],), _named(channel, config.analog), 0.0, highest, 2, "V", what)
 
 
 def _analog_out(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
