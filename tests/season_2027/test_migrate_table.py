@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from importlib.util import find_spec
 from pathlib import Path
 
 import wpilib
@@ -14,13 +13,14 @@ from pyfrc_core.migrate.names.table import HERE, table
 
 def test_every_new_name_exists() -> None:
     assert wpilib.__file__ is not None
-    installed = Packages(Path(wpilib.__file__).parents[1])
+    site = Path(wpilib.__file__).parents[1]
+    installed = Packages(site)
     installed.read()
     wrong = []
     for path in re.findall(r'^"([\w.]+)": "', (HERE / "table.json").read_text("utf-8"), re.MULTILINE):
         name = table().name(path)
         new = None if name is None else name.new
-        if new is None or not find_spec(new.partition(".")[0]) or path in table().modules:
+        if new is None or not (site / new.partition(".")[0]).is_dir() or path in table().modules:
             continue
         outer, _, last = new.rpartition(".")
         owner = installed.entries.get(outer)

@@ -37,8 +37,11 @@ def test_a_sample_robot(make_project: MakeProject, name: str) -> None:
 
 
 @pytest.mark.slow
-def test_a_competition_robot(make_project: MakeProject) -> None:
-    """What its vendors' packages need is in docs/migrate.md."""
-    require("a robot with REV's devices", [] if find_spec("rev") else ["robotpy-rev"])
-    result = migrated(make_project, ROBOTS / "competition" / "magic_swerve").run("test")
+@pytest.mark.parametrize(
+    ("name", "module", "package"), [("magic_swerve", "rev", "robotpy-rev"), ("ctre_swerve", "phoenix6", "phoenix6")]
+)
+def test_a_competition_robot(make_project: MakeProject, name: str, module: str, package: str) -> None:
+    """What its vendor's package needs is in docs/migrate.md."""
+    require("a robot with a vendor's devices", [] if find_spec(module) else [package])
+    result = migrated(make_project, ROBOTS / "competition" / name).run("test")
     assert result.code == 0, result.output
