@@ -25,3 +25,36 @@ def test_the_error_of_a_simulated_robot(encoding: str, make_project: MakeProject
     assert result.code == 1, result.output
     assert r"robot.py:6: RuntimeError: no file \udcff.json" in result.stdout, result.output
     assert "UnicodeEncodeError" not in result.output
+
+
+PRINTS = r"""
+    import wpilib
+
+
+    class MyRobot(wpilib.TimedRobot):
+        def teleopInit(self):
+            print("Gr\u00f6\u00dfe \u2192 1")
+"""
+
+
+@pytest.mark.parametrize("isolation", ["reuse", "spawn"])
+def test_a_robot_may_print_any_letter_in_a_new_interpreter(isolation: str, make_project: MakeProject) -> None:
+    """Its output is a file there, which has Windows' encoding by default."""
+    project = make_project({"robot.py": PRINTS})
+    result = project.run(
+        *("test", "--builtin", "--isolation", isolation, "--", "-s", "-k", "operator_control"),
+        env={"PYTHONIOENCODING": "ascii"},
+    )
+    assert result.code == 0, result.output
+    assert "Gr\\xf6\\xdfe \\u2192 1\n" in result.stdout
+
+
+def test_what_a_test_that_fails_before_a_deploy_says(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": PRINTS,
+            "tests/test_it.py": "def test_it(robot):\n    assert 0, 'Größe → 1'\n",
+        }
+    )
+    result = project.run("deploy", "--robot", "127.0.0.1:9", "-q", env={"PYTHONIOENCODING": "cp1252"})
+    assert "AssertionError: Gr\ufffd\ufffde \\u2192 1" in result.output  # each is one byte, which is no UTF-8

@@ -157,7 +157,7 @@ def _run(command: list[str], output: IO[str], quiet: bool) -> bool:
     if not quiet:
         return spawn.run_python(command, output) == 0
     with tempfile.TemporaryFile() as printed:
-        passed = spawn.run_python([*command, "--quiet"], printed) == 0
+        passed = spawn.run_python([*command, "--quiet"], printed, spawn.WRITES_UTF_8) == 0
         if not passed:
             printed.seek(0)
             output.write(printed.read().decode(errors="replace"))

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib.metadata
 import importlib.util
+import os
 import platform
 import struct
 import subprocess
@@ -22,6 +23,7 @@ from .._version import __version__, requirement
 from ..config.packages import PACKAGES, quoted_requirement
 from ..errors import ProjectError
 from ..processes.crashes import crash_of
+from ..processes.spawn import WRITES_UTF_8
 from ..season import CURRENT, Season, SeasonSetting, refuse_unknown_wpilib
 from .check_result import CheckResult, hint, ok, problem
 from .installed import Installed, Package, Unmet
@@ -211,7 +213,10 @@ def _import(modules: list[str], path: list[str]) -> tuple[str, str]:
     looked_in = [each for each in path if each and Path(each) != Path.cwd()]
     command = [sys.executable, "-c", _PROGRAM, "\n".join(looked_in), *modules]
     try:
-        done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=TIME_LIMIT)
+        environment = {**os.environ, **WRITES_UTF_8}
+        done = subprocess.run(
+            command, env=environment, capture_output=True, encoding="utf-8", errors="replace", timeout=TIME_LIMIT
+        )
     except subprocess.TimeoutExpired as hanging:
         output = hanging.stdout or b""
         return output.decode("utf-8", "replace") if isinstance(

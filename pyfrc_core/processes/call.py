@@ -26,9 +26,6 @@ if TYPE_CHECKING:
 
 Answer = TypeVar("Answer")
 
-#: Its output is not read by a program: no letter of it is an error.
-ENVIRONMENT = {"PYTHONIOENCODING": "utf-8:backslashreplace"}
-
 
 class _FailedThere(Exception):
     """The traceback of an error in the other process."""
@@ -57,7 +54,7 @@ def run_in_subprocess(
     call = partial(_send_result, partial(work, replace(project)))
     output = subprocess.DEVNULL if quietly else None
     flush_output()
-    worker = spawn_worker(call, stdout=output, stderr=output, environment=ENVIRONMENT)
+    worker = spawn_worker(call, stdout=output, stderr=output)
     notice = StandstillNotice()
     try:
         worker.wait(lambda: print_standstill(worker, notice, project.files))

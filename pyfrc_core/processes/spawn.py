@@ -23,6 +23,10 @@ DIRECTORY = Path(__file__).resolve().parents[2]
 ARGUMENTS = ("-c", f"from {__name__} import main; main()")
 
 
+#: The environment of a Python whose output is read as UTF-8: no letter of it is an error. On Windows, Python writes
+#: files and pipes in the encoding of the country, which has few letters.
+WRITES_UTF_8 = {"PYTHONIOENCODING": "utf-8:backslashreplace"}
+
 #: Starts an interpreter. Always called as an attribute of this module, so that tests can replace it by a faster one.
 popen: Callable[..., Any] = subprocess.Popen
 
@@ -48,7 +52,7 @@ class Start:
 
     :param call: what it does: a function that can be pickled
     :param stdout, stderr: files or descriptors, as for `subprocess.Popen`; None: those of this process
-    :param environment: variables that differ from this process's
+    :param environment: variables that differ from this process's; what is printed is in UTF-8, unless `stdout` is None
     :param own_session: whether it leads a session of its own, on POSIX
     :param ends_with_owner: whether it is killed when this process ends; only for threads that wait for it
     """
@@ -91,12 +95,13 @@ def start(how: Start) -> Interpreter:
     return process
 
 
-def run_python(arguments: Sequence[str], stdout: IO[Any]) -> int:
+def run_python(arguments: Sequence[str], stdout: IO[Any], environment: Mapping[str, str] | None = None) -> int:
     """Run a new interpreter with these arguments until it ends, and return its exit code.
 
     :param stdout: a stream with a file descriptor; what goes elsewhere is this process's
+    :param environment: variables that differ from this process's
     """
-    process: Interpreter = popen([sys.executable, *arguments], stdout=stdout)
+    process: Interpreter = popen([sys.executable, *arguments], stdout=stdout, env={**os.environ, **(environment or {})})
     try:
         return process.wait()
     except BaseException:
@@ -112,7 +117,7 @@ def open_interpreter(how: Start) -> subprocess.Popen[bytes]:
         stdout=how.stdout,
         stderr=how.stderr,
         cwd=DIRECTORY,
-        env={**os.environ, **(how.environment or {})},
+        env={**os.environ, **_output_encoding(how), **(how.environment or {})},
         start_new_session=how.own_session and os.name == "posix",
     )
     assert process.stdin is not None
@@ -120,6 +125,13 @@ def open_interpreter(how: Start) -> subprocess.Popen[bytes]:
         process.stdin.write(how.job())
         process.stdin.flush()
     return process
+
+
+def _output_encoding(how: Start) -> Mapping[str, str]:
+    encoding = getattr(sys.stdout, "encoding", None)
+    if how.stdout is not None or encoding is None:
+        return WRITES_UTF_8
+    return {"PYTHONIOENCODING": f"{encoding}:backslashreplace"}  # beside what this process prints
 
 
 def main() -> None:

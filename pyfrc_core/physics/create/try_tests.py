@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from ...processes.spawn import WRITES_UTF_8
 from ...project import NO_PHYSICS, Project
 from ...project.environments import is_environment
 
@@ -76,7 +77,7 @@ def _failures(project: Project, root: Path) -> list[str]:
     done = subprocess.run(
         [*command, "--", "-q", "-p", "no:cacheprovider"],
         cwd=root,
-        env={**os.environ, "COLUMNS": "10000"},  # otherwise pytest cuts the lines
+        env={**os.environ, **WRITES_UTF_8, "COLUMNS": "10000"},  # otherwise pytest cuts the lines
         stdin=subprocess.DEVNULL,
         capture_output=True,
         encoding="utf-8",
