@@ -18,15 +18,16 @@ ROOT = Path(__file__).parents[1]
 
 @pytest.fixture
 def ran(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
-    """What it has run, in an environment that is there; without the environment's directory."""
+    """What it has run, with the Python of an environment that is there."""
     commands: list[str] = []
+    python = Path(make_script.Environment(tmp_path).python)
+    python.parent.mkdir()
+    for file in (python, tmp_path / "installed", tmp_path / "installed-dev"):
+        file.touch()
     monkeypatch.setattr(
-        make_script, "run", lambda command: commands.append(" ".join(command).replace(f"{tmp_path}/", ""))
+        make_script, "run", lambda command: commands.append(" ".join(command).replace(str(python), "python"))
     )
     monkeypatch.chdir(ROOT)  # as the script does
-    for name in ("bin/python", "installed", "installed-dev"):
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).touch()
     return commands
 
 
@@ -37,11 +38,10 @@ def test_the_demo_makes_a_project_once(ran: list[str], tmp_path: Path, monkeypat
     make_script.main(["--venv", str(tmp_path), "demo"])
     (tmp_path / "demo").mkdir()
     make_script.main(["--venv", str(tmp_path), "demo"])
-    first = "bin/python -m pyfrc init demo"
+    first = "python -m pyfrc init demo"
     rest = [
-        "bin/python -m pyfrc test --project demo --coverage",
-        "bin/python -m pyfrc virtual-robot --directory demo/.pyfrc/virtual-robot --fresh --"
-        " bin/python tests/demo.py demo",
+        "python -m pyfrc test --project demo --coverage",
+        "python -m pyfrc virtual-robot --directory demo/.pyfrc/virtual-robot --fresh -- python tests/demo.py demo",
     ]
     assert ran == [first, *rest, *rest]
 
@@ -49,7 +49,7 @@ def test_the_demo_makes_a_project_once(ran: list[str], tmp_path: Path, monkeypat
 def test_options_of_pytest_come_last(ran: list[str], tmp_path: Path) -> None:
     make_script.main(["--venv", str(tmp_path), "test", "-k", "joystick", "--lf"])
     (command,) = ran
-    assert command.startswith("bin/python -m pytest -n ")
+    assert command.startswith("python -m pytest -n ")
     assert command.endswith(" --dist worksteal -k joystick --lf")
 
 
@@ -66,7 +66,7 @@ def test_it_installs_what_is_missing(
 ) -> None:
     (tmp_path / missing).unlink()
     make_script.main(["--venv", str(tmp_path), task])
-    install = [f"bin/python -m pip install --quiet --editable {installed}"] if installed else []
+    install = [f"python -m pip install --quiet --editable {installed}"] if installed else []
     assert [command for command in ran if " pip " in command] == install
     if installed:
         assert (tmp_path / missing).exists()
@@ -78,7 +78,7 @@ def test_it_installs_what_is_missing(
 def test_it_installs_again_when_the_requirements_have_changed(ran: list[str], tmp_path: Path) -> None:
     os.utime(tmp_path / "installed-dev", (0, 0))
     make_script.main(["--venv", str(tmp_path), "install"])
-    assert ran == ["bin/python -m pip install --quiet --editable .[dev]"]
+    assert ran == ["python -m pip install --quiet --editable .[dev]"]
 
 
 def test_an_environment_that_could_not_be_made_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -59,7 +59,11 @@ def test_threads_that_only_wait_for_their_turn_are_passed_over() -> None:
 @pytest.mark.parametrize(
     ("status", "what"),
     [
-        (-9, "the robot's process was ended by signal 9 (SIGKILL)"),
+        pytest.param(
+            -9,
+            "the robot's process was ended by signal 9 (SIGKILL)",
+            marks=pytest.mark.skipif(sys.platform == "win32", reason="there are no signals"),
+        ),
         (-99, "the robot's process was ended by signal 99 (unknown)"),
         (0xC0000005, "the robot's process was ended by exception 0xC0000005 (access violation)"),  # on Windows
         (0xC0000FFF, "the robot's process was ended by exception 0xC0000FFF (unknown)"),
