@@ -216,7 +216,7 @@ def test_every_value_can_be_searched_and_plotted_by_keys_alone(person: Seen) -> 
         page.keyboard.press("Enter")
         page.get_by_label("Search all values").wait_for(state="detached")
     page.locator(".curve-name", has_text="Mode").wait_for()
-    assert plotted(person) == ["Joystick 0 axis 1", "Robot angle, rad", "Mode"]
+    assert plotted(person) == ["Joystick 0 axis 1", "Robot angle", "Mode"]
     page.locator("[data-panel='plot:1'] canvas.plot-bands").wait_for()
     page.get_by_label("Axis of sim.mode").wait_for(state="detached")  # a text has none
 

@@ -39,7 +39,7 @@ def series(history: ValueHistory, path: str, begin: float, end: float, points: i
     """Return the curve of a value: times, values, and the kind of its values.
 
     A value holds until the next time. If there are more changes than points, the lowest and the highest of each
-    interval are kept.
+    interval are kept, and it says that it is ``thinned``.
     """
     path, index = resolve(history, path)
     points = min(max(points, 2), MOST_POINTS)
@@ -51,12 +51,14 @@ def series(history: ValueHistory, path: str, begin: float, end: float, points: i
         all_times.insert(0, begin)
         found.insert(0, first)
     kind = "number" if plain and found and type(found[0]) in (float, int) else _kind(found)
-    if kind == "number" and len(found) > points:
+    thinned = kind == "number" and len(found) > points
+    if thinned:
         all_times, found = _decimated(all_times, found, points)
     elif len(found) > 2 * MOST_POINTS:
         every = math.ceil(len(found) / MOST_POINTS)
         all_times, found = all_times[::every], found[::every]
-    return {"kind": kind, "t": all_times, "v": [None if value is MISSING else value for value in found]}
+    values = [None if value is MISSING else value for value in found]
+    return {"kind": kind, "t": all_times, "v": values, **({"thinned": True} if thinned else {})}
 
 
 def _kind(values: list[Any]) -> str:

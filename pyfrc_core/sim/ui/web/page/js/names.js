@@ -2,12 +2,14 @@
 import { model } from "#js/model.js";
 
 let names = new Map();
+let units = new Map();
 let namesOf = null; // the panels that they were made from
 
 export function nameOf(path) {
   if (namesOf !== model.panels) {
     namesOf = model.panels;
     names = namesOfRows(model.panels);
+    units = new Map(model.panels.flatMap(({ rows }) => rows.filter((row) => row.unit).flatMap((row) => row.paths.map((each) => [each, row.unit]))));
   }
   return names.get(path) ?? OWN[path] ?? elementName(path) ?? withoutTable(path);
 }
@@ -18,7 +20,22 @@ function withoutTable(path) {
   return path.startsWith(`${table}/`) ? path.slice(table.length + 1) : path;
 }
 
-const OWN = { "sim.mode": "Mode", "sim.pose[0]": "Robot x, ft", "sim.pose[1]": "Robot y, ft", "sim.pose[2]": "Robot angle, rad" };
+// The unit of a value, as far as it is known; otherwise "".
+export function unitOfPath(path) {
+  nameOf(path); // and the units of the rows
+  return units.get(path) ?? OWN_UNITS[path] ?? STRUCT_UNITS.find(([part]) => part.test(path))?.[1] ?? "";
+}
+
+const OWN_UNITS = { "sim.pose[0]": "ft", "sim.pose[1]": "ft", "sim.pose[2]": "rad" };
+// The units of the parts of WPILib's structs.
+/** @type {[RegExp, string][]} */
+const STRUCT_UNITS = [
+  [/^nt:.*\/translation\/[xyz]$/, "m"],
+  [/^nt:.*\/(rotation|angle)\/value$/, "rad"],
+  [/^nt:.*\/(v[xy]|\d+\/(speed|velocity))$/, "m/s"],
+  [/^nt:.*\/omega$/, "rad/s"],
+];
+const OWN = { "sim.mode": "Mode", "sim.pose[0]": "Robot x", "sim.pose[1]": "Robot y", "sim.pose[2]": "Robot angle" };
 const CONTROLS = { axes: "axis", buttons: "button", povs: "POV" };
 
 function elementName(path) {

@@ -3,6 +3,7 @@ import { font, sizeCanvas } from "#js/canvas.js";
 import { valueText } from "#js/format.js";
 import { nameOf } from "#js/names.js";
 import { indexAfter } from "#js/times.js";
+import { strokeOf } from "#js/curves.js";
 import { color } from "#js/settings.js";
 
 const GAP = 3; // pixels between bands
@@ -40,7 +41,7 @@ function drawBand(context, { series, color: number, path }, top, height, x, from
     if (value === false || value === null) continue;
     if (!seen.has(value)) seen.set(value, seen.size);
     context.globalAlpha = value === true ? 0.75 : 0.35 + 0.35 * (seen.get(value) % 2);
-    context.fillStyle = color(`curve-${number}`);
+    context.fillStyle = strokeOf({ color: number });
     context.fillRect(left, top, Math.max(right - left - (value === true ? 0 : 1), 1), height);
     context.globalAlpha = 1;
     const text = value === true ? "" : valueText(value);

@@ -1,12 +1,12 @@
 // Which values are plotted where: each plot panel has a list of curves in the settings.
+import { CURVE_COLORS, LINES, isComputed } from "#js/curves.js";
 import { showPanel } from "#js/layout/open.js";
 import { panelsOf } from "#js/layout/presets.js";
 import { model } from "#js/model.js";
 import { settings } from "#js/settings.js";
 
 const PATH_TYPE = "application/x-pyfrc-path";
-const MOST_CURVES = 12;
-const CURVE_COLORS = 8; // --curve-0 to --curve-7 in theme.css
+const MOST_CURVES = CURVE_COLORS * LINES.length; // each of which looks different
 
 // Begin to drag a value.
 export function carryPath(event, path) {
@@ -35,17 +35,24 @@ export function changePlot(id, change) {
 // Add a value to a plot, or to the first one that is open.
 export function addToPlot(path, id = openPlot()) {
   if (!path) return;
+  if (!plotOf(id).curves.some((curve) => curve.path === path && !isComputed(curve))) addCurve(id, { path, axis: "left" });
+  showPanel(id);
+}
+
+// Add a curve, even one of a value that the plot shows already.
+export function addCurve(id, curve) {
   const { curves } = plotOf(id);
-  if (curves.some((curve) => curve.path === path)) return showPanel(id);
   if (curves.length >= MOST_CURVES) {
     model.set("problem", `A plot has at most ${MOST_CURVES} curves. Remove one of them, or open another plot under “Panels”.`);
-  } else {
-    const used = new Set(curves.map((curve) => curve.color));
-    let color = 0;
-    while (used.has(color) && color < CURVE_COLORS - 1) color += 1;
-    changePlot(id, { curves: [...curves, { path, axis: "left", color }] });
+    return;
   }
-  showPanel(id);
+  const keys = new Set(curves.map((each) => each.key ?? each.path));
+  const colors = new Set(curves.map((each) => each.color));
+  let color = 0;
+  while (colors.has(color)) color += 1;
+  let key = curve.path;
+  for (let number = 2; keys.has(key); number++) key = `${curve.path} (${number})`;
+  changePlot(id, { curves: [...curves, { ...curve, key, color }] });
 }
 
 function openPlot() {

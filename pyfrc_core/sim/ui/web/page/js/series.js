@@ -4,20 +4,20 @@ import { plain } from "#js/format.js";
 import { model } from "#js/model.js";
 import { indexAfter } from "#js/times.js";
 
-const FIRST_POINTS = 4000; // of the history, when a path begins to be watched
+const FIRST_POINTS = 8000; // more than the packets of a match, of the history, when a path begins to be watched
 // A longer series keeps these newest points, and what is older in as many points as at first: memory does not grow.
 const MOST_POINTS = 40000;
 const NEWEST_POINTS = 20000;
 
 const LATEST = 1e9; // seconds: whatever the newest moment is when the server answers
 
-const series = new Map(); // path: { kind, t: [], v: [], users, loaded }
+const series = new Map(); // path: { kind, t: [], v: [], users, exactFrom: since when each change is there }
 
 // Watch a path, and return its series, which grows. Each `watch` needs an `unwatch`.
 export function watch(path) {
   let one = series.get(path);
   if (!one) {
-    one = { path, kind: "number", t: [], v: [], users: 0 };
+    one = { path, kind: "number", t: [], v: [], users: 0, exactFrom: 0 };
     series.set(path, one);
     subscribe();
     load(one);
@@ -49,6 +49,7 @@ async function load(one, until = LATEST) {
     const newer = one.t.findIndex((t) => t > last);
     one.t = past.t.concat(newer < 0 ? [] : one.t.slice(newer));
     one.v = past.v.concat(newer < 0 ? [] : one.v.slice(newer));
+    one.exactFrom = past.thinned ? last : 0;
     one.kind = kindOfAll(one);
     model.announce("series");
   } catch {

@@ -1,23 +1,27 @@
-// Values over time. Curves are added by "+" or by dragging a value here; dragging in the plot zooms, a double click follows again.
-import uPlot from "#vendor/uplot/uPlot.esm.js";
-import { ElementSize, font } from "#js/canvas.js";
+// Values over time, or over another value. Curves are added by "+" or by dragging a value here; dragging in the plot
+// zooms, a double click follows again.
+import { ElementSize } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
 import { ask } from "#js/connection.js";
-import { clockTick, shownNumber, valueText } from "#js/format.js";
+import { Computed, curveValue, isComputed, keyOf, numberIn, pathsOf, strokeOf, titleOf, unitOf } from "#js/curves.js";
 import { model } from "#js/model.js";
-import { nameOf } from "#js/names.js";
 import { length, look } from "#js/past.js";
+import { buildChart } from "#js/plot_chart.js";
 import { aligned, csvOf, download } from "#js/plot_data.js";
+import { statistics } from "#js/plot_math.js";
 import { PlotPicker } from "#js/plot_picker.js";
 import { drawBands } from "#js/plot_bands.js";
-import { addToPlot, carriedPath, changePlot, hasPath, plotOf } from "#js/plotting.js";
-import { unwatch, valueAt, watch } from "#js/series.js";
+import { addCurve, addToPlot, carriedPath, changePlot, hasPath, plotOf } from "#js/plotting.js";
+import { unwatch, watch } from "#js/series.js";
 import { color } from "#js/settings.js";
 import { Icon, Live, classes, createRef, html } from "#js/view.js";
+import { PlotAxes } from "#js/panels/plot_axes.js";
+import { PlotLegend } from "#js/panels/plot_legend.js";
 
 const SPANS = [[5, "5 s"], [20, "20 s"], [60, "1 min"], [0, "All"]];
 const BAND = 20; // pixels of height for each boolean or text
-const sync = uPlot.sync("time"); // the cursor is at the same moment in every plot
+const TABLE_INTERVAL = 150; // milliseconds between two tables of statistics
+const DETAIL = 8000; // points of a curve while a plot is zoomed
 
 export class PlotPanel extends Live {
   parts = ["series", "t", "shown", "settings", "window", "compared-series", "compared"];
@@ -28,6 +32,7 @@ export class PlotPanel extends Live {
   zoom = null; // [from, to] while zoomed in; otherwise the plot follows
   detail = new Map(); // path: series of the zoomed part, in detail
   others = new Map(); // path: series of the compared branch
+  computed = new Computed();
 
   componentDidMount() {
     super.componentDidMount();
@@ -51,9 +56,22 @@ export class PlotPanel extends Live {
     return plotOf(this.props.id);
   }
 
+  get ranges() {
+    return this.config.ranges ?? {};
+  }
+
+  // The curve that the others are drawn over; undefined over time.
+  get xCurve() {
+    const { curves, x } = this.config;
+    return x && curves.find((curve) => keyOf(curve) === x && this.isNumber(curve.path));
+  }
+
   render({ id }, { over, at }) {
-    const { curves, seconds } = this.config;
+    const { curves, seconds, table: isTable } = this.config;
+    this.interval = isTable ? TABLE_INTERVAL : 0;
     const moment = at ?? model.past?.t ?? model.t;
+    const isNumber = ({ path }) => this.isNumber(path);
+    const plot = { curves, x: this.config.x, isNumber, change: this.change, remove: this.remove, setX: this.setX, copy: (curve) => addCurve(id, { ...curve, hidden: undefined }) };
     return html`<div class=${classes({ plot: true, over })} onDragOver=${this.over} onDragLeave=${() => this.setState({ over: false })} onDrop=${this.drop}>
       <div class="panel-tools">
         <div class="segments small" role="group" aria-label="Time that is shown">
@@ -63,18 +81,14 @@ export class PlotPanel extends Live {
         ${this.zoom && html`<button class="quiet" onClick=${() => this.follow(seconds)}>Follow again</button>`}
         <div class="spacer"></div>
         <${PlotPicker} add=${(path) => addToPlot(path, id)} />
+        ${curves.length > 0 && html`<${PlotAxes} axes=${this.axes()} ranges=${this.ranges} limits=${this.limits} setRange=${this.setRange}
+          hold=${Boolean(this.zoom)} setHold=${(hold) => (hold ? this.zoomTo(...this.range()) : this.follow(seconds))} />
+        <button class=${classes({ quiet: true, chosen: isTable })} aria-pressed=${Boolean(isTable)} title="Minimum, mean, maximum and percentiles of what is in view" onClick=${() => changePlot(id, { table: !isTable })}>Table</button>`}
         <button class="quiet" title="Save the values as CSV" aria-label="Save the values as CSV" disabled=${!curves.length} onClick=${this.save}><${Icon} name="download" />CSV</button>
-        <button class="quiet" title="Remove all curves" disabled=${!curves.length} onClick=${() => changePlot(id, { curves: [] })}>Clear</button>
+        <button class="quiet" title="Remove all curves" disabled=${!curves.length} onClick=${() => changePlot(id, { curves: [], ranges: {}, x: null })}>Clear</button>
       </div>
-      <ul class="legend" aria-label="Curves">
-        ${curves.map((curve) => html`<li key=${curve.path}>
-          <i class="swatch" style=${{ background: `var(--curve-${curve.color})` }}></i>
-          <span class="curve-name" title=${curve.path}>${nameOf(curve.path)}</span>
-          <b class="number">${valueText(this.valueOf(curve.path, moment))}</b>
-          ${this.isNumber(curve.path) && html`<button class="axis-choice" title="The axis of this curve: left or right" aria-label=${`Axis of ${curve.path}`} onClick=${() => this.switchAxis(curve)}>${curve.axis === "left" ? "L" : "R"}</button>`}
-          <button class="tool" aria-label=${`Remove ${curve.path}`} title="Remove" onClick=${() => changePlot(id, { curves: curves.filter((each) => each !== curve) })}><${Icon} name="close" /></button>
-        </li>`)}
-      </ul>
+      <${PlotLegend} plot=${plot} isTable=${isTable && curves.length > 0} hasBranch=${compared.id !== null} isNumber=${isNumber}
+        shownOf=${(curve) => this.valueOf(curve, moment)} statisticsOf=${(curve) => this.statisticsOf(curve)} />
       <div class="plot-area" ref=${this.area}>
         ${!curves.length && html`<p class="empty">Drag a value here, choose <b class="plus">+</b> beside it, or search with “Add value”.</p>`}
       </div>
@@ -82,20 +96,52 @@ export class PlotPanel extends Live {
     </div>`;
   }
 
+  change = (curve, changes) => {
+    const changed = (each) => ({ ...each, ...(typeof changes === "function" ? changes(each) : changes) });
+    changePlot(this.props.id, { curves: this.config.curves.map((each) => (keyOf(each) === keyOf(curve) ? changed(each) : each)) });
+  };
+
+  remove = (curve) => {
+    changePlot(this.props.id, { curves: this.config.curves.filter((each) => keyOf(each) !== keyOf(curve)) });
+  };
+
+  // Draw over a curve, or over time (null): the limits were those of other axes.
+  setX = (x) => changePlot(this.props.id, { x, ranges: {} });
+
+  setRange = (axis, limits) => {
+    const { [axis]: _, ...others } = this.ranges;
+    changePlot(this.props.id, { ranges: limits ? { ...others, [axis]: limits } : others });
+  };
+
+  // The axes whose limits can be set, and what they show.
+  axes() {
+    const used = new Set(this.config.curves.filter((curve) => this.isNumber(curve.path) && curve !== this.xCurve).map((curve) => curve.axis));
+    return [...(this.xCurve ? ["x"] : []), ...["left", "right"].filter((axis) => used.has(axis))];
+  }
+
+  limits = (axis) => {
+    const { min, max } = this.plot?.scales[axis] ?? {};
+    return [min ?? 0, max ?? 1];
+  };
+
   // -- what is plotted
 
   isNumber(path) {
     return (this.watched.get(path)?.kind ?? "number") === "number";
   }
 
-  valueOf(path, t) {
-    const detail = this.zoom && this.detail.get(path);
-    const series = detail || this.watched.get(path);
-    return series && t <= length() ? valueAt(series, t) : undefined;
+  valueOf(curve, t) {
+    return curve.other || t <= length() ? curveValue(this.seriesOf(curve), t) : undefined;
+  }
+
+  statisticsOf(curve) {
+    const one = this.seriesOf(curve);
+    const [from, to] = this.range();
+    return one && statistics({ t: one.t, v: one.v.map(numberIn) }, from, Math.min(to, one.until ?? length()));
   }
 
   watchCurves() {
-    const wanted = new Set(this.config.curves.map((curve) => curve.path));
+    const wanted = new Set(pathsOf(this.config.curves));
     for (const path of [...this.watched.keys()]) {
       if (wanted.has(path)) continue;
       unwatch(path);
@@ -108,7 +154,7 @@ export class PlotPanel extends Live {
     if (!this.area.current) return;
     this.watchCurves();
     if (compared.id !== this.otherId || [...this.watched.keys()].some((path) => !this.others.has(path))) this.loadOthers();
-    const shape = JSON.stringify([this.config.curves, this.config.curves.map(({ path }) => this.isNumber(path)), document.documentElement.dataset.theme, compared.id]);
+    const shape = JSON.stringify([this.config.curves, this.config.curves.map(({ path }) => this.isNumber(path)), document.documentElement.dataset.theme, compared.id, this.xCurve]);
     if (shape !== this.shape) {
       this.shape = shape;
       this.build();
@@ -117,16 +163,24 @@ export class PlotPanel extends Live {
     const [from, to] = this.range();
     this.plot.batch(() => {
       this.plot.setData(this.columns(this.plot.width), false);
-      this.plot.setScale("x", { min: from, max: to });
+      if (!this.xCurve) this.plot.setScale("x", { min: from, max: to });
+      else for (const axis of ["x", ...this.axes()]) this.plot.setScale(axis, { min: null, max: null });
     });
     this.drawBands();
   }
 
-  // The columns for uPlot: the curves until now, and those of the branch until its end.
+  // The data for uPlot: the curves until now, and those of the branch until its end.
   columns(width) {
     const [from, to] = this.range();
-    const curves = this.lines.map((line) => ({ until: length(), ...this.seriesOf(line) }));
-    return aligned(curves, from, Math.min(to, this.end), width);
+    const curveOf = (line) => {
+      const one = this.seriesOf(line) ?? { t: [], v: [] };
+      return { ...one, until: one.until ?? length() };
+    };
+    const { xCurve } = this;
+    const over = xCurve ? [xCurve, { ...xCurve, other: true }].map(curveOf) : [];
+    const [times, ...columns] = aligned([...over, ...this.lines.map(curveOf)], from, Math.min(to, this.end), width);
+    if (!xCurve) return [times, ...columns];
+    return [null, ...this.lines.map((line, index) => [columns[line.other ? 1 : 0], columns[2 + index]])];
   }
 
   // The end of what there is.
@@ -134,9 +188,13 @@ export class PlotPanel extends Live {
     return Math.max(length(), compared.end);
   }
 
-  seriesOf({ path, other }) {
-    if (other) return this.others.get(path) ?? { t: [], v: [] };
-    return (this.zoom && this.detail.get(path)) || this.watched.get(path);
+  seriesOf(curve) {
+    const key = keyOf(curve);
+    if (curve.other) return this.computed.of(curve, `${key} other`, (path) => this.others.get(path) ?? { t: [], v: [] }, this.end);
+    const whole = (path) => this.watched.get(path);
+    if (!this.zoom || !this.detail.has(curve.path)) return this.computed.of(curve, key, whole, length());
+    const before = () => curveValue(this.computed.of(curve, key, whole, length()), this.zoom[0]) ?? 0;
+    return this.computed.of(curve, `${key} detail`, (path) => this.detail.get(path) ?? whole(path), Math.min(length(), this.zoom[1]), before);
   }
 
   range() {
@@ -165,41 +223,29 @@ export class PlotPanel extends Live {
     this.plot = null;
     const curves = this.config.curves.filter(({ path }) => this.isNumber(path));
     if (!curves.length) return;
-    this.lines = [...curves, ...(compared.id === null ? [] : curves.map((curve) => ({ ...curve, other: true })))];
+    const { xCurve } = this;
+    const drawn = curves.filter((curve) => curve !== xCurve);
+    this.lines = [...drawn, ...(compared.id === null ? [] : drawn.map((curve) => ({ ...curve, other: true })))];
     const { width, height } = this.size;
-    const hasLeft = curves.some((curve) => curve.axis === "left");
-    const hasRight = curves.some((curve) => curve.axis === "right");
-    const axis = { stroke: color("muted"), font: font(11), grid: { stroke: color("grid"), width: 1 }, ticks: { stroke: color("grid"), width: 1, size: 4 } };
-    this.plot = new uPlot(
+    this.plot = buildChart(
+      this.area.current,
       {
-        width: Math.max(width, 80),
-        height: Math.max(height, 60),
-        legend: { show: false },
-        cursor: { y: false, sync: { key: sync.key, setSeries: false }, drag: { x: true, y: false, setScale: false }, points: { size: 7 }, bind: { dblclick: () => () => this.follow(this.config.seconds) } },
-        scales: { x: { time: false, auto: false }, left: { range: padded }, right: { range: padded } },
-        series: [{}, ...this.lines.map((line) => ({
-          scale: line.axis,
-          stroke: color(`curve-${line.color}`),
-          width: line.other ? 1.25 : 1.75,
-          dash: line.other ? [6, 4] : undefined,
-          paths: uPlot.paths.stepped({ align: 1 }),
-          points: { show: false },
-          spanGaps: false,
-        }))],
-        axes: [
-          { ...axis, size: 26, space: 60, values: (_, ticks) => ticks.map(clockTick) },
-          { ...axis, scale: "left", show: hasLeft || !hasRight, size: 56, space: tickSpace, values: tickTexts },
-          { ...axis, scale: "right", side: 1, show: hasRight, size: 56, space: tickSpace, values: tickTexts, grid: { show: !hasLeft, stroke: color("grid"), width: 1 } },
-        ],
+        width,
+        height,
+        lines: this.lines,
+        isXY: Boolean(xCurve),
+        ranges: () => this.ranges,
+        setRange: this.setRange,
+        dblclick: () => (xCurve ? this.setX(this.config.x) : this.follow(this.config.seconds)),
         hooks: {
           setSelect: [(plot) => this.select(plot)],
           setCursor: [(plot) => this.hover(plot)],
-          draw: [(plot) => this.drawMoment(plot)],
+          draw: [(plot) => (xCurve ? this.drawPoints(plot) : this.drawMoment(plot))],
         },
       },
       this.columns(width),
-      this.area.current,
     );
+    if (xCurve) return;
     this.plot.over.addEventListener("wheel", this.wheel, { passive: false });
     this.plot.over.addEventListener("click", (event) => event.detail === 1 && event.altKey && look(this.plot.posToVal(event.offsetX, "x")));
   }
@@ -211,9 +257,12 @@ export class PlotPanel extends Live {
   }
 
   select(plot) {
-    const { left, width } = plot.select;
-    if (width < 4) return;
-    this.zoomTo(plot.posToVal(left, "x"), plot.posToVal(left + width, "x"));
+    const { left, width, top, height } = plot.select;
+    if (width < 4 || (this.xCurve && height < 4)) return;
+    if (this.xCurve) {
+      const ranges = Object.fromEntries(this.axes().map((axis) => [axis, [plot.posToVal(top + height, axis), plot.posToVal(top, axis)]]));
+      changePlot(this.props.id, { ranges: { ...ranges, x: [plot.posToVal(left, "x"), plot.posToVal(left + width, "x")] } });
+    } else this.zoomTo(plot.posToVal(left, "x"), plot.posToVal(left + width, "x"));
     plot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
   }
 
@@ -242,10 +291,9 @@ export class PlotPanel extends Live {
   async loadDetail() {
     if (!this.zoom || !this.watched.size) return;
     const [from, to] = this.zoom;
-    const points = Math.max(this.plot?.width ?? 400, 200) * 2;
-    const answer = await ask("plot", { paths: [...this.watched.keys()], from, to, points, branch: null }).catch(() => null);
+    const answer = await ask("plot", { paths: [...this.watched.keys()], from, to, points: DETAIL, branch: null }).catch(() => null);
     if (!answer || !this.zoom || this.zoom[0] !== from || this.zoom[1] !== to) return;
-    this.detail = new Map(Object.entries(answer.series));
+    this.detail = new Map(Object.entries(answer.series).map(([path, one]) => [path, { ...one, exactFrom: one.thinned ? to : 0 }]));
     this.setState({});
   }
 
@@ -265,10 +313,26 @@ export class PlotPanel extends Live {
     plot.ctx.fillRect(x - devicePixelRatio / 2, top, Math.max(devicePixelRatio, 1.5), height);
   }
 
+  // Where the curves over another one are at the moment that is shown.
+  drawPoints(plot) {
+    const t = model.past?.t ?? model.t;
+    const { left, top, width, height } = plot.bbox;
+    for (const line of this.lines.filter((each) => !each.hidden)) {
+      const [x, y] = [{ ...this.xCurve, other: line.other }, line].map((curve) => numberIn(this.valueOf(curve, t)));
+      if (x === null || y === null) continue;
+      const place = [plot.valToPos(x, "x", true), plot.valToPos(y, line.axis, true)];
+      if (place[0] < left || place[0] > left + width || place[1] < top || place[1] > top + height) continue;
+      plot.ctx.fillStyle = strokeOf(line);
+      plot.ctx.beginPath();
+      plot.ctx.arc(...place, 4.5 * devicePixelRatio, 0, 2 * Math.PI);
+      plot.ctx.fill();
+    }
+  }
+
   drawBands() {
     const canvas = this.bands.current;
     if (!canvas || !this.size.width) return;
-    const curves = this.config.curves.filter(({ path }) => !this.isNumber(path));
+    const curves = this.config.curves.filter(({ path, hidden }) => !hidden && !this.isNumber(path));
     canvas.style.display = curves.length ? "block" : "none";
     if (!curves.length) return;
     const { width } = this.size;
@@ -277,16 +341,18 @@ export class PlotPanel extends Live {
     drawBands(canvas, bands, { width, inside, band: BAND, range: this.range(), now: length(), past: model.past?.t });
   }
 
-  switchAxis(curve) {
-    const axis = curve.axis === "left" ? "right" : "left";
-    changePlot(this.props.id, { curves: this.config.curves.map((each) => (each === curve ? { ...each, axis } : each)) });
-  }
-
   save = async () => {
     const paths = [...this.watched.keys()];
     const [from, to] = this.zoom ?? [0, length()];
     const answer = await ask("plot", { paths, from, to, points: 200000, branch: null }).catch((error) => model.set("problem", error.message));
-    if (answer?.series) download(`${this.props.id.replace(":", "-")}.csv`, csvOf(paths, answer.series), "text/csv");
+    if (!answer?.series) return;
+    const rawOf = (path) => ({ ...answer.series[path], exactFrom: answer.series[path].thinned ? to : 0 });
+    const before = (curve) => () => (from ? (curveValue(this.computed.of(curve, keyOf(curve), (path) => this.watched.get(path), length()), from) ?? 0) : 0);
+    const columns = this.config.curves.map((curve) => [
+      isComputed(curve) ? [titleOf(curve), unitOf(curve)].filter(Boolean).join(", ") : curve.path,
+      new Computed().of(curve, "saved", rawOf, Math.min(to, length()), before(curve)),
+    ]);
+    download(`${this.props.id.replace(":", "-")}.csv`, csvOf(columns.map(([name]) => name), Object.fromEntries(columns)), "text/csv");
   };
 
   over = (event) => {
@@ -302,20 +368,4 @@ export class PlotPanel extends Live {
     event.preventDefault();
     addToPlot(path, this.props.id);
   };
-}
-
-function tickTexts(_, ticks) {
-  return ticks.map((tick) => (tick === null ? "" : shownNumber(tick)));
-}
-
-// How far apart numbers are on a vertical axis, in pixels: closer in a low plot, which has few of them.
-function tickSpace(_plot, _axis, _low, _high, height) {
-  return Math.min(24, Math.max(12, height / 3));
-}
-
-// A little free space above and below; a constant has some, too.
-function padded(_, low, high) {
-  if (low === null || high === null) return [-1, 1];
-  const space = (high - low) * 0.06 || Math.max(Math.abs(low) * 0.1, 0.5);
-  return [low - space, high + space];
 }

@@ -1,0 +1,38 @@
+// The limits of a plot's axes: automatic, or those that the person has typed or locked.
+import { Dropdown } from "#js/dropdown.js";
+import { shownNumber, typedNumber } from "#js/format.js";
+import { model } from "#js/model.js";
+import { TextBox } from "#js/text_box.js";
+import { html } from "#js/view.js";
+
+const NAMES = { x: "X", left: "Left", right: "Right" };
+
+// axes: names of the axes that the plot has; ranges: limits that were set; limits(axis): what the chart shows
+// hold: whether the time that is shown stays, or undefined if the plot has no axis of time
+export function PlotAxes({ axes, ranges, limits, setRange, hold, setHold }) {
+  return html`<${Dropdown} label="Axes" title="Limits of the axes" content=${() => html`<div class="axes-settings">
+    ${hold !== undefined && html`<label><input type="checkbox" checked=${hold} onChange=${() => setHold(!hold)} /> Keep the time that is shown</label>`}
+    ${axes.map((axis) => html`<${Axis} key=${axis} axis=${axis} locked=${axis in ranges} shown=${ranges[axis] ?? limits(axis)} setRange=${setRange} />`)}
+  </div>`} />`;
+}
+
+function Axis({ axis, locked, shown, setRange }) {
+  const [low, high] = shown;
+  const typed = (make) => ({ target }) => {
+    try {
+      const [from, to] = make(typedNumber(target.value));
+      if (!(from < to)) throw new Error(`the axis ends at ${shownNumber(to)}, which is not above ${shownNumber(from)}`);
+      setRange(axis, [from, to]);
+    } catch (error) {
+      model.set("problem", `${NAMES[axis]} axis: ${error.message}`);
+    }
+  };
+  return html`<div class="axis-line"><span>${NAMES[axis]}</span>
+    <${TextBox} aria-label=${`${NAMES[axis]} axis from`} text=${short(low)} onChange=${typed((value) => [value, high])} />
+    <${TextBox} aria-label=${`${NAMES[axis]} axis to`} text=${short(high)} onChange=${typed((value) => [low, value])} />
+    <label><input type="checkbox" aria-label=${`Lock the ${NAMES[axis].toLowerCase()} axis`} checked=${locked} onChange=${() => setRange(axis, locked ? null : shown)} /> Lock</label></div>`;
+}
+
+function short(value) {
+  return shownNumber(Number(value.toPrecision(4)));
+}
