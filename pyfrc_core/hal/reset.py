@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from ..wpi import devices
-from . import counters
+from . import counters, pneumatics
 from .created_devices import prepare_reset
+from .modules import MODULES
 
 
 def forget_inputs() -> None:
@@ -12,3 +13,12 @@ def forget_inputs() -> None:
     prepare_reset()
     devices.reset_all()
     counters.forget_written_counts()
+
+
+def forget_power_distributions() -> None:
+    """Forget the power distributions: in WPILib's simulation, one stays when its object is gone."""
+    for number in range(MODULES):
+        module = pneumatics.PowerDistribution(number)
+        if pneumatics.exists(module):
+            prepare_reset()
+            pneumatics.reset(module)

@@ -17,6 +17,7 @@ from .crash_report import CrashLog
 from .exit import flush_output
 from .fork import FORK_IS_SAFE, wait_for_any
 from .interpreter import spawn_worker
+from .reuse import Interpreters
 from .standstill import StandstillNotice
 from .worker import ForkedWorker, Send, Worker
 
@@ -64,28 +65,25 @@ def run_in_subprocess(
         worker.close()
 
 
-class ForkedCall(Generic[Answer]):
-    """A function that a fork of this process calls.
+class Call(Generic[Answer]):
+    """A function that another process calls.
 
-    :param call: its result can be pickled
-    :param quietly: whether nothing that is printed there is shown
+    :param worker: sends its result
+    :param end: called when that is no longer needed
     :param files: of the project whose line is printed while its code makes no progress there
     """
 
-    def __init__(
-        self, call: Callable[[CrashLog], Answer], quietly: bool = True, files: RobotFiles | None = None
-    ) -> None:
+    def __init__(self, worker: Worker, end: Callable[[], object], files: RobotFiles | None) -> None:
         self._files, self._notice = files, StandstillNotice()
-        self._worker = ForkedWorker(partial(_call_apart, call, (0, 1, 2) if quietly else (0,)))
+        self._worker, self._end = worker, end
 
     @property
     def finished(self) -> bool:
         return self._worker.finished
 
-    def fileno(self) -> int:
-        number = self._worker.fileno()
-        assert number is not None
-        return number
+    def fileno(self) -> int | None:
+        """Return what becomes readable when there is something to `poll`, if there is such a descriptor."""
+        return self._worker.fileno()
 
     def poll(self) -> None:
         """See whether it has finished; print where it makes no progress."""
@@ -96,12 +94,11 @@ class ForkedCall(Generic[Answer]):
     def wait(self) -> None:
         """Wait until it has finished."""
         while not self.finished:
-            wait_for_any([self.fileno()])
-            self.poll()
+            wait_for_calls([self])
 
     def close(self) -> None:
-        """End the process, if it has not ended."""
-        self._worker.close()
+        """End the process, if it has not finished."""
+        self._end()
 
     def result(self, files: RobotFiles, meanwhile: str) -> Answer:
         """Return what the function has returned.
@@ -110,6 +107,40 @@ class ForkedCall(Generic[Answer]):
         """
         result: Answer = _result_of(self._worker, files, meanwhile)
         return result
+
+
+class ForkedCall(Call[Answer]):
+    """A function that a fork of this process calls.
+
+    :param call: its result can be pickled
+    :param quietly: whether nothing that is printed there is shown
+    :param files: see `Call`
+    """
+
+    def __init__(
+        self, call: Callable[[CrashLog], Answer], quietly: bool = True, files: RobotFiles | None = None
+    ) -> None:
+        worker = ForkedWorker(partial(_call_apart, call, (0, 1, 2) if quietly else (0,)))
+        super().__init__(worker, worker.close, files)
+
+
+def begin_call(
+    interpreters: Interpreters, work: Callable[[Project, CrashLog], Answer], project: Project, more: int
+) -> Call[Answer]:
+    """Begin a call in one of these interpreters.
+
+    :param work: as in `run_in_subprocess`
+    :param more: how many calls are known to follow
+    """
+    worker = interpreters.begin(partial(_send_result, partial(work, replace(project))), more)
+    return Call(worker, partial(interpreters.end, worker), project.files)
+
+
+def wait_for_calls(calls: Sequence[Call[Any]]) -> None:
+    """Return when at least one of these has something new, or may have ended; take it in."""
+    wait_for_any([number for call in calls if (number := call.fileno()) is not None])
+    for call in calls:
+        call.poll()
 
 
 def print_standstill(worker: Worker, notice: StandstillNotice, files: RobotFiles) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import tempfile
 from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import AbstractContextManager, closing, contextmanager
 from dataclasses import replace
 from functools import partial
@@ -17,9 +17,9 @@ from typing import Any
 
 from ...errors import PyfrcError, RobotCodeError
 from ...interruption import calling_when_ended
-from ...processes.call import ForkedCall, can_fork, run_in_subprocess
+from ...processes.call import ENVIRONMENT, Call, ForkedCall, begin_call, can_fork, run_in_subprocess, wait_for_calls
 from ...processes.crash_report import CrashLog
-from ...processes.fork import wait_for_any
+from ...processes.reuse import Interpreters
 from ...project import Project
 from ...runtime.checks.hang_detector import not_watched
 from ...runtime.clock import to_us
@@ -29,6 +29,7 @@ from ...runtime.turns import taking_turns
 from ..guidance.goals import RobotLine
 from ..guidance.seed_schedule import match_seconds
 from ..match.imported_robot import robot_lines
+from ..match.interpreters import known_project, prepare_interpreter
 from ..match.journal import read_journal
 from ..match.play import play
 from ..match.preparation import Preparation
@@ -144,10 +145,8 @@ def open_match_executor(project: Project, jobs: int) -> Iterator[WorkExecutor]:
     :raises RobotCodeError: when the robot's code cannot be imported
     """
     with tempfile.TemporaryDirectory(prefix="pyfrc-fuzz-") as temporary, taking_turns():
-        if not can_fork(project):
-            yield SpawnedMatchExecutor(project, jobs, Path(temporary))
-            return
-        with closing(ForkedMatchExecutor(project, jobs, Path(temporary))) as executor:
+        kind = ForkedMatchExecutor if can_fork(project) else SpawnedMatchExecutor
+        with closing(kind(project, jobs, Path(temporary))) as executor:
             yield executor
 
 
@@ -194,24 +193,9 @@ class PooledMatchExecutor(WorkExecutor):
                     future.cancel()
 
 
-class SpawnedMatchExecutor(PooledMatchExecutor):
-    """Runs each match in a new interpreter."""
-
-    def _pool(self) -> AbstractContextManager[Executor]:
-        return ThreadPoolExecutor(self.jobs + 1)  # one more shrinks
-
-    def _call(self, task: Work) -> Callable[[], Result]:
-        return partial(run_in_subprocess, partial(_work, work=task), self.project, MEANWHILE)
-
-    def _result_of(self, task: Work, future: Future[Result]) -> Result:
-        try:
-            return future.result()
-        except RobotCodeError as ended:
-            return self._died(task, str(ended))
-
-
 def _work(project: Project, log: CrashLog, work: Work) -> Result:
     """Do one task in this process, which must end afterwards."""
+    project = known_project(project)
     return _shrink(project, log, work) if isinstance(work, ShrinkTask) else play(project, log, work)
 
 
@@ -225,7 +209,53 @@ def _survey(project: Project) -> tuple[bool, frozenset[RobotLine]]:
     return bool(reasons_not_to_fork()), lines
 
 
-class ForkedMatchExecutor(WorkExecutor):
+class LocalMatchExecutor(WorkExecutor):
+    """Runs each match in a process of this computer."""
+
+    _lines: frozenset[RobotLine]
+
+    @property
+    def lines(self) -> frozenset[RobotLine]:
+        return self._lines
+
+    def run(self, next_work: NextWork) -> Generator[tuple[Work, Result], None, None]:
+        running: dict[Call[Result], tuple[Work, Work]] = {}
+        try:
+            while True:
+                self._check_interrupt()
+                while (task := next_work()) is not None:
+                    noted = self._with_journal(task)
+                    running[self._begin(noted)] = task, noted
+                if not running:
+                    return
+                wait_for_calls(list(running))
+                for call in list(running):
+                    if call.finished:
+                        task, noted = running.pop(call)
+                        yield task, self._result(noted, call)
+        except NoMoreWork:
+            return
+        finally:
+            for call in running:
+                call.close()
+
+    @abstractmethod
+    def close(self) -> None:
+        """End what works for this, and undo what is prepared in this process."""
+
+    @abstractmethod
+    def _begin(self, task: Work) -> Call[Result]:
+        """Begin a task."""
+
+    def _result(self, task: Work, call: Call[Result]) -> Result:
+        with self._journal(task), closing(call):
+            try:
+                return call.result(self.project.files, MEANWHILE)
+            except RobotCodeError as ended:
+                return self._died(task, str(ended))
+
+
+class ForkedMatchExecutor(LocalMatchExecutor):
     """Runs each match in a fork of this process, which has imported the robot, unless importing it starts threads."""
 
     def __init__(self, project: Project, jobs: int, directory: Path) -> None:
@@ -238,45 +268,34 @@ class ForkedMatchExecutor(WorkExecutor):
             imports_late, self._lines = survey.result(project.files, "while it was imported")
         self._preparation = Preparation(project, is_imported=not imports_late)
 
-    @property
-    def lines(self) -> frozenset[RobotLine]:
-        return self._lines
-
-    def run(self, next_work: NextWork) -> Generator[tuple[Work, Result], None, None]:
-        running: dict[ForkedCall[Result], tuple[Work, Work]] = {}
-        try:
-            while True:
-                self._check_interrupt()
-                while (task := next_work()) is not None:
-                    noted = self._with_journal(task)
-                    running[self._begin(noted)] = task, noted
-                if not running:
-                    return
-                wait_for_any([call.fileno() for call in running])
-                for call in list(running):
-                    call.poll()
-                    if call.finished:
-                        task, noted = running.pop(call)
-                        yield task, self._result(noted, call)
-        except NoMoreWork:
-            return
-        finally:
-            for call in running:
-                call.close()
-
     def close(self) -> None:
-        """Undo what is prepared in this process."""
         self._preparation.close()
 
-    def _begin(self, task: Work) -> ForkedCall[Result]:
+    def _begin(self, task: Work) -> Call[Result]:
         return ForkedCall(lambda log: _work(self.project, log, task), files=self.project.files)
 
-    def _result(self, task: Work, call: ForkedCall[Result]) -> Result:
-        with self._journal(task), closing(call):
-            try:
-                return call.result(self.project.files, MEANWHILE)
-            except RobotCodeError as ended:
-                return self._died(task, str(ended))
+
+class SpawnedMatchExecutor(LocalMatchExecutor):
+    """Runs matches in new interpreters, which are used again while they are as good as new."""
+
+    def __init__(self, project: Project, jobs: int, directory: Path) -> None:
+        super().__init__(project, jobs, directory)
+        prepare = None if project.settings.test.isolation == "spawn" else partial(prepare_interpreter, replace(project))
+        self._interpreters = Interpreters(prepare, jobs, environment=ENVIRONMENT)
+        survey = begin_call(self._interpreters, _all_lines, project, 0)
+        try:
+            with closing(survey):
+                survey.wait()
+                self._lines = survey.result(project.files, "while it was imported")
+        except BaseException:
+            self.close()
+            raise
+
+    def close(self) -> None:
+        self._interpreters.close()
+
+    def _begin(self, task: Work) -> Call[Result]:
+        return begin_call(self._interpreters, partial(_work, work=task), self.project, self.jobs)
 
 
 def _shrink(project: Project, log: CrashLog, task: ShrinkTask) -> Shrunk:

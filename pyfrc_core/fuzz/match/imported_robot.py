@@ -61,6 +61,12 @@ def imported_devices(project: Project) -> bool:
     return devices_exist()
 
 
+def forget() -> None:
+    """Forget the robot, which is to be imported again."""
+    for known in (robot_lines, robot_constants, load, invariants_of, imported_devices, next_tree):
+        known.cache_clear()
+
+
 @lru_cache(maxsize=1)
 def next_tree() -> HalData:
     """Return the tree for the `hal_data` of the next run, in this process or in each of its forks."""

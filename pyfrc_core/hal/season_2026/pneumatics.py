@@ -15,6 +15,7 @@ __all__ = [
     "currents",
     "exists",
     "is_closed_loop",
+    "reset",
     "set_closed_loop",
     "solenoid",
     "watch_current",
@@ -30,6 +31,11 @@ PowerDistribution: TypeAlias = PowerDistributionSim
 def exists(module: Any) -> bool:
     """Return whether the robot has created a module."""
     return bool(module.getInitialized())
+
+
+def reset(module: Any) -> None:
+    """Reset what a module has sent and measured, and that there is one."""
+    module.resetData()
 
 
 def solenoid(module: Any, channel: int) -> tuple[Callable[[], bool], Callable[[bool], None]]:

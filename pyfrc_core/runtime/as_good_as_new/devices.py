@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...hal import existing_devices
-from ...hal.reset import forget_inputs
+from ...hal.reset import forget_inputs, forget_power_distributions
 from .part import Part
 
 
@@ -14,6 +14,9 @@ class Devices(Part):
 
     def __init__(self) -> None:
         self._before = existing_devices()
+
+    def restore(self) -> None:
+        forget_power_distributions()
 
     def left_over(self) -> Iterator[str]:
         left = [device for device in existing_devices() if device not in self._before]

@@ -50,18 +50,14 @@ class ProjectModules(Part):
 
     def restore(self) -> None:
         self.names = set()
-        of_project = {name for name, module in list(sys.modules.items()) if self.is_of_project(module)}
-        for name, module in list(sys.modules.items()):
-            before = self._modules.get(name)
-            if before is not None and before is not module:
-                sys.modules[name] = before
-            elif before is None and name in of_project:
-                del sys.modules[name]
-                if isinstance(getattr(module, "__file__", None), str):
-                    self.names.add(name)
-                self._remove_from_package(name, module)
+        changed = {name: module for name, module in list(sys.modules.items()) if self._modules.get(name) is not module}
+        for name in [name for name, module in changed.items() if self.is_of_project(module)]:
+            del sys.modules[name]
+            if isinstance(getattr(changed[name], "__file__", None), str):
+                self.names.add(name)
+            self._remove_from_package(name, changed[name])
         for name, module in self._modules.items():
-            sys.modules.setdefault(name, module)
+            sys.modules[name] = module
         for name, values in self._paths.items():
             getattr(sys, name)[:] = values
         # Those of libraries stay: they are not made again.

@@ -24,8 +24,12 @@ class CrashMoment:
         self._note_mode()
         log.time_us[0] = run.clock.now_us
         run.clock.moment = log.time_us
-        self._listening = station.when_mode_changes(self._note_mode)
+        self._listening: object = station.when_mode_changes(self._note_mode)
+        run.at_close(self._stop)
         run.connection.when_connected.append(self._note_mode)
+
+    def _stop(self) -> None:
+        self._listening = None  # or the HAL would hold on to the run
 
     def _note_mode(self, name: str = "", value: object = None) -> None:
         # Before its first packet, a robot is disabled whatever mode is asked for.

@@ -184,8 +184,8 @@ def persistent_values() -> Iterator[tuple[str, str, Any]]:
             yield name, type_name, _tables().getEntry(name).getValue().value()
 
 
-#: Entries that WPILib publishes for itself, in C++, as soon as there is a robot.
-OF_WPILIB = ("/FMSInfo/", "/LiveWindow/.status/", "/Shuffleboard/.metadata/")
+#: Entries that WPILib publishes for itself, in C++, for as long as the process lives.
+OF_WPILIB = ("/FMSInfo/", "/LiveWindow/.status/", "/Preferences/.type", "/Shuffleboard/.")
 
 
 def forget_entries() -> None:

@@ -190,8 +190,8 @@ def persistent_values() -> Iterator[tuple[str, str, Any]]:
             yield name, type_name, _tables().get_entry(name).get_value().value()
 
 
-#: Entries that WPILib publishes for itself, in C++, as soon as there is a robot.
-OF_WPILIB = ("/FMSInfo/", "/DriverStation/")
+#: Entries that WPILib publishes for itself, in C++, for as long as the process lives.
+OF_WPILIB = ("/FMSInfo/", "/DriverStation/", "/Preferences/.type")
 
 
 def forget_entries() -> None:
