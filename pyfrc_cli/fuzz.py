@@ -6,6 +6,7 @@ import os
 import sys
 import time
 from contextlib import AbstractContextManager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -69,6 +70,11 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     help="How many matches run at the same time. Default: the number of processors, or PYTHON_CPU_COUNT.",
 )
 @click.option(
+    "--isolation",
+    type=click.Choice(["auto", "fork", "reuse", "spawn"]),
+    help="Where each match runs: in a fork, in a process that is as good as new, or in a new one.",
+)
+@click.option(
     "--scheduler",
     metavar="ADDRESS",
     help=f"Run the matches on the Dask cluster with this scheduler, such as tcp://10.0.0.5:8786, instead of with -j."
@@ -106,6 +112,7 @@ def command(
     merge: bool,
     directories: tuple[Path, ...],
     jobs: int | None,
+    isolation: str | None,
     scheduler: str | None,
     recorded: tuple[Path, ...],
     revision: str | None,
@@ -136,7 +143,7 @@ def command(
     for each in directories:
         if not each.is_dir():
             raise click.BadParameter(f"there is no directory {each}", param_hint="DIRECTORIES")
-    project = chosen_project(directory, main, robot_class)
+    project = replace(chosen_project(directory, main, robot_class), chosen_isolation=isolation)
     with loading(verbosity().quiet):
         from pyfrc_core.compat.unrepeatable import explain_unrepeatable
         from pyfrc_core.fuzz.campaign.campaign import run_campaign

@@ -33,11 +33,13 @@ class Project:
     :param main_file: the file with the robot class, absolute
     :param class_name: the robot class's name, if the user has named it
     :param settings_file: the pyproject.toml that names the main file, if one does
+    :param chosen_isolation: where robots run, if the command line says it
     """
 
     main_file: Path
     class_name: str | None = None
     settings_file: Path | None = None
+    chosen_isolation: str | None = None
 
     @property
     def root(self) -> Path:
@@ -59,6 +61,11 @@ class Project:
     @cached_property
     def settings(self) -> Settings:
         return load_settings(self.pyproject)
+
+    @property
+    def isolation(self) -> str:
+        """Where robots run: in forks, in interpreters that are used again, or in new ones."""
+        return self.chosen_isolation or self.settings.test.isolation
 
     @cached_property
     def loaded_sim_config(self) -> LoadedSimConfig:

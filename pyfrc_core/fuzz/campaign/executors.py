@@ -280,7 +280,7 @@ class SpawnedMatchExecutor(LocalMatchExecutor):
 
     def __init__(self, project: Project, jobs: int, directory: Path) -> None:
         super().__init__(project, jobs, directory)
-        prepare = None if project.settings.test.isolation == "spawn" else partial(prepare_interpreter, replace(project))
+        prepare = None if project.isolation == "spawn" else partial(prepare_interpreter, replace(project))
         self._interpreters = Interpreters(prepare, jobs, environment=ENVIRONMENT)
         survey = begin_call(self._interpreters, _all_lines, project, 0)
         try:

@@ -235,6 +235,8 @@ class IsolatedTests:
         isolation = self._plugin.options.isolation
         if isolation in ("reuse", "spawn"):
             return False
+        if isolation == "fork" and not FORK_IS_SAFE:
+            raise pytest.UsageError("this system cannot fork a process safely. Leave out --isolation fork.")
         if isolation == "auto" and not FORK_IS_SAFE:
             return False
         if self._plugin.imports_late:
