@@ -226,6 +226,32 @@ def test_a_robot_whose_import_makes_devices_is_fuzzed_too(make_project) -> None:
     assert f"{project.place('robot.py', 'raise')}: RuntimeError: no" in result.stdout, result.output
 
 
+def test_interpreters_that_are_used_again_find_the_same(make_project) -> None:
+    robot = """
+        import random
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.stick, self.motor = wpilib.Joystick(0), wpilib.PWMSparkMax(0)
+                self.power = random.random()
+
+            def teleopPeriodic(self):
+                self.motor.set(self.power)
+                if self.stick.getY() > 0.2:
+                    raise RuntimeError(f"power {self.power}")
+        """
+    project = make_project({"robot.py": robot, "pyproject.toml": SHORT_MATCHES.format(4, "")})
+    found = []
+    for isolation in ("fork", "reuse"):
+        result = project.run("fuzz", "--runs", "4", "--seed", "2", "-j", "1", "--isolation", isolation)
+        found.append((result.code, result.stdout.splitlines()[1:], kept(project)))
+        shutil.rmtree(project.path / "tests")
+        shutil.rmtree(project.path / ".pyfrc")
+    assert found[0] == found[1]
+    assert found[0][0] == 1, found
+
+
 def test_where_processes_cannot_be_forked_new_ones_find_the_same(make_project) -> None:
     robot = """
         import wpilib

@@ -17,7 +17,7 @@ from typing import Any
 
 from ...errors import PyfrcError, RobotCodeError
 from ...interruption import calling_when_ended
-from ...processes.call import ENVIRONMENT, Call, ForkedCall, begin_call, can_fork, run_in_subprocess, wait_for_calls
+from ...processes.call import Call, ForkedCall, begin_call, can_fork, run_in_subprocess, wait_for_calls
 from ...processes.crash_report import CrashLog
 from ...processes.reuse import Interpreters
 from ...project import Project
@@ -281,7 +281,7 @@ class SpawnedMatchExecutor(LocalMatchExecutor):
     def __init__(self, project: Project, jobs: int, directory: Path) -> None:
         super().__init__(project, jobs, directory)
         prepare = None if project.isolation == "spawn" else partial(prepare_interpreter, replace(project))
-        self._interpreters = Interpreters(prepare, jobs, environment=ENVIRONMENT)
+        self._interpreters = Interpreters(prepare, jobs)
         survey = begin_call(self._interpreters, _all_lines, project, 0)
         try:
             with closing(survey):
@@ -314,8 +314,8 @@ def shrink_in_subprocess(project: Project, task: ShrinkTask) -> Shrunk | str:
 
     :returns: what came of it, or the end of a sentence that says why there is no shorter script
     """
-    if not can_fork(project):
-        return "making it short takes hundreds of processes, and they cannot be forked here"
+    if project.isolation == "spawn":
+        return "making it short takes hundreds of processes, and each is to be a new one here"
     try:
         with not_watched():
             shrunk: Shrunk = run_in_subprocess(partial(_shrink, task=task), project, "while a script was made shorter")

@@ -19,12 +19,19 @@ from .part import Part
 #: What Python keeps of the last exception.
 _LAST_ERROR = ("last_exc", "last_type", "last_value", "last_traceback")
 
+#: Each robot that is constructed leaves a subscription in WPILib's NetworkTables, which have room for 512.
+_MOST_RUNS = 500
+
 
 class LastRun(Part):
     """The run, which is ended and closed."""
 
+    def __init__(self) -> None:
+        self._runs = 0
+
     def restore(self) -> None:
         run = active_run.run
+        self._runs += 1
         if run is not None:
             with suppress(Exception, TestEnded, TestFroze):  # which its user has seen, if it is of any interest
                 run.close()
@@ -40,3 +47,5 @@ class LastRun(Part):
     def left_over(self) -> Iterator[str]:
         if active_run.run is not None:
             yield "a robot that cannot be ended"
+        if self._runs >= _MOST_RUNS:
+            yield f"a subscription to NetworkTables, as each of {_MOST_RUNS} robots before"
