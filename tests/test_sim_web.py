@@ -16,6 +16,7 @@ from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.ui.web.front_end import WebFrontEnd
 from pyfrc_core.sim.ui.web.runs import Runs
 from pyfrc_core.sim.ui.web.server import WebOptions
+from pyfrc_core.sim.ui.web.updates import UpdateBuilder
 
 pytestmark = pytest.mark.bare
 
@@ -289,7 +290,7 @@ def test_messages_that_make_no_sense_are_errors_and_nothing_more(make_project) -
 
 
 def test_a_mistake_of_pyfrcs_own_is_printed_and_ends_one_connection(make_project, monkeypatch, capsys) -> None:
-    def broken(self: object, clients: int) -> dict[str, object]:
+    def broken(self: object, clients: int, with_time: bool = True) -> dict[str, object]:
         raise ZeroDivisionError("a mistake")
 
     def enable_and_wait(page: Page) -> None:
@@ -343,3 +344,39 @@ def test_the_pages_files_are_served_with_their_types(make_project) -> None:
         assert (again[0], again[2]) == (304, b"")
         assert server.get("/static/../app.py")[0] == 404
         assert server.get("/static/%2e%2e/app.py")[0] == 404
+
+
+def test_only_what_a_page_shows_is_sent(make_project) -> None:
+    with served(make_project(DASHBOARD)) as server, server.page() as page:
+        page.run_for(0.1)
+        page.ask(type="show", paths=["pwm[0].value"], beginnings=["nt:/SmartDashboard/Arm/"])
+        before = dict(page.values)
+        page.command("write", values={"nt:/SmartDashboard/kP": 0.75})
+        page.run_for(0.2)
+        changed = {path for path in page.values if page.values[path] != before.get(path)}
+        assert changed == {"pwm[0].value", "nt:/SmartDashboard/Arm/pivot/arm/angle"}
+        # A moment of the past has the same values, and those that are gone since.
+        found = page.ask(type="values", t=0.1, shown=True)["values"]
+        assert {"pwm[0].value", "sim.mode", "nt:/SmartDashboard/Arm/.type"} <= found.keys()
+        assert "nt:/SmartDashboard/kP" not in found
+        assert "nt:/SmartDashboard/kP" in page.ask(type="values", t=0.1)["values"]
+        # What is shown from now on is up to date, although nothing changes any more.
+        page.ask(type="show", paths=[], beginnings=["nt:/"])
+        page.until(lambda: page.values["nt:/SmartDashboard/kP"] == 0.75)
+        page.until(lambda: page.values["nt:/pose/translation/y"] > before["nt:/pose/translation/y"])
+
+
+def test_a_later_time_alone_may_wait(make_project) -> None:
+    with served(make_project(FILES)) as server, server.page() as page:
+        page.run_for(0.1)
+        assert server.front_end.collector is not None
+        builder = UpdateBuilder(server.front_end.collector, "")
+        assert builder.update(1)["t"] == pytest.approx(0.1)
+        page.run_for(0.1)
+        assert (builder.update(1, with_time=False), builder.is_late) == ({}, True)
+        assert builder.update(1)["t"] == pytest.approx(0.2)
+        assert (builder.update(1), builder.is_late) == ({}, False)
+        page.command("enable")
+        page.run_for(0.1)
+        found = builder.update(1, with_time=False)
+        assert (found["t"], found["values"]["sim.mode"]) == (pytest.approx(0.3), "teleop")

@@ -20,7 +20,7 @@ test("changes are announced once in a frame, and values only to those who draw t
   assert.deepEqual([drawn, heard], [[1], []]);
   assert.equal(drawFrame(), 1);
   assert.deepEqual(drawn, [1, 3]);
-  assert.deepEqual(heard, [["t", "type", "values"]]);
+  assert.deepEqual(heard, [["needs", "t", "type", "values"]]);
   ends.forEach((end) => end());
   model.take({ type: "update", values: { a: 4 } });
   drawFrame();
@@ -69,4 +69,17 @@ test("a flood of lines leaves the warnings, and a flood of marks the person's ow
   const mark = (n, kind) => ({ n, t: n, kind, text: "" });
   model.take({ type: "update", marks: [mark(0, "own"), ...Array.from({ length: 3000 }, (_, n) => mark(n + 1, "press"))] });
   assert.deepEqual([model.marks.length, model.marks[0].kind, model.marks[1].n], [2000, "own", 1002]);
+});
+
+test("what is bound and what panels need is asked for, until it is no longer", () => {
+  const end = model.bind("a", () => {});
+  const again = model.bind("a", () => {});
+  const panel = {};
+  model.need(panel, ["nt:/Arm/"]);
+  assert.deepEqual(model.needs, { paths: ["a"], beginnings: ["nt:/Arm/"] });
+  end();
+  model.need(panel, []);
+  assert.deepEqual(model.needs, { paths: ["a"], beginnings: [] });
+  again();
+  assert.deepEqual(model.needs.paths, []);
 });

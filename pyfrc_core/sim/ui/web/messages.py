@@ -16,8 +16,8 @@ from typing import Any, NoReturn
 _MOST_DEPTH, _MOST_DIGITS = 40, 32
 #: How much of a wrong value an error shows, in characters.
 _MOST_SHOWN = 60
-#: The most paths that a page may ask for at once: all curves of twenty full plots.
-_MOST_PATHS = 256
+#: The most paths that a page may ask for at once: all curves of twenty full plots. It may show many more.
+_MOST_PATHS, _MOST_SHOWN_PATHS = 256, 20_000
 #: The latest and the earliest moment that a page may name, in seconds: thirty years.
 _LATEST = 1e9
 
@@ -77,9 +77,12 @@ class Message:
         return self.integer("branch", 0, 1 << 31) if "branch" in self else None
 
     def paths(self) -> list[str]:
-        value = self._values.get("paths")
-        if not isinstance(value, list) or len(value) > _MOST_PATHS or not all(isinstance(each, str) for each in value):
-            _refuse("paths", f"a list of at most {_MOST_PATHS} texts is needed", value)
+        return self.texts("paths", _MOST_PATHS)
+
+    def texts(self, key: str, most: int = _MOST_SHOWN_PATHS) -> list[str]:
+        value = self._values.get(key)
+        if not isinstance(value, list) or len(value) > most or not all(isinstance(each, str) for each in value):
+            _refuse(key, f"a list of at most {most} texts is needed", value)
         return list(value)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import Executor
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from ...engine.messages import TYPE
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
 
     from .collector import Collector
 
-#: The shortest interval of updates, in seconds: somewhat less than a packet.
-_INTERVAL = 0.014
+#: The shortest interval of updates, in seconds: somewhat less than a packet; and of those that bring only a later time.
+_INTERVAL, _TIME_INTERVAL = 0.014, 0.1
 #: The longest error, in characters: it may quote what the page has sent.
 _MOST_ERROR = 300
 #: The most points of one curve.
@@ -58,14 +59,16 @@ class PageClient:
         """Send what has changed, as fast as the page takes it, until it has gone."""
         await self._send({**self._hello(), **self._builder.update(self._clients())})
         loop = asyncio.get_running_loop()
-        began = loop.time()
+        began = sent = loop.time()
         while True:
-            await self.news.wait()
+            with suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(self.news.wait(), _TIME_INTERVAL if self._builder.is_late else None)
             if (rest := began + _INTERVAL - loop.time()) > 0:
                 await asyncio.sleep(rest)
             self.news.clear()
             began = loop.time()
-            if update := self._builder.update(self._clients()):
+            if update := self._builder.update(self._clients(), began >= sent + _TIME_INTERVAL):
+                sent = began
                 await self._send({"type": "update", **update})
 
     async def receive(self, text: str) -> None:
@@ -102,6 +105,10 @@ class PageClient:
                 return await asyncio.to_thread(self._plot, message)
             case "first_difference":
                 return await asyncio.to_thread(self._first_difference, message)
+            case "show":
+                self._builder.show(message.texts("paths"), message.texts("beginnings"))
+                self.news.set()
+                return {}
             case "subscribe":
                 self._builder.subscribe(message.paths())
                 return {}
@@ -127,7 +134,15 @@ class PageClient:
         values = self._collector.runs.values_at(time, message.branch())
         if values is None:
             raise _no_branch()
-        return {"t": time, "values": {path: value for path, value in values.items() if not path.startswith(TYPE)}}
+        is_shown = self._builder.is_shown if "shown" in message else None
+        return {
+            "t": time,
+            "values": {
+                path: value
+                for path, value in values.items()
+                if not path.startswith(TYPE) and (is_shown is None or is_shown(path))
+            },
+        }
 
     def _first_difference(self, message: Message) -> dict[str, Any]:
         paths, branch = message.paths() if "paths" in message else None, message.branch()

@@ -223,9 +223,17 @@ class Runs:
         with self._lock:
             position = self._position()
             is_all = after is None or after.numbers != position.numbers
+            if after == position:
+                return changed, position, is_all
             for source, history in self._histories.items():
                 changed |= history.changed_since(0 if is_all or after is None else after.packets[source])
         return changed, position, is_all
+
+    def present_values(self, paths: Iterable[str]) -> dict[str, Any]:
+        """Return the present values of those of some paths that have one."""
+        with self._lock:
+            now = {path: self._histories[source_of(path)].now.get(path, MISSING) for path in paths}
+        return {path: value for path, value in now.items() if value is not MISSING}
 
     def _position(self) -> Position:
         packets: dict[Source, int] = {source: history.packets for source, history in self._histories.items()}

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
-from ...engine.messages import TYPE, VALUE
+from ...engine.messages import MODE, POSE, TYPE, VALUE
 from ...engine.scene import Field, Line, Point, Text
 from ...engine.snapshot import Snapshot, Status
 from ..models.devices import SETTABLE, Panel
@@ -24,6 +24,8 @@ from .runs import Position
 #: The attributes of `Status` that pages get as they are, and those in seconds, which are rounded.
 _AS_IT_IS = ("state", "speed", "late_packets", "overruns", "note", "responding", "starts", "network_address")
 _SECONDS = ("packet_seconds", "worst_packet_seconds", "worst_loop_seconds", "length")
+#: What a page always has: the robot's place and mode, and what the folders of NetworkTables are.
+_ALWAYS, _ALWAYS_ENDING = (MODE, POSE), "/.type"
 _PLACE = re.compile(r"(?P<file>[^\s:]+\.py):(?P<line>\d+)")
 
 
@@ -45,6 +47,14 @@ class UpdateBuilder:
         self._trail: tuple[Point, ...] = ()
         self._lines = self._marks = 0
         self._run = (0, 0.0)
+        #: The values that the page shows: only their changes are sent. None: all.
+        self._shown: frozenset[str] | None = None
+        self._beginnings: tuple[str, ...] = ()
+        #: The values that have changed since they were sent, and whether others of them are shown than before.
+        self._stale: set[str] = set()
+        self._shows_others = False
+        #: Whether there is a later time than the page has, and nothing else that is new.
+        self.is_late = False
         #: The paths whose every change is sent, and the place up to which they were.
         self._subscribed: tuple[str, ...] = ()
         self._position: Position | None = None
@@ -55,8 +65,27 @@ class UpdateBuilder:
             self._position = self._collector.runs.position()
         self._subscribed = tuple(paths)
 
-    def update(self, clients: int) -> dict[str, Any]:
-        """Return what has changed, empty when nothing has."""
+    def show(self, paths: Iterable[str], beginnings: Iterable[str]) -> None:
+        """Send changes only of these values, of those whose paths begin so, and each value when it is new."""
+        self._shown, self._beginnings, self._shows_others = frozenset(paths), tuple(beginnings), True
+
+    def is_shown(self, path: str) -> bool:
+        """Return whether the page needs a value: it shows it, or does not know it yet."""
+        shown = self._shown
+        return (
+            shown is None
+            or path in shown
+            or path in _ALWAYS
+            or path.endswith(_ALWAYS_ENDING)
+            or path.startswith((TYPE, *self._beginnings))
+            or path not in self._paths
+        )
+
+    def update(self, clients: int, with_time: bool = True) -> dict[str, Any]:
+        """Return what has changed, empty when nothing has.
+
+        :param with_time: if only time has passed, return that, too
+        """
         state = self._collector.state
         found: dict[str, Any] = {}
         if state.run != self._run:
@@ -81,13 +110,24 @@ class UpdateBuilder:
         self._add_lines(found)
         self._add_samples(found)
         self._state = state
+        late = state.snapshot is not None and round(state.snapshot.time, 6) != self._parts.get("t")
+        self.is_late = late and not (found or with_time)
+        if found or with_time:
+            self._add_time(found, state)
         return found
+
+    def _add_time(self, found: dict[str, Any], state: State) -> None:
+        """Add what changes as long as time goes on, even if nothing else happens."""
+        self._differences(found, "status", self._status, _figures(state.status))
+        if (snapshot := state.snapshot) is not None:
+            self._part(found, "t", round(snapshot.time, 6))
+            self._differences(found, "station", self._station, {"match_left": round(snapshot.match_left, 2)})
 
     def _differences(self, found: dict[str, Any], key: str, before: dict[str, Any], now: dict[str, Any]) -> None:
         changed = {name: value for name, value in now.items() if before.get(name, MISSING) != value}
         if changed:
             before.update(changed)
-            found[key] = changed
+            found.setdefault(key, {}).update(changed)
 
     def _part(self, found: dict[str, Any], key: str, value: Any) -> None:
         if self._parts.get(key, MISSING) != value:
@@ -96,7 +136,6 @@ class UpdateBuilder:
 
     def _add_snapshot(self, found: dict[str, Any], snapshot: Snapshot) -> None:
         scene = snapshot.scene
-        self._part(found, "t", round(snapshot.time, 6))
         robot = scene.robot
         self._part(found, "robot", None if robot is None else [robot.x, robot.y, robot.angle])
         if scene.trail is not self._trail:
@@ -119,7 +158,19 @@ class UpdateBuilder:
         if is_all:
             gone += [path for path in self._paths if path not in changed]
         values = {path: value for path, value in changed.items() if value is not MISSING}
-        self._paths = (self._paths | values.keys()) - set(gone)
+        if is_all:
+            self._stale.clear()
+        elif self._shown is not None:
+            hidden = [path for path in values if not self.is_shown(path)]
+            for path in hidden:
+                del values[path]
+            self._stale.update(hidden)
+        if self._shows_others:
+            self._shows_others = False
+            values |= self._collector.runs.present_values([path for path in self._stale if self.is_shown(path)])
+        self._stale.difference_update(values, gone)
+        self._paths.update(values)
+        self._paths.difference_update(gone)
         parts = {
             "types": {VALUE + path[len(TYPE) :]: value for path, value in values.items() if path.startswith(TYPE)},
             "values": {path: value for path, value in values.items() if not path.startswith(TYPE)},
@@ -161,9 +212,6 @@ def _status(status: Status, wants_to_run: bool) -> dict[str, Any]:
     place = None if failure is None else _PLACE.search(failure.headline)
     return {
         **{name: getattr(status, name) for name in _AS_IT_IS},
-        **{name: round(getattr(status, name), 5) for name in _SECONDS},
-        "reached": round(status.reached, 3),
-        "average": round(status.average, 3),
         "wants_to_run": wants_to_run,
         "failure": None
         if failure is None
@@ -175,6 +223,11 @@ def _status(status: Status, wants_to_run: bool) -> dict[str, Any]:
             "line": 0 if place is None else int(place["line"]),
         },
     }
+
+
+def _figures(status: Status) -> dict[str, Any]:
+    seconds = {name: round(getattr(status, name), 5) for name in _SECONDS}
+    return {**seconds, "reached": round(status.reached, 3), "average": round(status.average, 3)}
 
 
 def _station(snapshot: Snapshot | None, status: Status) -> dict[str, Any]:
@@ -189,7 +242,6 @@ def _station(snapshot: Snapshot | None, status: Status) -> dict[str, Any]:
             "emergency_stopped": snapshot.emergency_stopped,
             "attached": snapshot.station_attached,
             "practice_since": snapshot.practice_since,
-            "match_left": round(snapshot.match_left, 2),
             "alliance": STATIONS.get(station_name(snapshot.values.get("alliance_station")), ""),
             "game_message": str(snapshot.values.get("event.game_specific_message") or ""),
         }

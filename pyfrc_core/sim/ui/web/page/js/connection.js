@@ -28,6 +28,7 @@ export function connect(message, state) {
   onMessage = message;
   onState = state;
   if (isRecorded) return openRun();
+  model.listen((changed) => changed.has("needs") && ask("show", model.needs).catch(() => {}));
   open();
   setInterval(tick, TICK);
 }

@@ -38,6 +38,7 @@ class Model {
 
   #listeners = new Set();
   #bound = new Map(); // path: functions that draw its value
+  #needed = new Map(); // owner: beginnings of paths
   #changed = new Set();
   #paths = new Set();
   #scheduled = false;
@@ -55,13 +56,31 @@ class Model {
 
   // Call a function with a path's value now and whenever it changes. Returns a function that ends it.
   bind(path, draw) {
-    if (!this.#bound.has(path)) this.#bound.set(path, new Set());
+    if (!this.#bound.has(path)) {
+      this.#bound.set(path, new Set());
+      this.announce("needs");
+    }
     this.#bound.get(path).add(draw);
     draw(this.shown.values.get(path));
     return () => {
       this.#bound.get(path)?.delete(draw);
-      if (this.#bound.get(path)?.size === 0) this.#bound.delete(path);
+      if (this.#bound.get(path)?.size !== 0) return;
+      this.#bound.delete(path);
+      this.announce("needs");
     };
+  }
+
+  // Have the server send the values whose paths begin with one of these, as long as `owner` needs them; [] ends it. What is
+  // bound comes in any case, and each value when it is new.
+  need(owner, beginnings) {
+    if (beginnings.join() === (this.#needed.get(owner) ?? []).join()) return;
+    if (beginnings.length) this.#needed.set(owner, beginnings);
+    else this.#needed.delete(owner);
+    this.announce("needs");
+  }
+
+  get needs() {
+    return { paths: [...this.#bound.keys()], beginnings: [...new Set([...this.#needed.values()].flat())] };
   }
 
   // Call a function with ("samples", {path: [t, v, …]}) or ("run", t), at once.
@@ -147,7 +166,7 @@ class Model {
     this.console = [];
     this.dropped = 0;
     this.marks = [];
-    this.announce("hello", "paths", "shown");
+    this.announce("hello", "paths", "shown", "needs");
   }
 
   #goOn(run, message) {

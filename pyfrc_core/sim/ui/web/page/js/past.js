@@ -2,6 +2,7 @@
 import { ask, command } from "#js/connection.js";
 import { clock } from "#js/format.js";
 import { model } from "#js/model.js";
+import { isRecorded } from "#js/recorded.js";
 
 const PACKET = 0.02; // seconds
 
@@ -40,7 +41,7 @@ async function fetchWanted() {
   while (wanted !== null) {
     const t = wanted;
     try {
-      const answer = await ask("values", { t, branch: null });
+      const answer = await ask("values", { t, branch: null, shown: true });
       if (wanted !== null) show(t, new Map(Object.entries(answer.values)));
     } catch (error) {
       if (wanted === t) model.set("problem", error.message);
@@ -65,6 +66,11 @@ function modeText(mode) {
   const chosen = mode === "disabled" ? "teleop" : mode.replace("disabled ", "");
   return `${model.hello.options.modes[chosen] ?? chosen} ${mode.startsWith("disabled") ? "disabled" : "enabled"}`;
 }
+
+// Panels that were opened need values of the moment, too: after the server has heard of them.
+model.listen((changed) => {
+  if (changed.has("needs") && model.past && !isRecorded) queueMicrotask(() => model.past && look(model.past.t));
+});
 
 // Show the present again.
 export function live() {

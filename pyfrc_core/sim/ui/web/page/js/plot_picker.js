@@ -17,10 +17,12 @@ export class PlotPicker extends Component {
   }
 
   componentWillUnmount() {
+    model.need(this, []);
     document.removeEventListener("pointerdown", this.outside);
   }
 
   componentDidUpdate(_, before) {
+    model.need(this, this.state.open ? [""] : []);
     if (!this.state.open) return;
     showBeside(this.element.current.querySelector(".menu-list"), this.element.current);
     if (!before.open) this.element.current.querySelector("input").focus();

@@ -12,9 +12,14 @@ import { Icon, Live, html } from "#js/view.js";
 
 // The share of the speed slider that has speeds: beyond the fastest comes "as fast as possible".
 const UNLIMITED = 0.94;
+const LIVE_INTERVAL = 100; // milliseconds: no one reads faster
 
 export class TimeBar extends Live {
   parts = ["t", "status", "shown", "hello", "branches", "compared", "compared-series", "connection"];
+
+  interval() {
+    return model.past ? 0 : LIVE_INTERVAL;
+  }
 
   render() {
     const { status, past, readonly } = model;

@@ -1,5 +1,5 @@
 // The timeline: modes as colours, marks, and the moment that the panels show.
-import { ElementSize, font, sizeCanvas } from "#js/canvas.js";
+import { ElementSize, Picture, font, sizeCanvas } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
 import { clock } from "#js/format.js";
 import { model } from "#js/model.js";
@@ -15,12 +15,18 @@ const NEAR = 5; // pixels between the pointer and a mark
 const MOST_NAMED = 5; // marks beside the pointer
 const HEIGHT = 46;
 const EDGE = 8; // pixels at both ends
+const LIVE_INTERVAL = 100; // milliseconds: the present moves slowly
 const SHORTEST = isRecorded ? 0.1 : 10; // seconds on the timeline at least
 
 export class Timeline extends Live {
   parts = ["t", "status", "shown", "series", "marks", "settings", "window", "branches", "compared", "known_from"];
   canvas = createRef();
+  picture = new Picture();
   state = { hover: null };
+
+  interval() {
+    return model.past ? 0 : LIVE_INTERVAL;
+  }
 
   componentDidMount() {
     super.componentDidMount();
@@ -34,8 +40,13 @@ export class Timeline extends Live {
     unwatch("sim.mode");
   }
 
+  // Painted again only if something has moved by about a pixel.
   componentDidUpdate() {
-    this.draw();
+    if (!this.size.width) return;
+    const step = 2 ** Math.floor(Math.log2(this.whole / this.width)); // seconds: at most a pixel
+    const moments = [length(), compared.end, model.knownFrom, model.past?.t ?? model.t].map((t) => Math.floor(t / step));
+    const { marks, branches } = model;
+    if (this.picture.changes(marks, branches, model.compared, Boolean(model.past), this.modes.t.length, this.modes.t[0], this.width, ...moments)) this.draw();
   }
 
   render(_, { hover }) {

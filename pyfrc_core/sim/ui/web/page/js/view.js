@@ -12,7 +12,11 @@ export const html = htm.bind(h);
 // A component that renders again when one of these parts of the model has changed: `parts = ["station", "status"]`.
 export class Live extends Component {
   parts = [];
-  interval = 0; // milliseconds between two renderings at least, for what changes faster than anyone can read
+  // Milliseconds between two renderings at least, for what changes faster than anyone can read.
+  interval() {
+    return 0;
+  }
+
   #renderedAt = 0;
   #timer = null;
 
@@ -23,13 +27,15 @@ export class Live extends Component {
   }
 
   componentWillUnmount() {
+    model.need(this, []);
     this.stopListening();
     clearTimeout(this.#timer);
   }
 
   #renderSoon() {
     if (this.#timer !== null) return;
-    const wait = this.interval && this.#renderedAt + this.interval - performance.now();
+    const interval = this.interval();
+    const wait = interval && this.#renderedAt + interval - performance.now();
     if (wait <= 0) this.#renderNow();
     else this.#timer = setTimeout(() => this.#renderNow(), wait);
   }

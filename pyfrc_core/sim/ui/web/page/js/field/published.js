@@ -61,20 +61,38 @@ function physicsRobot(values) {
   return values.has(other) ? other : robot;
 }
 
+// The folders of every Field2d, each with a slash at its end.
+function fieldFolders(values) {
+  const found = [];
+  for (const [path, value] of values) {
+    if (value === "Field2d" && path.startsWith("nt:/") && path.endsWith("/.type")) found.push(path.slice(0, -".type".length));
+  }
+  return found;
+}
+
+const POSES = /^struct:Pose[23]d/;
+const MODULES = /^struct:SwerveModule(State|Velocity)\[\]$/;
+const MODULES_AS_NUMBERS = /swerve.*state|module.*state/i;
+
+function topicsOf(types) {
+  return Object.keys(model.types).filter((path) => path.startsWith("nt:/") && types.test(model.types[path]));
+}
+
+// The beginnings of the paths of all values that a field may show.
+export function fieldNeeds() {
+  const structs = [...topicsOf(POSES), ...topicsOf(MODULES)].map((path) => `${path}/`);
+  return [...fieldFolders(model.values), ...structs, ...topicsOf(/^double\[\]$/).filter((path) => MODULES_AS_NUMBERS.test(path))];
+}
+
 // The objects of every Field2d: { name, path, poses, isPath }.
 export function fieldObjects(values, field) {
   const objects = [];
-  const folders = [];
+  const folders = fieldFolders(values);
   const simulated = physicsRobot(values);
-  const structs = Object.keys(model.types).filter((path) => path.startsWith("nt:/") && /^struct:Pose[23]d/.test(model.types[path]));
-  const lists = [];
-  for (const [path, value] of values) {
-    if (path.endsWith("/.type") && value === "Field2d") folders.push(path.slice(0, -".type".length));
-    else if (Array.isArray(value) && path.startsWith("nt:/")) lists.push(path);
-  }
+  const structs = topicsOf(POSES);
+  const lists = [...values.keys()].filter((path) => folders.some((folder) => path.startsWith(folder)) && Array.isArray(values.get(path)));
   for (const path of new Set([...lists, ...structs])) {
     const folder = folders.find((each) => path.startsWith(each));
-    if (!folder && !structs.includes(path)) continue;
     const name = folder ? path.slice(folder.length) : path.split("/").pop();
     if (name.startsWith(".")) continue;
     if (path === simulated && model.shown.robot) continue; // the page draws it anyway
@@ -89,21 +107,19 @@ export function fieldObjects(values, field) {
 // The four states of swerve modules, front left first: { path, wanted, states: [{ speed in m/s, angle in radians }] }.
 export function swerveStates(values) {
   const found = [];
-  for (const [path, type] of Object.entries(model.types)) {
-    if (!path.startsWith("nt:/")) continue;
-    const wanted = /target|desired|setpoint|wanted/i.test(path);
-    const value = values.get(path);
-    if (/^struct:SwerveModule(State|Velocity)\[\]$/.test(type)) {
-      const states = [];
-      for (let speed; (speed = speedAt(values, `${path}/${states.length}`)) !== undefined; ) {
-        states.push({ speed, angle: angleAt(values, `${path}/${states.length}/angle`) ?? 0 });
-      }
-      if (states.length >= 3) found.push({ path, wanted, states });
-    } else if (Array.isArray(value) && /swerve.*state|module.*state/i.test(path) && value.length === 8 && value.every((each) => typeof each === "number")) {
-      // AdvantageScope's older form: angle, speed of each module.
-      const states = [0, 1, 2, 3].map((module) => ({ angle: value[2 * module], speed: value[2 * module + 1] }));
-      found.push({ path, wanted, states });
+  const add = (path, states) => found.push({ path, wanted: /target|desired|setpoint|wanted/i.test(path), states });
+  for (const path of topicsOf(MODULES)) {
+    const states = [];
+    for (let speed; (speed = speedAt(values, `${path}/${states.length}`)) !== undefined; ) {
+      states.push({ speed, angle: angleAt(values, `${path}/${states.length}/angle`) ?? 0 });
     }
+    if (states.length >= 3) add(path, states);
+  }
+  for (const path of topicsOf(/^double\[\]$/)) {
+    const value = MODULES_AS_NUMBERS.test(path) ? values.get(path) : undefined;
+    // AdvantageScope's older form: angle, speed of each module.
+    if (value?.length !== 8 || !value.every((each) => typeof each === "number")) continue;
+    add(path, [0, 1, 2, 3].map((module) => ({ angle: value[2 * module], speed: value[2 * module + 1] })));
   }
   return found;
 }

@@ -12,6 +12,7 @@ const STANDARD_BUTTONS = {
 const HATS = { "0,-1": 0, "1,-1": 45, "1,0": 90, "1,1": 135, "0,1": 180, "-1,1": 225, "-1,0": 270, "-1,-1": 315 };
 const STEP = 0.01; // the smallest movement that is passed on
 const STICKS = 6;
+const RUMBLES = ["left_rumble", "right_rumble"];
 
 const passedOn = {}; // joystick: what was sent last, target: value
 let names = "";
@@ -109,7 +110,7 @@ function poll() {
 function rumble() {
   const pads = gamepads();
   for (let stick = 0; stick < STICKS; stick++) {
-    const strength = ["left_rumble", "right_rumble"].map((name) => Number(model.values.get(`joysticks[${stick}].${name}`) ?? 0));
+    const strength = RUMBLES.map((name) => Number(model.values.get(`joysticks[${stick}].${name}`) ?? 0));
     if (!strength.some((each) => each > 0)) continue;
     const [strong, weak] = strength.map((each) => Math.min(each / 65535, 1));
     assignedTo(stick, pads)?.vibrationActuator
@@ -125,6 +126,7 @@ function look() {
 }
 
 export function startGamepads() {
+  model.need("rumble", Array.from({ length: STICKS }, (_, stick) => RUMBLES.map((name) => `joysticks[${stick}].${name}`)).flat());
   setInterval(look, 100);
   document.addEventListener("visibilitychange", poll); // frames no longer come when it is hidden
 }

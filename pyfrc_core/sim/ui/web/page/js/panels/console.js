@@ -11,10 +11,13 @@ const MOST_SHOWN = 150;
 
 export class ConsolePanel extends Live {
   parts = ["console", "shown", "settings", "hello"];
-  interval = 150;
   state = { search: "", shown: MOST_SHOWN };
   list = createRef();
   follow = true;
+
+  interval() {
+    return 150;
+  }
 
   componentDidMount() {
     super.componentDidMount();

@@ -4,7 +4,7 @@ import { command } from "#js/connection.js";
 import { numberText } from "#js/format.js";
 import * as draw from "#js/field/draw.js";
 import { placeLabel } from "#js/field/labels.js";
-import { fieldObjects, swerveStates } from "#js/field/published.js";
+import { fieldNeeds, fieldObjects, swerveStates } from "#js/field/published.js";
 import { Viewport } from "#js/field/viewport.js";
 import { Menu } from "#js/menu.js";
 import { model } from "#js/model.js";
@@ -68,6 +68,7 @@ export class FieldPanel extends Live {
       compared: compared.poseAt(model.past?.t ?? model.t),
       alliance: station.alliance ?? model.station.alliance ?? "",
     };
+    model.need(this, fieldNeeds());
     this.swerve = pose ? swerveStates(values) : [];
     /** @type {any[]} */
     const layers = LAYERS.map(([layer, text]) => this.layer(layer, text));

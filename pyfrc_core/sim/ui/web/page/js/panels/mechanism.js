@@ -26,6 +26,7 @@ export class MechanismPanel extends Live {
 
   render() {
     this.found = mechanisms(model.shown.values);
+    model.need(this, this.found.map(({ folder }) => `${folder}/`));
     return html`<div class="mechanism"><canvas ref=${this.canvas} role="img" aria-label=${this.found.map((each) => each.name).join(", ")}></canvas>
       ${!this.found.length && html`<p class="empty">A Mechanism2d that the robot publishes with ${model.hello.options.dashboard.publishing} appears here.</p>`}</div>`;
   }

@@ -16,7 +16,8 @@ export class NetworkTablesPanel extends Live {
 
   render(_, { search, open }) {
     const words = search.toLowerCase().split(/\s+/).filter(Boolean);
-    const paths = [...model.shown.values.keys()].filter((path) => path.startsWith(START) && words.every((word) => path.toLowerCase().includes(word)));
+    const known = model.past ? new Set([...model.values.keys(), ...model.past.values.keys()]) : model.values.keys();
+    const paths = [...known].filter((path) => path.startsWith(START) && words.every((word) => path.toLowerCase().includes(word)));
     const tree = treeOf(paths);
     const rows = [];
     const visit = (node, depth) => {

@@ -13,13 +13,17 @@ const ALERTS = [["errors", "red"], ["warnings", "amber"], ["infos", "accent"]];
 
 export class WidgetsPanel extends Live {
   parts = ["values", "paths", "choosers", "shown", "hello"];
-  interval = 80;
+
+  interval() {
+    return 80;
+  }
 
   render() {
     const { values } = model.shown;
     const folders = sendables(values);
     const cards = folders.filter((each) => !ELSEWHERE.has(each.type));
     const alerts = folders.filter((each) => each.type === "Alerts");
+    model.need(this, [...cards, ...alerts].map(({ path }) => `${path}/`));
     return html`<div class="widgets scroll">
       ${alerts.map((each) => html`<${Alerts} key=${each.path} folder=${each} values=${values} />`)}
       ${model.choosers.map((chooser) => html`<div class="card form" key=${chooser.name}><${Chooser} chooser=${chooser} /></div>`)}
