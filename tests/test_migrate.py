@@ -109,7 +109,7 @@ def project(make_project: MakeProject) -> RobotProject:
 
 
 def text(project: RobotProject, name: str) -> str:
-    return (project.path / name).read_bytes().decode()
+    return (project.path / name).read_text("utf-8")
 
 
 def test_a_project_is_rewritten_and_what_is_left_is_said_at_its_line(project: RobotProject) -> None:
@@ -131,8 +131,10 @@ def test_a_second_run_changes_nothing(project: RobotProject) -> None:
     assert {file: file.read_bytes() for file in project.path.rglob("*") if file.is_file()} == before
 
 
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
 @pytest.mark.parametrize("option", ["--check", "--diff"])
-def test_nothing_is_written_on_wish(project: RobotProject, option: str) -> None:
+def test_nothing_is_written_on_wish(project: RobotProject, option: str, newline: str) -> None:
+    (project.path / "robot.py").write_text(text(project, "robot.py"), "utf-8", newline=newline)
     before = text(project, "robot.py")
     result = project.run("migrate", option)
     assert result.code == 1, result.output
@@ -271,8 +273,11 @@ steps:
 }
 
 
-def test_the_settings_name_the_packages_of_the_new_season(project: RobotProject) -> None:
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+def test_the_settings_name_the_packages_of_the_new_season(project: RobotProject, newline: str) -> None:
     project.write(SETTINGS)
+    for name in SETTINGS:
+        (project.path / name).write_text(text(project, name), "utf-8", newline=newline)
     result = project.run("migrate")
     for name, new in NEW_SETTINGS.items():
         assert text(project, name) == new

@@ -40,12 +40,13 @@ class Migration:
     files: int
 
     def diff(self) -> Iterator[str]:
-        """Return the changes as a unified diff, by lines."""
+        """Return the changes as a unified diff, by lines; whatever the files' lines end in, these end in LF."""
         for name, new in sorted(self.after.items()):
-            old = self.before.get(name, b"").decode(errors="replace").splitlines(keepends=True)
-            yield from difflib.unified_diff(
-                old, new.decode(errors="replace").splitlines(keepends=True), f"a/{name}", f"b/{name}"
+            old = self.before.get(name, b"").decode(errors="replace").splitlines()
+            lines = difflib.unified_diff(
+                old, new.decode(errors="replace").splitlines(), f"a/{name}", f"b/{name}", lineterm=""
             )
+            yield from (f"{line}\n" for line in lines)
 
     def write(self) -> None:
         """Replace the files, after all of them have been written beside the old ones.

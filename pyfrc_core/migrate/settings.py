@@ -21,7 +21,7 @@ _REQUIREMENT = re.compile(
     r"(?P<name>[A-Za-z][\w.-]*)(?P<extras>\[[\w, -]*\])?(?P<versions>\s*(?:[=~<>!]=|[<>])\s*[\w.*+!]+"
     r"(?:\s*,\s*(?:[=~<>!]=|[<>])\s*[\w.*+!]+)*)"
 )
-_HEADER = re.compile(r"^\[tool\.robotpy\][ \t]*(#.*)?$", re.M)
+_HEADER = re.compile(r"^\[tool\.robotpy\][ \t]*(#[^\r\n]*)?(?=\r?$)", re.M)
 _VERSION = re.compile(r"^(robotpy_version[ \t]*=[ \t]*)([\"'])[^\"']*\2", re.M)
 _REQUIRES = re.compile(r"^requires[ \t]*=[ \t]*\[", re.M)
 _JOYSTICK = re.compile(r'"(?P<port>\d+)"\s*:\s*\{(?:[^{}]|\{[^{}]*\})*\}')
