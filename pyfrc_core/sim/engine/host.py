@@ -44,12 +44,14 @@ class Hosting:
     :param address: where the simulation listens; likewise `key`
     :param fork: whether to fork robots' processes
     :param temporary: the simulation's directory, to tidy away when it has been killed itself
+    :param name: by which it introduces itself: the connection of a host that was ended may be accepted late
     """
 
     address: Any
     key: bytes
     fork: bool
     temporary: str
+    name: str = "host"
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ def main(hosting: Hosting) -> None:
     from ...measure.processes import measure_here
 
     measure_here()
-    connection = _connect(hosting, "host")
+    connection = _connect(hosting, hosting.name)
     if connection is None:
         shutil.rmtree(hosting.temporary, ignore_errors=True)
         return
@@ -109,7 +111,7 @@ def main(hosting: Hosting) -> None:
 def _connect(hosting: Hosting, who: str | int) -> Connection | None:
     """Connect to the simulation; return None if it was closed or killed meanwhile.
 
-    :param who: ``host``, or the number of a robot's launch
+    :param who: the host's name, or the number of a robot's launch
     """
     with suppress(OSError, EOFError):
         connection = Client(hosting.address, authkey=hosting.key)

@@ -67,6 +67,7 @@ class RobotProcesses:
         self._number = 0
         self._launched_at = time.monotonic()
         self._host: Interpreter | None = None
+        self._host_name = ""
         self._host_connection: Connection | None = None
         self._host_reader: threading.Thread | None = None
         self._robot: Outbox | None = None
@@ -161,7 +162,8 @@ class RobotProcesses:
         if self._output is not None:
             _thread(self._output.close, "pyfrc sim: end of output")
         self._output = output = OutputPipe(self._on_output)
-        hosting = Hosting(self._listener.address, self._key, self._forks, self._temporary.name)
+        self._host_name = f"host {os.urandom(8).hex()}"
+        hosting = Hosting(self._listener.address, self._key, self._forks, self._temporary.name, self._host_name)
         self._host = host = host_process.start_host(hosting, output.writing_end)
         _thread(self._wait_for, "pyfrc sim: end", host, self._number)
 
@@ -180,7 +182,8 @@ class RobotProcesses:
                     host.terminate()
                 elif self._robot is not None:
                     self._robot.send(Quit())
-                host.wait(_HOST_PATIENCE)
+                if os.name == "posix" or self._robot is not None:
+                    host.wait(_HOST_PATIENCE)
         kill_group(host)
         host.wait()
 
@@ -203,7 +206,7 @@ class RobotProcesses:
             except Exception:  # a stranger without the key
                 continue
             with self._lock:
-                if who == "host" and self._host is not None:
+                if who == self._host_name and self._host is not None:
                     self._host_connection = connection
                     for message in self._for_host:
                         self._tell_host(message)
