@@ -64,7 +64,8 @@ def test_all_settings_hold_for_a_program_deep_in_the_project(make_project: MakeP
             "pyproject.toml": '[tool.pyfrc]\nmain = "src/robots/practice.py"\nrobot_class = "MyRobot"\n',
         }
     )
-    assert_finds_it(project)
+    for isolation in ("auto", "spawn"):
+        assert_finds_it(project, "--isolation", isolation)
 
 
 def test_settings_win_over_a_robot_py_beside_them(make_project: MakeProject) -> None:

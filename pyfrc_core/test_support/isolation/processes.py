@@ -6,6 +6,7 @@ import signal
 import sys
 import tempfile
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import IO
 
@@ -88,8 +89,7 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin, interpreters: Interpret
         [str(argument) for argument in item.config.invocation_params.args],
         str(item.config.invocation_params.dir),
         item.nodeid,
-        plugin.project.main_file,
-        plugin.project.class_name,
+        replace(plugin.project),
         plugin.options,
         agreed(),
     )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -15,6 +14,7 @@ from ...processes.worker import Send
 from ..options import TestOptions
 
 if TYPE_CHECKING:
+    from ...project import Project
     from ..pytest_plugin import PyFrcPlugin
 
 
@@ -25,6 +25,7 @@ class TestJob:
     :param args: pytest's arguments
     :param directory: where pytest was called
     :param turns: see `turns.agreed`
+    :param project: without what the other process has read of it
     """
 
     __test__ = False  # pytest: not a test class, for all its name
@@ -32,8 +33,7 @@ class TestJob:
     args: list[str]
     directory: str
     nodeid: str
-    main_file: Path
-    class_name: str | None
+    project: Project
     options: TestOptions
     turns: str | None = None
 
@@ -70,10 +70,9 @@ def run_in_interpreter(job: TestJob, send: Send, log: CrashLog) -> int:
     """Run the test, and return pytest's exit code."""
     os.chdir(job.directory)
     measure_here()
-    from ...project import Project
     from ..pytest_plugin import PyFrcPlugin
 
-    project = Project(job.main_file, job.class_name)
+    project = job.project
     _ = project.settings  # before pytest reads the same pyproject.toml, which may begin with a byte-order mark
     plugin = PyFrcPlugin(None, project.main_file, project.root, project=project, options=job.options)
     return int(pytest.main(job.args, plugins=[plugin, OnlyOneTest(job, plugin, send, log)]))
