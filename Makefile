@@ -6,7 +6,7 @@ VENV ?= .venv
 DEV ?= dev
 RUN := @$(PYTHON) make.py --venv $(VENV) --extra $(DEV)
 
-.PHONY: demo test test-2027 templates-2027 check check-platforms check-page docs install clean
+.PHONY: demo test test-2027 test-like-windows test-like-macos templates-2027 check check-platforms check-page docs install clean
 
 demo:  ## create a robot project in demo/, run its tests, deploy it to a virtual robot, change it, roll back
 	$(RUN) demo
@@ -16,6 +16,12 @@ test:  ## run pyfrc's own tests; ARGS are passed to pytest
 
 test-2027:  ## run the tests that season 2027 has, with its WPILib in .venv-2027; needs Python 3.11 or newer, and glibc 2.39 on Linux
 	$(MAKE) test VENV=.venv-2027 DEV=dev-2027
+
+test-like-windows:  ## run the tests that are about what Windows lacks or does otherwise, on Linux, like Windows
+	$(RUN) test-like-windows $(ARGS)
+
+test-like-macos:  ## the same for macOS
+	$(RUN) test-like-macos $(ARGS)
 
 templates-2027:  ## make templates/2027 from the templates of 2026 with pyfrc migrate; ARGS=--patches: see CONTRIBUTING.md
 	$(RUN) templates-2027 $(ARGS)

@@ -99,6 +99,21 @@ def test(environment: Environment, arguments: Sequence[str]) -> None:
     environment.run("pytest", "-n", workers, "--dist", "worksteal", *arguments)
 
 
+def test_like_windows(environment: Environment, arguments: Sequence[str]) -> None:
+    """Run the tests that are about what Windows lacks or does otherwise, on Linux, like Windows."""
+    _test_like(environment, "windows", arguments)
+
+
+def test_like_macos(environment: Environment, arguments: Sequence[str]) -> None:
+    """The same for macOS."""
+    _test_like(environment, "macos", arguments)
+
+
+def _test_like(environment: Environment, system: str, arguments: Sequence[str]) -> None:
+    program = (environment.python, "tests/on_another_system.py", system)
+    run([*program, "-n", str(os.cpu_count() or 1), "--dist", "worksteal", *arguments])
+
+
 def check(environment: Environment, arguments: Sequence[str]) -> None:
     """Check style, types, and which room imports which."""
     environment.run("ruff", "check", ".")
@@ -131,13 +146,19 @@ def install(environment: Environment, arguments: Sequence[str]) -> None:
 
 TASKS: dict[str, Callable[[Environment, Sequence[str]], None]] = {
     task.__name__.replace("_", "-"): task
-    for task in (demo, test, check, check_platforms, docs, templates_2027, install)
+    for task in (
+        *(demo, test, test_like_windows, test_like_macos, check, check_platforms, docs, templates_2027, install),
+    )
 }
+
+
+#: Those that take arguments.
+WITH_OPTIONS = ("test", "test-like-windows", "test-like-macos", "templates-2027")
 
 
 def main(words: Sequence[str]) -> None:
     """Run one task."""
-    listed = "\n".join(f"  {name:16} {task.__doc__}" for name, task in TASKS.items())
+    listed = "\n".join(f"  {name:17} {task.__doc__}" for name, task in TASKS.items())
     parser = argparse.ArgumentParser(
         prog="make.py", description=f"tasks:\n{listed}", formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -148,10 +169,10 @@ def main(words: Sequence[str]) -> None:
         "arguments",
         nargs=argparse.REMAINDER,
         metavar="...",
-        help="for test: options of pytest; for templates-2027: --patches",
+        help="for the tests: options of pytest; for templates-2027: --patches",
     )
     options = parser.parse_args(words)
-    if options.arguments and options.task not in ("test", "templates-2027"):
+    if options.arguments and options.task not in WITH_OPTIONS:
         parser.error(f"{options.task} takes no arguments")
     os.chdir(ROOT)
     environment = Environment(Path(options.venv))

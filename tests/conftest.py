@@ -19,6 +19,7 @@ from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
 import forked
+import other_systems
 import pytest
 from hypothesis import HealthCheck, settings
 from spelling import motors_of, spell_copy, spelled
@@ -120,7 +121,9 @@ def _environment() -> dict[str, str]:
         for name, value in os.environ.items()
         if name not in _NOT_PASSED_ON_EITHER and not name.startswith(_NOT_PASSED_ON)
     }
-    return passed_on | {
+    return {
+        **passed_on,
+        **other_systems.environment(),
         "COLUMNS": "120",
         # Files may be changed twice within a second: Python would take what it has kept of the first for the second.
         "PYTHONDONTWRITEBYTECODE": "1",

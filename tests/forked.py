@@ -33,6 +33,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
+import other_systems
 import pytest
 
 import pyfrc_cli
@@ -271,6 +272,7 @@ def _become(request: _Request) -> None:
         stream = _standard_stream(number, getattr(sys, name).errors)
         setattr(sys, name, stream)
         setattr(sys, f"__{name}__", stream)
+    other_systems.prepare_streams()
     option, program, *words = request.arguments
     sys.orig_argv[1:] = request.arguments
     sys.argv[:] = [option, *words]

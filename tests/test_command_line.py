@@ -204,6 +204,7 @@ def test_each_shell_has_a_script(shell: str, make_project) -> None:
     assert "%(" not in result.stdout
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no bash")
 def test_bash_completes_by_the_script(make_project) -> None:
     bash = shutil.which("bash")
     if bash is None:

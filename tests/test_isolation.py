@@ -311,6 +311,7 @@ def test_plain_pytest_gives_the_same(everything: RobotProject) -> None:
     assert short(result.outcomes()) == list(OUTCOMES.items())
 
 
+@needs_fork
 def test_shared_fixtures_are_set_up_and_torn_down_once_at_their_time(events: list[tuple[int, str]]) -> None:
     assert [event for _, event in events] == [
         "setup_module",
@@ -337,6 +338,7 @@ def test_shared_fixtures_are_set_up_and_torn_down_once_at_their_time(events: lis
     ]
 
 
+@needs_fork
 def test_each_robot_test_has_a_process_of_its_own_and_others_have_none(events: list[tuple[int, str]]) -> None:
     shared = {pid for pid, event in events if event.startswith(("session", "module", "class")) or "_module" in event}
     assert len(shared) == 1
@@ -642,6 +644,7 @@ def test_a_parametrised_fixture_is_not_torn_down_under_a_running_test(make_proje
     ]
 
 
+@needs_fork
 def test_an_error_in_the_teardown_of_a_shared_fixture_is_told(make_project: MakeProject) -> None:
     tests = """
         import pytest

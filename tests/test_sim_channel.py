@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
@@ -132,6 +133,36 @@ def test_the_exit_is_reported_before_the_connection_is_known(
         see_the_users_error(simulation)
 
 
+def test_a_host_that_was_ended_is_not_taken_for_the_one_after_it(
+    make_project: MakeProject, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A restart ends it while it starts; its connection is accepted when the next host has been started."""
+    first_is_there, next_is_started = Gate(), Gate()
+    introduced, start_host = processes.introduced, processes.host_process.start_host
+
+    def introduced_late(connection: Connection) -> object:
+        who = introduced(connection)
+        if not first_is_there.is_set():
+            first_is_there.set()
+            next_is_started.hold()
+        return who
+
+    def start(*arguments: Any) -> Any:
+        host = start_host(*arguments)
+        if first_is_there.is_set():
+            next_is_started.set()
+        return host
+
+    monkeypatch.setattr(processes, "introduced", introduced_late)
+    monkeypatch.setattr(processes.host_process, "start_host", start)
+    project = Project(make_project({"robot.py": FAILS}).path / "robot.py")
+    with Simulation(project, SimOptions(speed=0, fork=False)) as simulation:
+        first_is_there.hold()
+        simulation.restart()
+        wait(simulation, lambda: simulation.status.state == "failed")
+        see_the_users_error(simulation)
+
+
 def test_the_messages_are_read_before_the_exit_is_reported(
     make_project: MakeProject, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -203,7 +234,13 @@ def test_the_host_is_killed(make_project: MakeProject) -> None:
         assert "signal 9" in simulation.status.failure.headline
 
 
-@pytest.mark.parametrize("local_socket", [True, False])
+@pytest.mark.parametrize(
+    "local_socket",
+    [
+        pytest.param(True, marks=pytest.mark.skipif(sys.platform != "linux", reason="no local sockets without files")),
+        False,
+    ],
+)
 def test_the_robot_fails_with_commands_unread(
     local_socket: bool,
     make_project: MakeProject,

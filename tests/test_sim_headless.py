@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -121,6 +122,7 @@ def test_wrong_usage(arguments: list[str], told: str, project) -> None:
     assert told in result.first_error
 
 
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="there is always a display")
 def test_windows_need_a_display(project) -> None:
     for ui in ("tk", "wpilib"):
         result = project.run("sim", "--ui", ui, env=NO_DISPLAY)
