@@ -17,12 +17,9 @@ const LIVE_INTERVAL = 100; // milliseconds: no one reads faster
 export class TimeBar extends Live {
   parts = ["t", "status", "shown", "hello", "branches", "compared", "compared-series", "connection"];
 
-  interval() {
-    return model.past ? 0 : LIVE_INTERVAL;
-  }
-
   render() {
     const { status, past, readonly } = model;
+    this.interval = past ? 0 : LIVE_INTERVAL;
     const running = status.wants_to_run;
     return html`<footer class=${past ? "timebar past" : "timebar"}>
       <div class="transport">

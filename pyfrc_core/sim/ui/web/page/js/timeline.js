@@ -24,10 +24,6 @@ export class Timeline extends Live {
   picture = new Picture();
   state = { hover: null };
 
-  interval() {
-    return model.past ? 0 : LIVE_INTERVAL;
-  }
-
   componentDidMount() {
     super.componentDidMount();
     this.modes = watch("sim.mode");
@@ -50,6 +46,7 @@ export class Timeline extends Live {
   }
 
   render(_, { hover }) {
+    this.interval = model.past ? 0 : LIVE_INTERVAL;
     const t = model.past?.t ?? model.t;
     return html`<div class="timeline" role="slider" tabindex="0" aria-label="Timeline" aria-valuemin="0"
         aria-valuemax=${length().toFixed(2)} aria-valuenow=${t.toFixed(2)} aria-valuetext=${model.past ? clock(t) : `live, ${clock(t)}`}

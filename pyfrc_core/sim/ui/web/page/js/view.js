@@ -12,11 +12,7 @@ export const html = htm.bind(h);
 // A component that renders again when one of these parts of the model has changed: `parts = ["station", "status"]`.
 export class Live extends Component {
   parts = [];
-  // Milliseconds between two renderings at least, for what changes faster than anyone can read.
-  interval() {
-    return 0;
-  }
-
+  interval = 0; // milliseconds between two renderings at least, for what changes faster than anyone can read
   #renderedAt = 0;
   #timer = null;
 
@@ -34,8 +30,7 @@ export class Live extends Component {
 
   #renderSoon() {
     if (this.#timer !== null) return;
-    const interval = this.interval();
-    const wait = interval && this.#renderedAt + interval - performance.now();
+    const wait = this.interval && this.#renderedAt + this.interval - performance.now();
     if (wait <= 0) this.#renderNow();
     else this.#timer = setTimeout(() => this.#renderNow(), wait);
   }

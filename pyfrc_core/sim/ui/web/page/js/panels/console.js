@@ -11,13 +11,10 @@ const MOST_SHOWN = 150;
 
 export class ConsolePanel extends Live {
   parts = ["console", "shown", "settings", "hello"];
+  interval = 150;
   state = { search: "", shown: MOST_SHOWN };
   list = createRef();
   follow = true;
-
-  interval() {
-    return 150;
-  }
 
   componentDidMount() {
     super.componentDidMount();

@@ -13,10 +13,7 @@ const ALERTS = [["errors", "red"], ["warnings", "amber"], ["infos", "accent"]];
 
 export class WidgetsPanel extends Live {
   parts = ["values", "paths", "choosers", "shown", "hello"];
-
-  interval() {
-    return 80;
-  }
+  interval = 80;
 
   render() {
     const { values } = model.shown;
