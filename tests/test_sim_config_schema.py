@@ -83,6 +83,7 @@ def configs(valid_only: bool) -> st.SearchStrategy[dict[str, Any]]:
             px_per_ft=POSITIVE,
             image=st.text() | st.none(),
             objects=array(shapes),
+            coordinates=st.sampled_from(["pyfrc", "blue", "blue-feet", "alliance", "alliance-feet"]),
             auto_joysticks=st.booleans(),
             disabled_joysticks=st.booleans(),
         ),

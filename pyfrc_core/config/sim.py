@@ -11,7 +11,7 @@ import json
 import re
 import sys
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     BaseModel,
@@ -201,6 +201,10 @@ _YEAR_SCHEMA = {
 }
 
 
+#: How the simulator's page writes places on the field.
+Coordinates = Literal["pyfrc", "blue", "blue-feet", "alliance", "alliance-feet"]
+
+
 class FieldConfig(_Part):
     """The field: its size, its drawing, and the season's rules."""
 
@@ -214,6 +218,12 @@ class FieldConfig(_Part):
     px_per_ft: Positive = Field(default=_FIELD.px_per_ft, description="Scale of the drawing, in pixels per foot.")
     image: str | None = Field(default=None, description="A picture under the robot; a path relative to sim/.")
     objects: Annotated[tuple[FieldObject, ...], Array()] = Field(default=(), description="What is drawn on the field.")
+    coordinates: Coordinates = Field(
+        default="pyfrc",
+        description="How the simulator's page writes places. pyfrc: feet, y downwards, clockwise. blue: metres, x away "
+        "from the blue wall, y to its left, counterclockwise, as in WPILib. alliance: the same from the alliance's own "
+        "wall. blue-feet and alliance-feet: likewise, in feet.",
+    )
     walls: Flag = Field(
         default=False,
         description="Whether walls around the field stop the robot. Without them, it drives on.",

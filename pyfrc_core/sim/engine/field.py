@@ -36,6 +36,7 @@ def field_of(project: Project) -> Field:
         starts=starts,
         image=None if config.field.image is None else field_picture(project.root, config.field.image)[0],
         objects=tuple(_shape(each) for each in config.field.objects),
+        coordinates=config.field.coordinates,
     )
 
 

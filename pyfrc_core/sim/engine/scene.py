@@ -50,6 +50,7 @@ class Field:
     :param robot_width: feet from the robot's left to its right
     :param robot_length: feet from its back to its front
     :param starts: the places where the robot may start, by name; the first is the default
+    :param coordinates: how the page writes places, as ``sim/config.json`` says
     """
 
     width: float
@@ -61,6 +62,7 @@ class Field:
     image: Path | None = None
     objects: tuple[Shape, ...] = ()
     tags: tuple[Tag, ...] = ()
+    coordinates: str = "pyfrc"
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ...engine.simulation import Simulation
 
 #: What a person has arranged that is of use to others.
-_OF_USE = ("version", "plots", "pins", "fieldLayers")
+_OF_USE = ("version", "plots", "pins", "fieldLayers", "coordinates")
 #: The number of curves that are suggested where the person has arranged no plot.
 _SUGGESTED = 3
 

@@ -269,6 +269,7 @@ def plain_field(field: Field, image: str) -> dict[str, Any]:
         "width": field.width,
         "height": field.height,
         "image": None if field.image is None else f"{image}&v={_stamp(field)}",
+        "coordinates": field.coordinates,
         "robot_width": field.robot_width,
         "robot_length": field.robot_length,
         "starts": {name: [pose.x, pose.y, pose.angle] for name, pose in field.starts.items()},

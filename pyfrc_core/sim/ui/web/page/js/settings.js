@@ -16,6 +16,7 @@ const DEFAULTS = {
   plots: {},
   pins: [],
   fieldLayers: {},
+  coordinates: "", // how places on the field are written; as the project says unless chosen
   keyboard: { chosen: null, own: [] },
   gamepads: {},
   console: { levels: ["info", "warning", "error", "pyfrc"] },

@@ -2,7 +2,7 @@
 import { font } from "#js/canvas.js";
 import { color } from "#js/settings.js";
 
-const GRID = 5; // feet
+const GRID = { ft: 5, m: 1 }; // between two lines
 const FASTEST = 4.5; // metres per second: the longest arrow of a swerve module
 
 function path(context, view, points, close = false) {
@@ -22,7 +22,7 @@ export function beside([x, y, angle], forwards, right) {
   return [x + cos * forwards - sin * right, y + sin * forwards + cos * right];
 }
 
-export function drawCarpet(context, view, field, image) {
+export function drawCarpet(context, view, field, image, { feet, unit }, origin) {
   const corners = [[0, 0], [field.width, 0], [field.width, field.height], [0, field.height]];
   context.fillStyle = color("carpet");
   path(context, view, corners, true);
@@ -31,7 +31,7 @@ export function drawCarpet(context, view, field, image) {
     const [left, top] = view.toScreen([0, 0]);
     const size = view.scale * (view.turned ? -1 : 1);
     context.drawImage(image, left, top, field.width * size, field.height * size);
-  } else drawGrid(context, view, field);
+  } else drawGrid(context, view, field, GRID[unit] * feet, origin);
   for (const shape of field.objects) {
     path(context, view, shape.points, true);
     context.fillStyle = shape.color;
@@ -46,8 +46,9 @@ export function drawCarpet(context, view, field, image) {
   drawWalls(context, view, field);
 }
 
-function drawGrid(context, view, field) {
-  const step = Math.max(GRID, Math.max(field.width, field.height) / 60);
+// Lines that count from the origin.
+function drawGrid(context, view, field, wanted, [originX, originY]) {
+  const step = Math.max(wanted, Math.max(field.width, field.height) / 60);
   context.strokeStyle = color("grid");
   context.lineWidth = 1;
   context.beginPath();
@@ -55,9 +56,32 @@ function drawGrid(context, view, field) {
     context.moveTo(...view.toScreen(from));
     context.lineTo(...view.toScreen(to));
   };
-  for (let x = step; x < field.width; x += step) line([x, 0], [x, field.height]);
-  for (let y = step; y < field.height; y += step) line([0, y], [field.width, y]);
+  const at = (origin, each) => (origin ? origin - each : each);
+  for (let x = step; x < field.width; x += step) line([at(originX, x), 0], [at(originX, x), field.height]);
+  for (let y = step; y < field.height; y += step) line([0, at(originY, y)], [field.width, at(originY, y)]);
   context.stroke();
+}
+
+// The corner from which places count, and the directions in which x and y grow: inwards, along both walls.
+export function drawOrigin(context, view, field, [x, y]) {
+  const corner = view.toScreen([x, y]);
+  const length = Math.min(4 * view.scale, 40);
+  context.lineWidth = 2.5;
+  context.lineCap = "round";
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  context.font = font(11, "bold ");
+  const inwards = [[x ? -1 : 1, 0], [0, y ? -1 : 1]];
+  inwards.forEach((way, index) => {
+    const name = index ? "green" : "red";
+    const [farX, farY] = view.toScreen([x + way[0] * field.width, y + way[1] * field.height]);
+    const whole = Math.hypot(farX - corner[0], farY - corner[1]);
+    const at = (pixels) => [corner[0] + ((farX - corner[0]) * pixels) / whole, corner[1] + ((farY - corner[1]) * pixels) / whole];
+    context.strokeStyle = context.fillStyle = color(name);
+    const [toX, toY] = at(length);
+    arrow(context, corner, [toX, toY], 7);
+    context.fillText(index ? "y" : "x", ...at(length + 9));
+  });
 }
 
 // The two alliances' walls, blue at the left as WPILib has them.

@@ -2,6 +2,7 @@
 import { ElementSize, Picture, font, sizeCanvas } from "#js/canvas.js";
 import { command } from "#js/connection.js";
 import { numberText } from "#js/format.js";
+import { COORDINATES, originOf, unitOf, written } from "#js/field/coordinates.js";
 import * as draw from "#js/field/draw.js";
 import { placeLabel } from "#js/field/labels.js";
 import { fieldNeeds, fieldObjects, swerveStates } from "#js/field/published.js";
@@ -46,12 +47,18 @@ export class FieldPanel extends Live {
   componentDidUpdate() {
     this.loadImage();
     const { trail, formerTrail, drawings, targets, hello } = model;
-    const moving = JSON.stringify([this.robots, this.swerve, this.objects, this.view.turned]);
+    const moving = JSON.stringify([this.robots, this.swerve, this.objects, this.view.turned, this.coordinates]);
     if (this.picture.changes(moving, trail, formerTrail, drawings, targets, hello, settings.get("fieldLayers"))) this.draw();
   }
 
   shows(layer) {
     return settings.get("fieldLayers")[layer] !== false;
+  }
+
+  // How places are written: as the person has chosen, or the project's file says.
+  get coordinates() {
+    const chosen = settings.get("coordinates") || model.hello.field.coordinates;
+    return chosen in COORDINATES ? chosen : "pyfrc";
   }
 
   // The menu's item for something that can be hidden.
@@ -61,19 +68,23 @@ export class FieldPanel extends Live {
   }
 
   render() {
-    const { robot: pose, values, station } = model.shown;
+    const { robot, values, station } = model.shown;
     this.robots = {
-      robot: pose,
+      robot,
       now: model.past && model.robot, // behind the robot of the moment that is shown
       compared: compared.poseAt(model.past?.t ?? model.t),
       alliance: station.alliance ?? model.station.alliance ?? "",
     };
     model.need(this, fieldNeeds());
-    this.swerve = pose ? swerveStates(values) : [];
+    this.swerve = robot ? swerveStates(values) : [];
     /** @type {any[]} */
     const layers = LAYERS.map(([layer, text]) => this.layer(layer, text));
     this.objects = fieldObjects(values, model.hello.field);
     if (this.objects.length) layers.push({ separator: true }, ...this.objects.map(({ path, name }) => this.layer(path, name)));
+    const { coordinates } = this;
+    const pose = robot && written(robot, model.hello.field, coordinates, this.robots.alliance);
+    const choices = Object.entries(COORDINATES).map(([name, text]) => ({ text, checked: name === coordinates, act: () => settings.set("coordinates", name) }));
+    layers.push({ separator: true }, ...choices);
     layers.push({ separator: true }, { text: "Turn the field round", checked: Boolean(this.view?.turned), act: this.turnRound });
     return html`<div class="field">
       <div class="field-canvas" tabindex="0" role="application" aria-label="Field. Arrow keys move the robot, with Shift they turn it"
@@ -82,7 +93,7 @@ export class FieldPanel extends Live {
         <canvas ref=${this.canvas}></canvas>
       </div>
       <div class="field-line">
-        <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose[0])} ft</b><i>y</i><b>${numberText(pose[1])} ft</b><i class="long">heading</i><b>${numberText(heading(pose[2]), 1)}°</b>` : "No physics.py: pyfrc create-physics writes one"}</span>
+        <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose.x)} ${pose.unit}</b><i>y</i><b>${numberText(pose.y)} ${pose.unit}</b><i class="long">heading</i><b>${numberText(pose.degrees, 1)}°</b>` : "No physics.py: pyfrc create-physics writes one"}</span>
         <button class="quiet" title="Show the whole field: double click" aria-label="Show the whole field" onClick=${this.whole}><${Icon} name="fit" /></button>
         <${Menu} label="Show" title="What is drawn" items=${layers} />
       </div>
@@ -114,7 +125,10 @@ export class FieldPanel extends Live {
     const { field } = model.hello;
     view.field = field;
     view.resize(width, height);
-    draw.drawCarpet(context, view, field, this.image);
+    const { coordinates } = this;
+    const origin = originOf(field, coordinates, this.robots.alliance);
+    draw.drawCarpet(context, view, field, this.image, unitOf(coordinates), origin);
+    if (coordinates !== "pyfrc") draw.drawOrigin(context, view, field, origin);
     if (this.shows("tags")) draw.drawTags(context, view, field.tags);
     if (this.shows("former")) draw.drawTrail(context, view, model.formerTrail, "former", 2, [7, 5]);
     if (this.shows("trail")) {
@@ -246,8 +260,4 @@ export class FieldPanel extends Live {
 // Whether an object's name would cover the robot, such as that of the pose which robot code measures.
 function isUnderRobot({ poses: [[x, y]], isPath }, robot, field) {
   return Boolean(robot) && !isPath && Math.hypot(x - robot[0], y - robot[1]) < Math.min(field.robot_length, field.robot_width) / 2;
-}
-
-function heading(radians) {
-  return ((((radians * DEGREES + 180) % 360) + 360) % 360) - 180;
 }

@@ -1,0 +1,34 @@
+"""How the page writes places on the field."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from browser_pages import ROBOT, Seen, page_of, person_at_page, shared_browser, shared_server  # noqa: F401 - `person`
+from web_pages import served
+
+
+def test_places_are_written_as_robot_code_has_them(person: Seen) -> None:
+    page = person.page
+    page.locator(".pose b", has_text="10.00 ft").wait_for()
+    person.choose("What is drawn", "Metres, blue corner")
+    page.locator(".pose b", has_text="3.05 m").wait_for()
+    y = person.simulation.snapshot.scene.field.height - 12
+    page.locator(".pose b", has_text=f"{y * 0.3048:.2f} m").wait_for()
+    page.reload()
+    page.locator(".pose b", has_text="3.05 m").wait_for()
+    person.choose("What is drawn", "Feet, y downwards, clockwise")
+    page.locator(".pose b", has_text="12.00 ft").wait_for()
+
+
+def test_the_project_says_how_places_are_written(browser: Any, make_shared_project: Any) -> None:
+    config = ROBOT["sim/config.json"].replace('"robot":', '"field": {"coordinates": "alliance"}, "robot":')
+    with (
+        served(make_shared_project({**ROBOT, "sim/config.json": config}), speed=1, paused=False) as server,
+        page_of(browser, server) as person,
+    ):
+        person.page.locator(".pose b", has_text="3.05 m").wait_for()
+        person.simulation.set_alliance("red2")
+        field = person.simulation.snapshot.scene.field
+        person.page.locator(".pose b", has_text=f"{(field.width - 10) * 0.3048:.2f} m").wait_for()
+        person.page.locator(".pose b", has_text="-180.0°").wait_for()
