@@ -62,35 +62,28 @@ function drawGrid(context, view, field, wanted, [originX, originY]) {
   context.stroke();
 }
 
+const INSIDE = 8; // pixels from the walls
+
 // The corner from which places count, and the directions in which x and y grow: inwards, along both walls.
 export function drawOrigin(context, view, field, [x, y]) {
-  const corner = view.toScreen([x, y]);
+  const [cornerX, cornerY] = view.toScreen([x, y]);
+  const [farX, farY] = view.toScreen([field.width - x, field.height - y]);
+  const [wayX, wayY] = [Math.sign(farX - cornerX), Math.sign(farY - cornerY)];
+  const corner = [cornerX + wayX * INSIDE, cornerY + wayY * INSIDE];
   const length = Math.min(4 * view.scale, 40);
   context.lineWidth = 2.5;
   context.lineCap = "round";
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.font = font(11, "bold ");
-  const inwards = [[x ? -1 : 1, 0], [0, y ? -1 : 1]];
-  inwards.forEach((way, index) => {
-    const name = index ? "green" : "red";
-    const [farX, farY] = view.toScreen([x + way[0] * field.width, y + way[1] * field.height]);
-    const whole = Math.hypot(farX - corner[0], farY - corner[1]);
-    const at = (pixels) => [corner[0] + ((farX - corner[0]) * pixels) / whole, corner[1] + ((farY - corner[1]) * pixels) / whole];
-    context.strokeStyle = context.fillStyle = color(name);
+  for (const [name, right, down] of [["x", wayX, 0], ["y", 0, wayY]]) {
+    const at = (pixels) => [corner[0] + right * pixels, corner[1] + down * pixels];
+    context.strokeStyle = color(name === "x" ? "red" : "green");
+    context.fillStyle = context.strokeStyle;
     const [toX, toY] = at(length);
     arrow(context, corner, [toX, toY], 7);
-    context.fillText(index ? "y" : "x", ...at(length + 9));
-  });
-}
-
-// The two alliances' walls, blue at the left as WPILib has them.
-function drawWalls(context, view, field) {
-  context.lineWidth = 4;
-  for (const [x, name] of [[0, "blue"], [field.width, "alliance-red"]]) {
-    context.strokeStyle = color(name);
-    path(context, view, [[x, 0], [x, field.height]]);
-    context.stroke();
+    const [textX, textY] = at(length + 9);
+    context.fillText(name, textX, textY);
   }
 }
 
