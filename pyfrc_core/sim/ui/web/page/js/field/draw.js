@@ -62,6 +62,16 @@ function drawGrid(context, view, field, wanted, [originX, originY]) {
   context.stroke();
 }
 
+// The two alliances' walls, blue at the left as WPILib has them.
+function drawWalls(context, view, field) {
+  context.lineWidth = 4;
+  for (const [x, name] of [[0, "blue"], [field.width, "alliance-red"]]) {
+    context.strokeStyle = color(name);
+    path(context, view, [[x, 0], [x, field.height]]);
+    context.stroke();
+  }
+}
+
 const INSIDE = 8; // pixels from the walls
 
 // The corner from which places count, and the directions in which x and y grow: inwards, along both walls.
@@ -69,6 +79,7 @@ export function drawOrigin(context, view, field, [x, y]) {
   const [cornerX, cornerY] = view.toScreen([x, y]);
   const [farX, farY] = view.toScreen([field.width - x, field.height - y]);
   const [wayX, wayY] = [Math.sign(farX - cornerX), Math.sign(farY - cornerY)];
+  /** @type {[number, number]} */
   const corner = [cornerX + wayX * INSIDE, cornerY + wayY * INSIDE];
   const length = Math.min(4 * view.scale, 40);
   context.lineWidth = 2.5;
