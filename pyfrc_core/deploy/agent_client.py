@@ -71,15 +71,21 @@ class AgentClient:
 
     @classmethod
     def start(
-        cls, connection: CommandRunner, *, hello: Mapping[str, Any] | None = None, limits: TimeLimits | None = None
+        cls,
+        connection: CommandRunner,
+        *,
+        hello: Mapping[str, Any] | None = None,
+        limits: TimeLimits | None = None,
+        python: str | None = None,
     ) -> AgentClient:
         """Start the agent on the robot, and read the robot's facts.
 
+        :param python: the path of the Python in which it runs, or words for a shell; default: the program's
         :param hello: fields for the first message: ``modules`` to look for in the robot's Python; in tests, ``root``,
             the directory with the robot's files
         """
         controller = connection.controller
-        channel = connection.open(agent_command(controller.python))
+        channel = connection.open(agent_command(python or controller.python))
         stream = AgentStream(channel, str(connection.address), controller.python, limits or TimeLimits())
         client = cls(stream, controller)
         layout = controller.layout._asdict()
@@ -113,6 +119,25 @@ class AgentClient:
         """Return what a deploy of these files would do. Nothing is written on the robot."""
         with self._reporting(on_progress):
             return self._request(Plan.of, "plan", files=_as_lists(manifest))
+
+    def install(
+        self, environment: str, python: str, wheels: Manifest, unpacked: int, on_progress: OnProgress | None = None
+    ) -> int:
+        """Make an environment on the robot, beside the current one. Return how many wheels were sent.
+
+        :param environment: its name
+        :param python: the name of its Python, which is on the robot
+        :param wheels: its packages
+        :param unpacked: the bytes that they take on the disk
+        """
+        listed = [[each.path, each.size, each.sha256] for each in wheels.entries]
+        with self._reporting(on_progress):
+            self._send("install", environment=environment, python=python, wheels=listed, unpacked=unpacked)
+            needed = self._stream.read_message(lambda fields: _needed(fields, wheels))
+            if needed:
+                self._send_contents(needed, on_progress, None)
+            self._stream.read_response(lambda fields: None)
+        return len(needed)
 
     def deploy(self, manifest: Manifest, request: DeployRequest, on_progress: OnProgress | None = None) -> Deployed:
         """Make these files the robot's current release, or leave the robot unchanged.
@@ -272,7 +297,7 @@ class AgentClient:
     def _send(self, op: str, **request: Any) -> None:
         self._stream.send_request({"op": op, **request})
 
-    def _send_contents(self, entries: list[Entry], on_progress: OnProgress | None, then: RecoveryHint) -> None:
+    def _send_contents(self, entries: list[Entry], on_progress: OnProgress | None, then: RecoveryHint | None) -> None:
         """Send the contents of files.
 
         :param then: the hint from the last frame on

@@ -325,6 +325,8 @@ _MODULES = (
     "virtual",
     "activity",
     "carrying",
+    "wheels",
+    "environments",
     "releases",
     "compiling",
     "content_index",

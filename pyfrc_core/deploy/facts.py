@@ -88,6 +88,7 @@ class RobotFacts:
     :param extension_suffixes: file name suffixes of its Python's extension modules
     :param machine:      its processor architecture
     :param other_languages: files and directories of programs in Java and C++
+    :param environment:  the environment in which the agent runs, if pyfrc has made it
     :param program_age:  seconds since the program's start; None if unknown or no program runs
     """
 
@@ -112,6 +113,7 @@ class RobotFacts:
     machine: str
     other_languages: tuple[str, ...]
     program_age: float | None = None
+    environment: str | None = None
 
     @classmethod
     def of(cls, fields: Fields, controller: ControllerKind) -> RobotFacts:
@@ -147,6 +149,7 @@ class RobotFacts:
             machine=fields.line("machine"),
             other_languages=tuple(map(one_line, fields.texts("other_languages"))),
             program_age=fields.seconds_or_none("program_age"),
+            environment=fields.line_or_none("environment") if "environment" in fields else None,
         )
 
 
@@ -177,6 +180,7 @@ class DeployRequest:
     :param in_place:    overwrite files of the current program, delete none
     :param program:     files that the program imports at its start, which the robot's Python must be able to compile
     :param restart:     restart the program after the deploy
+    :param environment: the environment on the robot that it runs in; None: the current one
     """
 
     main: str
@@ -185,6 +189,7 @@ class DeployRequest:
     in_place: bool = False
     program: Sequence[str] = ()
     restart: bool = False
+    environment: str | None = None
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from .console import follow_console
 from .discovery import Address
 from .errors import DeployError, RefusedError
 from .facts import Release, RobotFacts
+from .installing import wanted_environment
 from .local_checks import CheckedProgram, DeployOptions, prepare
 from .manifest import ascii_path
 from .program_output import follow_output
@@ -40,7 +41,8 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
     target = choose_target(project, options.choice, talk.ask)
     program = prepare(project, options, talk)
     progress = talk.progress
-    with connected_agent(target, options.choice, progress, program.imports.modules) as (connection, robot):
+    wanted = wanted_environment(project, target.controller) if options.check_versions and not options.dry_run else None
+    with connected_agent(target, options.choice, progress, program.imports.modules, wanted) as (connection, robot):
         if robot.facts.other_languages:
             progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))
         _note_unfit_releases(robot.facts, progress)
@@ -227,6 +229,7 @@ def _upload(robot: AgentClient, program: CheckedProgram, options: DeployOptions,
         in_place=options.in_place,
         program=program.imports.program(),
         restart=not options.in_place,
+        environment=robot.facts.environment,
     )
     with talk.progress.phase("upload") as phase:
         deployed = robot.deploy(program.manifest, request, phase.work)

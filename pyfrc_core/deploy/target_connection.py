@@ -16,6 +16,7 @@ from .team import RobotChoice, RobotTarget
 
 if TYPE_CHECKING:
     from .agent_client import AgentClient
+    from .installing import Environment
 
 
 def find(target: RobotTarget, choice: RobotChoice, progress: DeployProgress) -> FoundRobot:
@@ -93,15 +94,17 @@ def connected_agent(
     choice: RobotChoice,
     progress: DeployProgress,
     modules: Callable[[], Sequence[str]] = tuple,
+    wanted: Environment | None = None,
 ) -> Iterator[tuple[Connection, AgentClient]]:
     """Find the robot, connect to it and start the agent. The agent ends after the ``with`` block.
 
     :param modules: returns the modules to look for in the robot's Python
+    :param wanted: an environment, which is installed if the robot does not have all of it
     :raises RefusedError: if there is no Python on the robot
     """
     found = find(target, choice, progress)
     with connected(target, found, choice, progress) as connection:
-        robot = _start_agent(connection, progress, modules())
+        robot = _start_agent(connection, progress, modules(), wanted)
         try:
             with explain_interruption(robot):
                 yield connection, robot
@@ -109,18 +112,27 @@ def connected_agent(
             robot.close()
 
 
-def _start_agent(connection: Connection, progress: DeployProgress, modules: Sequence[str]) -> AgentClient:
-    from .agent_client import AgentClient
+def _start_agent(
+    connection: Connection, progress: DeployProgress, modules: Sequence[str], wanted: Environment | None
+) -> AgentClient:
+    from .installing import install, start_agent
 
+    hello = {"modules": modules} if modules else None
+    if connection.is_virtual_robot:
+        wanted = None  # its program runs in this computer's environment
     with progress.phase("look") as phase:
         try:
-            robot = AgentClient.start(connection, hello={"modules": modules} if modules else None)
+            robot = start_agent(connection, wanted, hello)
         except NoPythonError as error:
             from .robot_checks import RobotWithoutPython  # not before, since it is rare
 
             raise RobotWithoutPython(connection).refusal(error) from error
-        facts = robot.facts
-        phase.detail = f"wpilib {facts.wpilib or 'missing'}, image {facts.image or 'unknown'}"
+        phase.detail = "there is no Python on it yet"
+        if robot is not None:
+            phase.detail = f"wpilib {robot.facts.wpilib or 'missing'}, image {robot.facts.image or 'unknown'}"
+    if wanted is not None and (robot is None or not wanted.is_met_by(robot.facts)):
+        return install(connection, robot, wanted, progress, hello)
+    assert robot is not None
     return robot
 
 

@@ -30,6 +30,9 @@ class Layout(NamedTuple):
     :param other_files:   patterns of their files; one that ends with a slash is a directory, if it has files
     :param command_mode:  the permissions of the files with start commands
     :param can_fail:      whether the exit code of `stop` and `restart` says that they have failed
+    :param environment:   a link to the Python environment that programs start with, in `home`; empty where the robot's
+        Python is the image's
+    :param shown_python:  where other tools look for its Python
     :param output:        a command that prints what the program prints from then on; without one, the console service
         on the robot sends that
     """
@@ -55,6 +58,8 @@ class Layout(NamedTuple):
     command_mode: int = 0o644
     can_fail: bool = False
     output: Sequence[str] = ()
+    environment: str = ""
+    shown_python: str = ""
 
     @property
     def command_files(self) -> list[str]:

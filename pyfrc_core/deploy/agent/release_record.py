@@ -124,6 +124,7 @@ _FIELDS: dict[str, Callable[[Any], bool]] = {
     "debug": lambda value: value is None or isinstance(value, bool),
     "commands": _is_table(_is_text, lambda value: value is None or _is_text(value)),
     "deploy": lambda value: isinstance(value, dict),
+    "environment": lambda value: value is None or _is_text(value),
     "from": lambda value: value is None or _is_release(value),
     "ran": lambda value: isinstance(value, bool),
     "ended": lambda value: isinstance(value, bool),

@@ -18,7 +18,7 @@ from pathlib import Path
 from .activity import Activity
 from .carrying import Carried, carry_over
 from .disk import allow_changes, make_links_absolute, remove, remove_if_possible, text_of, write_whole
-from .layout import Layout
+from .environments import Environments
 from .release_record import Record, parse_record, standing
 from .robot_paths import Refusal, RobotPaths
 from .system import REPLACES_LINKS, exchange, flush, linked_directory, make_link, replace_link
@@ -26,24 +26,6 @@ from .system import REPLACES_LINKS, exchange, flush, linked_directory, make_link
 _KEPT = 3
 _TRASH, _CARRIED = "trash-", "carried"
 _RECORD, _UNFINISHED_RECORD = re.compile(r"\d+\.json"), re.compile(r"\.\d+\.json\.new")
-
-
-def start_commands(layout: Layout, main: str, debug: bool) -> dict[str, str | None]:
-    """Return the content of the robot's start command files for a program with this main file.
-
-    :raises Refusal: if the main file's name has characters that are not allowed in a command
-    """
-    if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_./-]*", main):
-        raise Refusal(
-            "main",
-            f"the main file cannot be called {main!r}: its name is part of the robot's start command",
-            "Give it a name of letters, digits, '_', '-' and '.'.",
-        )
-    file = f"{layout.code}/{main}"
-    start, start_debug = layout.start.replace("{main}", file), layout.start_debug.replace("{main}", file)
-    if layout.debug_command:
-        return {layout.command: start, layout.debug_command: start_debug}
-    return {layout.command: start_debug if debug else start}
 
 
 class Releases:
@@ -56,6 +38,8 @@ class Releases:
         self._records: dict[int, tuple[tuple[int, ...], Record]] = {}
         #: Releases whose cached record could not be written, as on a full disk.
         self._unwritten: set[int] = set()
+        #: Environments with the packages of releases, on a controller that has them.
+        self.environments = Environments(paths, activity) if paths.layout.environment else None
 
     def flush(self, directory: Path) -> None:
         """Wait until all data written to this file system is on the disk."""
@@ -172,15 +156,22 @@ class Releases:
     def switch(self, number: int, commands: dict[str, str | None], taken: int | None) -> None:
         """Make a release current. At every moment, the start command refers to the complete old or new program.
 
-        If the start command stays the same, one rename is enough. Otherwise the command first refers to the release's
-        own directory, which is the moment of the switch, and to ``~/py`` again after that link has been replaced.
+        If the start command and the environment stay the same, one rename is enough. Otherwise the command first refers
+        to the release's and the environment's own directories, which is the moment of the switch, and to ``~/py`` again
+        after the links have been replaced.
 
         :param taken: the release number for another tool's directory in ``~/py``, whose record is already written
         """
         code, direct_code = f"{self.paths.layout.code}/", f"{self.paths.releases_on_robot}/{number}/"
         direct = {name: text and text.replace(code, direct_code) for name, text in commands.items()}
         changed = any(text_of(self.paths.home / name) != text for name, text in commands.items())
-        detour = changed or not REPLACES_LINKS
+        environment = None
+        if self.environments is not None:
+            environment = self.environments.other_than_current(self.record(number).get("environment"))
+        if environment is not None:
+            shared, own = f"{self.paths.layout.environment}/", f"{self.paths.environments_on_robot}/{environment}/"
+            direct = {name: text and text.replace(shared, own) for name, text in direct.items()}
+        detour = changed or environment is not None or not REPLACES_LINKS
         link = self.paths.own / "py" if taken is None else self.directory(taken)
         remove(link)
         make_link(link, self.directory(number), self.paths.code)
@@ -197,9 +188,21 @@ class Releases:
             link.replace(self.paths.own / "py")
             self.paths.code.rename(self.directory(taken))
             (self.paths.own / "py").replace(self.paths.code)
+        if environment is not None:
+            self._switch_environment(environment)
         self.flush(self.paths.home)
         if detour:
             self._write_commands(commands)
+
+    def _switch_environment(self, environment: str) -> None:
+        """Replace the link to the environment. Another tool's environment becomes that of the releases that use it."""
+        assert self.environments is not None
+        taken = self.environments.next_taken()
+        if taken is not None:
+            for number in self.numbers():
+                self.update_record(number, lambda record: {"environment": taken, **record})
+            self.flush(self.paths.own)
+        self.environments.replace_link(environment, taken)
 
     def write_command(self, name: str, text: str) -> None:
         """Write a file with a start command."""
@@ -271,6 +274,8 @@ class Releases:
                 self.adopt_directory(taken)
             self.switch(number, self.record(number).get("commands") or {}, taken)
         self._remove_remains()
+        if self.environments is not None:
+            self.environments.remove_remains()
         current = self.current()
         if current is not None:
             self.carry_late_writes(current)
@@ -346,6 +351,8 @@ class Releases:
             if number not in keep:
                 with suppress(PermissionError):  # another user's
                     self.discard(number)
+        if self.environments is not None:
+            self.environments.remove_unused(self.record(number).get("environment") for number in self.numbers())
 
     def _free_name(self, prefix: str) -> Path:
         names = (self.paths.own / f"{prefix}{number}" for number in count(1))

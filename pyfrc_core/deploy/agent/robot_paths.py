@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import time
 from contextlib import suppress
 from io import FileIO
@@ -52,6 +53,8 @@ class RobotPaths:
         self.lock = self.own / "lock"
         #: Where the robot finds the releases.
         self.releases_on_robot = f"{layout.home}/.pyfrc/releases"
+        #: The same for environments.
+        self.environments_on_robot = f"{layout.home}/.pyfrc/environments"
 
     def of(self, path: str) -> Path:
         """Return where a path of the robot is in this file system."""
@@ -65,6 +68,24 @@ class RobotPaths:
         """Return the command that the robot starts the program with; empty if there is none."""
         name = self.layout.debug_command if self.is_debug() else self.layout.command
         return text_of(self.home / name) or ""
+
+
+def start_commands(layout: Layout, main: str, debug: bool) -> dict[str, str | None]:
+    """Return the content of the robot's start command files for a program with this main file.
+
+    :raises Refusal: if the main file's name has characters that are not allowed in a command
+    """
+    if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_./-]*", main):
+        raise Refusal(
+            "main",
+            f"the main file cannot be called {main!r}: its name is part of the robot's start command",
+            "Give it a name of letters, digits, '_', '-' and '.'.",
+        )
+    file = f"{layout.code}/{main}"
+    start, start_debug = layout.start.replace("{main}", file), layout.start_debug.replace("{main}", file)
+    if layout.debug_command:
+        return {layout.command: start, layout.debug_command: start_debug}
+    return {layout.command: start_debug if debug else start}
 
 
 class Lock:

@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from .activity import Activity
-from .content_index import sha256_of
+from .content_index import WantedFile, sha256_of
 from .disk import disk_problem, files_below, free_bytes, remove, text_of
+from .environments import Wheel
 from .host import Host, RealRobot, age_of
 from .imports import look_up
 from .layout import Layout
@@ -23,7 +24,7 @@ from .releases import Releases
 from .robot_paths import Lock, Refusal, RobotPaths
 from .start_monitor import ENDED, RUNNING, UNHEARD
 from .system import become, is_root, user
-from .transaction import RESERVE, Deploy, plan
+from .transaction import RESERVE, ContentReader, Deploy, plan
 from .virtual import VirtualRobotClient
 from .wire import EndedError, LaptopPipe, Message, Wire, WireError
 
@@ -70,6 +71,7 @@ class Agent:
         self._has_run: int | None = None
         self._requests: dict[str, Callable[[Message], Message]] = {
             "plan": lambda request: plan(self._releases, request["files"]),
+            "install": self._install,
             "deploy": self._deploy,
             "restart": lambda request: self._restart(),
             "watch": self._watch,
@@ -146,6 +148,7 @@ class Agent:
             "command": text_of(self._paths.home / self._paths.layout.command),
             "debug": self._paths.is_debug(),
             "running": bool(program),
+            "environment": None if releases.environments is None else releases.environments.of_this_process(),
             "program_age": age_of(program),
             "other_languages": self._host.other_languages(),
         }
@@ -182,6 +185,27 @@ class Agent:
             yield
             if keep:
                 self._lock = lock.pop_all()
+
+    def _install(self, request: Message) -> Message:
+        """Make an environment beside the current one. Nothing starts with it before a deploy selects it."""
+        environments = self._releases.environments
+        if environments is None:
+            raise Refusal("protocol", f"the packages of a {self._paths.layout.name} are not installed in this way")
+
+        def receive(missing: list[Wheel], files: list[Path]) -> None:
+            total = sum(each.size for each in missing)
+            self._wire.send(need=[each.file for each in missing], bytes=total)
+            self._activity.begin("receive", total)
+            if missing:
+                contents = ContentReader(self._wire, self._activity)
+                for wheel, file in zip(missing, files):  # noqa: B905 - the agent runs on Python 3.9, too
+                    contents.write(WantedFile(wheel.file, wheel.size, wheel.sha256, False), file)
+                contents.end()
+
+        with self._transaction():
+            self._recover()
+            environments.install(request, receive)
+        return {}
 
     def _deploy(self, request: Message) -> Message:
         with self._transaction(keep=not request.get("in_place")):

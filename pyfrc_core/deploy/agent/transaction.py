@@ -17,8 +17,8 @@ from .compiling import CompiledForms, Compiler, compile_below
 from .content_index import DEPLOY_JSON, ContentIndex, WantedFile, parse_manifest, sha256_of
 from .disk import BLOCK, files_below, free_bytes, link_or_copy, remove, write_whole
 from .release_record import NEVER_RUN, Record
-from .releases import Releases, start_commands
-from .robot_paths import Refusal
+from .releases import Releases
+from .robot_paths import Refusal, start_commands
 from .wire import Message, Wire
 
 #: Bytes of disk space that stay free for the program's own files after a deploy.
@@ -90,6 +90,7 @@ class Deploy:
         self._in_place = bool(request.get("in_place"))
         #: Whether a restart follows, which removes old releases.
         self._restarts = bool(request.get("restart"))
+        self._environment = request.get("environment")
         self._program = frozenset(request.get("program") or ())
         self._commands = start_commands(self._paths.layout, self._main, self._debug)
 
@@ -120,6 +121,7 @@ class Deploy:
         files = self._releases.record(current).get("files")
         directory = self._releases.directory(current).resolve()
         same = files == {each.path: each.sha256 for each in self._wanted}
+        same = same and self._releases.record(current).get("environment") == self._environment
         return same and all(at_hand.has(each, directory) for each in self._wanted)
 
     def _redeploy(self, current: int) -> Message:
@@ -236,6 +238,8 @@ class Deploy:
             "deploy": self._about,
             "from": previous if taken is None else taken,
         }
+        if self._environment is not None:
+            record["environment"] = self._environment
         code = releases.code()
         carried = Carried({}, [], [])
         self._wire.send(phase="switch")

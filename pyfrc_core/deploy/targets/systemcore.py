@@ -15,7 +15,8 @@ from .roborio import NI_STATION
 
 _USER = "systemcore"
 _HOME = f"/home/{_USER}"
-_PYTHON = f"{_HOME}/venv/bin/python3"
+_ENVIRONMENT = f"{_HOME}/venv"
+_PYTHON = f"{_ENVIRONMENT}/bin/python3"
 _PROGRAMS = (f"{_HOME}/*.jar", f"{_HOME}/frcUserProgram")
 _SUDO = ("/usr/bin/sudo", "-n")
 # systemd refuses to start a service that has crashed too often within a few seconds, until its failures are forgotten.
@@ -45,6 +46,8 @@ _LAYOUT = Layout(
     other_start="[.]jar|frcUserProgram",
     other_files=_PROGRAMS,
     command_mode=0o755,
+    environment=_ENVIRONMENT,
+    shown_python=f"{_HOME}/.python",
     can_fail=True,
     # The messages of the program's processes; with --unit, those of systemd about it would come, too.
     output=("journalctl", "--follow", "--lines=0", "--output=cat", "_SYSTEMD_UNIT=robot.service"),

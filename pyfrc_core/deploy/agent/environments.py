@@ -1,0 +1,237 @@
+"""Python environments on the robot: each has a Python and packages, and is never changed once it is complete.
+
+The environment that programs start with is a link, as the code is, and each release's record names its own: a switch
+to a release replaces both links (`releases`). An environment is complete when it has its record, which is written last.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Iterable
+from contextlib import suppress
+from itertools import count
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from .activity import Activity
+from .disk import free_bytes, remove, text_of, write_whole
+from .robot_paths import Refusal, RobotPaths
+from .system import exchange, flush, linked_directory, make_link
+from .wheels import unpack_wheel
+
+#: An environment's record: the name of its Python, and the SHA-256 of its wheels.
+RECORD = "environment.json"
+_NAME, _TAKEN = re.compile(r"[0-9a-f]{16}"), re.compile(r"taken-\d+")
+_SHA256 = re.compile(r"[0-9a-f]{64}")
+#: Bytes of disk space that stay free.
+_RESERVE = 8 << 20
+
+
+class Wheel(NamedTuple):
+    """A wheel for an environment."""
+
+    file: str
+    size: int
+    sha256: str
+
+
+class Environments:
+    """The environments on the robot, and the files that they are made of.
+
+    :param paths: the robot's files; the layout must have an environment
+    """
+
+    def __init__(self, paths: RobotPaths, activity: Activity) -> None:
+        self._paths = paths
+        self._activity = activity
+        #: The link to the environment that programs start with, or a directory created by another tool.
+        self.link = paths.of(paths.layout.environment)
+        self._directory = paths.own / "environments"
+        self._pythons = paths.own / "pythons"
+        self._wheels = paths.own / "wheels"
+
+    def directory(self, name: str) -> Path:
+        """Return the directory of an environment."""
+        return self._directory / name
+
+    def is_usable(self, name: str) -> bool:
+        """Return whether an environment is complete."""
+        place = self.directory(name)
+        return (place / RECORD).is_file() if _NAME.fullmatch(name) else bool(_TAKEN.fullmatch(name) and place.is_dir())
+
+    def of_this_process(self) -> str | None:
+        """Return the environment in which this agent runs, or None: another tool's, or a Python without one."""
+        place = Path(sys.prefix).resolve()
+        return place.name if place.parent == self._directory.resolve() and self.is_usable(place.name) else None
+
+    def current(self) -> str | None:
+        """Return the environment that programs start with, or None: another tool's, or none."""
+        place = linked_directory(self.link)
+        if place is None or place.parent != self._directory or not self.is_usable(place.name):
+            return None
+        return place.name
+
+    def other_than_current(self, name: str | None) -> str | None:
+        """Return the environment of a release if programs start with another one now, else None.
+
+        :raises Refusal: if it is no longer there
+        """
+        if name is None or name == self.current():
+            return None
+        if self.is_usable(name):
+            return name
+        if self.next_taken() is not None and _TAKEN.fullmatch(name):
+            return None  # interrupted before another tool's environment was moved: it is in its place still
+        raise Refusal("release", "the packages of this release are no longer on the robot", "Choose another.")
+
+    def next_taken(self) -> str | None:
+        """Return a name for another tool's environment that will be replaced, or None if there is none."""
+        if self.link.is_dir() and linked_directory(self.link) is None:
+            names = (f"taken-{number}" for number in count(1))
+            return next(name for name in names if not self.directory(name).exists())
+        return None
+
+    def replace_link(self, name: str, taken: str | None) -> None:
+        """Let programs start with an environment. The start command refers to its own directory meanwhile.
+
+        :param taken: the name for another tool's environment that is in its place
+        """
+        link = self._paths.own / "venv" if taken is None else self.directory(taken)
+        remove(link)
+        make_link(link, self.directory(name), self.link)
+        if taken is None:
+            link.replace(self.link)
+        elif not exchange(link, self.link):
+            link.replace(self._paths.own / "venv")
+            self.link.rename(self.directory(taken))
+            (self._paths.own / "venv").replace(self.link)
+        self._show_python(name)
+
+    def _show_python(self, name: str) -> None:
+        """Let other tools find the environment's Python where they look for it, unless they have one there."""
+        python = self._record(name).get("python")
+        place = self._paths.of(self._paths.layout.shown_python)
+        if python is not None and (linked_directory(place) is not None or not place.exists()):
+            with suppress(OSError):
+                link = self._paths.own / "python"
+                remove(link)
+                make_link(link, self._pythons / str(python), place)
+                link.replace(place)
+
+    def install(self, request: dict[str, Any], receive: Any) -> None:
+        """Make an environment, unless it is there.
+
+        :param request: ``environment``, its name; ``python``, that of its Python, which is on the robot; ``wheels``,
+            file, size and SHA-256 of each; ``unpacked``, the bytes that they take
+        :param receive: called with the wheels that are not on the robot, and the file for each
+        :raises Refusal: if there is not enough disk space, or it cannot be made
+        """
+        name, python = str(request["environment"]), str(request["python"])
+        wheels = [Wheel(str(file), int(size), str(sha256)) for file, size, sha256 in request["wheels"]]
+        if not (_NAME.fullmatch(name) and _NAME.fullmatch(python) and all(_SHA256.fullmatch(x.sha256) for x in wheels)):
+            raise Refusal("protocol", "an environment has a name that is not one")
+        complete = self.is_usable(name)
+        missing = [] if complete else [each for each in wheels if not self._store(each).is_file()]
+        if not complete:
+            self._check_disk_space(sum(each.size for each in missing) + int(request["unpacked"]))
+        self._wheels.mkdir(parents=True, exist_ok=True)
+        receive(missing, [self._wheels / f"{each.sha256}.new" for each in missing])
+        if complete:
+            return
+        self._flush()
+        for each in missing:
+            (self._wheels / f"{each.sha256}.new").replace(self._store(each))
+        self._make(self.directory(name), self._pythons / python / "bin/python3", wheels)
+        self._flush()
+        record = {"python": python, "wheels": [each.sha256 for each in wheels]}
+        write_whole(self.directory(name) / RECORD, json.dumps(record))
+        self._flush()
+
+    def _flush(self) -> None:
+        self._activity.begin("sync")
+        self._activity.wait_for(flush, self._paths.own)
+
+    def _store(self, wheel: Wheel) -> Path:
+        return self._wheels / f"{wheel.sha256}.whl"
+
+    def _check_disk_space(self, needed: int) -> None:
+        self.remove_remains()
+        needed, free = needed + _RESERVE, free_bytes(self._paths.home)
+        if free < needed:
+            raise Refusal(
+                "space",
+                f"the robot's disk is too full to install packages: {needed:,} bytes are needed, {free:,} are free",
+                "Remove old logs from the robot. Nothing was changed.",
+                needed=needed,
+                free=free,
+            )
+
+    def _make(self, place: Path, python: Path, wheels: list[Wheel]) -> None:
+        remove(place)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        self._activity.begin("environment")
+        self._run([str(python), "-m", "venv", *self.without_pip(python), str(place)])
+        packages = next(iter(place.glob("lib/python3*/site-packages")), None)
+        if packages is None:
+            raise Refusal("environment", f"{python} has made no environment")
+        self._activity.begin("unpack", len(wheels))
+        for each in wheels:
+            unpack_wheel(self._store(each), each.file, place, packages, self._activity)
+        self._activity.begin("environment")
+        # As programs are started. A package may have files for another version of Python, which do not count.
+        self._run([str(place / "bin/python3"), "-O", "-m", "compileall", "-q", str(packages)], check=False)
+
+    def without_pip(self, python: Path) -> list[str]:
+        """Return the option of `venv` for a Python that cannot install pip, as Debian's."""
+        return [] if list(python.parent.parent.glob("lib/python3*/ensurepip")) else ["--without-pip"]
+
+    def _run(self, command: list[str], check: bool = True) -> None:
+        import subprocess
+
+        run = self._activity.wait_for(
+            lambda: subprocess.run(
+                command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False
+            )
+        )
+        if check and run.returncode:
+            said = run.stdout.decode(errors="replace").strip().splitlines()[-1:]
+            raise Refusal("environment", f"{command[0]} cannot make an environment: {''.join(said)}")
+
+    def remove_remains(self) -> None:
+        """Remove what interrupted installations have left."""
+        for name in ("venv", "python"):
+            remove(self._paths.own / name)
+        for place in self._directory.iterdir() if self._directory.is_dir() else ():
+            # Of a taken environment that is not in its place yet, there is only the link for the exchange.
+            if linked_directory(place) is not None or (_NAME.fullmatch(place.name) and not self.is_usable(place.name)):
+                remove(place)
+        for file in self._wheels.glob("*.new"):
+            remove(file)
+
+    def remove_unused(self, used: Iterable[str | None]) -> None:
+        """Remove environments, Pythons and wheels that nothing needs.
+
+        :param used: the environments of the releases
+        """
+        here = {self.current(), self.of_this_process(), *used}
+        for place in list(self._directory.iterdir()) if self._directory.is_dir() else ():
+            if place.name not in here and (_NAME.fullmatch(place.name) or _TAKEN.fullmatch(place.name)):
+                remove(place / RECORD)  # first: it is not complete from now on
+                remove(place)
+        records = [self._record(name) for name in here if name is not None]
+        shown = linked_directory(self._paths.of(self._paths.layout.shown_python))
+        pythons = {record.get("python") for record in records} | {None if shown is None else shown.name}
+        wheels = {f"{each}.whl" for record in records for each in record.get("wheels", ())}
+        for place, kept in ((self._pythons, pythons), (self._wheels, wheels)):
+            for each in list(place.iterdir()) if place.is_dir() else ():
+                if each.name not in kept:
+                    remove(each)
+
+    def _record(self, name: str) -> dict[str, Any]:
+        try:
+            record = json.loads(text_of(self.directory(name) / RECORD) or "{}")
+        except ValueError:
+            return {}
+        return record if isinstance(record, dict) else {}

@@ -1,0 +1,239 @@
+"""Installing the project's packages on the robot, as its lock says: at first with Python, later only what changed.
+
+An environment is made beside the current one, and the agent of the deploy runs in it. So all checks before a deploy are
+about the Python that the program will start with. The deploy's switch selects it (`agent.environments`).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import shlex
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from zipfile import BadZipFile, ZipFile
+
+from ..project import Project
+from ..season import CURRENT
+from ..sync import Lock, cached_file, load_lock, lock_file_of
+from ..terminal_text import one_line
+from ..wording import counted
+from .connection import Connection, connection_lost
+from .errors import DeployError, NoPythonError, OtherComputerError, RefusedError
+from .manifest import Entry, Manifest
+from .progress import DeployProgress, Phase
+from .targets import ControllerKind
+
+if TYPE_CHECKING:
+    from .agent_client import AgentClient
+    from .facts import RobotFacts
+
+#: The version of how environments are made; it is part of their names.
+_FORMAT = "1"
+_NAME_LENGTH = 16
+_CHUNK_BYTES = 1 << 16
+_UNPACK_SECONDS = 600.0
+
+# The robot may have no Python yet, so this is for its shell. If it is interrupted, the next one removes its remains.
+_SEND_PYTHON = """
+set -e
+umask 022
+mkdir -p {pythons}
+cd {pythons}
+[ ! -e {name} ] || {{ echo there; exit 0; }}
+rm -rf .new
+set -- $(df -Pk . | tail -n 1)
+[ "$4" -ge {kilobytes} ] || {{ echo "full $4"; exit 0; }}
+mkdir .new
+cd .new
+echo send
+cat > archive
+echo "{sha256}  archive" | sha256sum -c > /dev/null
+tar -xzf archive
+rm archive
+set -- */
+"$1/bin/python3" -c ""
+sync
+mv "$1" ../{name}
+rmdir ../.new
+"""
+
+
+@dataclass(frozen=True)
+class Environment:
+    """The environment on the robot that a project's lock asks for.
+
+    :param lock: its Python and packages
+    :param home: the directory on the robot with environments and Pythons
+    """
+
+    lock: Lock
+    home: str
+
+    @property
+    def name(self) -> str:
+        """Its name on the robot: the same files give the same name."""
+        files = [f"{each.sha256} {each.file}" for each in self.lock.packages]
+        text = "\n".join([_FORMAT, self.lock.python.sha256, *sorted(files)])
+        return hashlib.sha256(text.encode()).hexdigest()[:_NAME_LENGTH]
+
+    @property
+    def python_name(self) -> str:
+        """The name of its Python on the robot."""
+        return self.lock.python.sha256[:_NAME_LENGTH]
+
+    @property
+    def python(self) -> str:
+        """The path of its Python on the robot."""
+        return f"{self.home}/pythons/{self.python_name}/bin/python3"
+
+    def or_else(self, python: str) -> str:
+        """Return words for a shell that start its Python if it is complete, else another one."""
+        place = f"{self.home}/environments/{self.name}"
+        return f"p={place}/bin/python3; [ -e {place}/environment.json ] || p={python}; exec $p"
+
+    def is_met_by(self, facts: RobotFacts) -> bool:
+        """Return whether the robot has all of it already, in this environment or in another tool's."""
+        packages = {each.name: each.version for each in self.lock.packages}
+        same = facts.python == self.lock.python.version and facts.packages.items() >= packages.items()
+        return facts.environment == self.name or (facts.environment is None and same)
+
+
+def wanted_environment(project: Project, controller: ControllerKind) -> Environment | None:
+    """Return the environment that the project's lock asks for, or None: no lock, or a robot with a Python of its own.
+
+    :raises SettingsError: if the lock is damaged, or of another season
+    """
+    if not controller.layout.environment:
+        return None
+    lock = load_lock(lock_file_of(project), CURRENT)
+    return None if lock is None else Environment(lock, f"{controller.layout.home}/.pyfrc")
+
+
+def start_agent(
+    connection: Connection, wanted: Environment | None, hello: Mapping[str, Any] | None
+) -> AgentClient | None:
+    """Start the agent: in the wanted environment, if that is there. Return None if it has to be installed with Python.
+
+    :raises NoPythonError: if the robot has no Python, and no environment is wanted
+    """
+    from .agent_client import AgentClient
+
+    if wanted is None:
+        return AgentClient.start(connection, hello=hello)
+    with contextlib.suppress(NoPythonError):
+        return AgentClient.start(connection, hello=hello, python=wanted.or_else(connection.controller.python))
+    return None
+
+
+def install(
+    connection: Connection,
+    robot: AgentClient | None,
+    wanted: Environment,
+    progress: DeployProgress,
+    hello: Mapping[str, Any] | None,
+) -> AgentClient:
+    """Install an environment, and start the agent in it.
+
+    :param robot: the agent that runs in another Python, which then ends; None without one
+    :raises NotSyncedError: if this computer does not have the files
+    """
+    try:
+        with progress.phase("install") as phase:
+            robot = _install(connection, robot, wanted, phase)
+    finally:
+        if robot is not None:
+            robot.close()
+    robot = start_agent(connection, wanted, hello)
+    if robot is None or robot.facts.environment != wanted.name:
+        raise OtherComputerError(
+            "another computer has changed the robot's packages meanwhile",
+            where=str(connection.address),
+            remedy="Run the command again.",
+        )
+    return robot
+
+
+def _install(connection: Connection, robot: AgentClient | None, wanted: Environment, phase: Phase) -> AgentClient:
+    from .agent_client import AgentClient
+
+    files = {each: cached_file(each, CURRENT) for each in wanted.lock.files}
+    phase.doing(str(wanted.lock.python))
+    sent_python = _send_python(connection, wanted, files[wanted.lock.python], phase)
+    if robot is None:
+        robot = AgentClient.start(connection, python=wanted.python)
+    wheels = Manifest(
+        tuple(Entry(each.file, each.size, each.sha256, False, files[each]) for each in wanted.lock.packages)
+    )
+    unpacked = sum(_unpacked_size(entry.file) for entry in wheels.entries)
+    sent = robot.install(wanted.name, wanted.python_name, wheels, unpacked, phase.work)
+    phase.detail = f"{counted(sent, 'package')} of {len(wheels.entries)} sent"
+    if sent_python:
+        phase.detail = f"{wanted.lock.python}, {phase.detail}"
+    return robot
+
+
+def _unpacked_size(wheel: Path) -> int:
+    try:
+        with ZipFile(wheel) as archive:
+            # Blocks of 4096 bytes, and compiled files of about the same size.
+            return sum(
+                (each.file_size // 4096 + 1) * 4096 * (2 if each.filename.endswith(".py") else 1)
+                for each in archive.infolist()
+            )
+    except (BadZipFile, OSError) as error:
+        raise RefusedError(
+            f"this is not a wheel: {error}", where=wheel, remedy="Remove it; then: pyfrc sync"
+        ) from error
+
+
+def _send_python(connection: Connection, wanted: Environment, archive: Path, phase: Phase) -> bool:
+    """Send the robot's Python, unless it is there. Return whether it was sent.
+
+    :raises RefusedError: if the robot's disk is too full
+    :raises DeployError: if it cannot be unpacked
+    """
+    with archive.open("rb") as stream:
+        stream.seek(-4, 2)
+        (unpacked,) = struct.unpack("<I", stream.read())  # gzip's last field
+    size = archive.stat().st_size
+    script = _SEND_PYTHON.format(
+        pythons=shlex.quote(f"{wanted.home}/pythons"),
+        name=wanted.python_name,
+        kilobytes=(size + unpacked * 5 // 4) // 1024,
+        sha256=wanted.lock.python.sha256,
+    )
+    with contextlib.closing(connection.open(script)) as channel:
+        try:
+            reply = channel.makefile("r").readline().strip()
+            if reply == "there":
+                return False
+            if reply.startswith("full "):
+                raise RefusedError(
+                    f"the robot's disk is too full to install Python: {(size + unpacked * 5 // 4) // 1000:,} kB are "
+                    f"needed, {one_line(reply)[5:]} kB are free",
+                    where=str(connection.address),
+                    remedy="Remove old logs from the robot. Nothing was changed.",
+                )
+            done = 0
+            with archive.open("rb") as stream:
+                while reply == "send" and (chunk := stream.read(_CHUNK_BYTES)):
+                    channel.sendall(chunk)
+                    done += len(chunk)
+                    phase.bytes(done, size)
+            channel.shutdown_write()
+            known = channel.status_event.wait(_UNPACK_SECONDS)
+            status = channel.recv_exit_status() if known else -1
+            said = channel.recv_stderr(4096).decode(errors="replace").strip().splitlines()[-1:] if known else []
+        except (OSError, EOFError) as error:
+            raise connection_lost(connection.address, error) from error
+    if status != 0:
+        raise DeployError(
+            f"Python could not be installed on the robot: {one_line(''.join(said)) or f'exit code {status}'}",
+            where=str(connection.address),
+            remedy="The robot is as it was. Run the command again.",
+        )
+    return True
