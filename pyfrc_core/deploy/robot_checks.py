@@ -24,7 +24,7 @@ from .connection import Connection
 from .errors import ConnectionFailedError, NoPythonError, RefusedError
 from .facts import VIRTUAL_IMAGE
 from .progress import DeployProgress
-from .targets import AdministratorTask, ControllerKind
+from .targets import AdministratorTask, ControllerKind, controller_of
 
 if TYPE_CHECKING:
     from .agent.layout import Layout
@@ -108,20 +108,19 @@ def _our_wpilib() -> str:
         ) from None
 
 
-#: The commands in order. The second needs the internet, the third the robot.
-COMMANDS = (install_line("robotpy"), "python -m robotpy sync", "python -m robotpy deploy")
-
 _SECTION = 'docs/deploy.md, "A freshly imaged robot", has every step.'
 
-PREPARE = (
-    f"Prepare the robot: {COMMANDS[0]}; with internet: {COMMANDS[1]}; then at the robot: {COMMANDS[2]}. {_SECTION}"
-)
+#: How to install the packages in ``[tool.robotpy]`` on the robot, and how to prepare it. The first command needs the
+#: internet, the second the robot.
+if controller_of(CURRENT).layout.environment:
+    INSTALL_PACKAGES = "with internet: pyfrc sync; then at the robot: pyfrc deploy"
+    PREPARE = f"Prepare the robot: {INSTALL_PACKAGES}. {_SECTION}"
+else:
+    INSTALL_PACKAGES = "with internet: python -m robotpy sync; then at the robot: python -m robotpy deploy"
+    PREPARE = f"Prepare the robot: {install_line('robotpy')}; {INSTALL_PACKAGES}. {_SECTION}"
 
 _REMOVE_OTHER_LANGUAGES = "To remove it: pyfrc undeploy --java-cpp"
 _MAX_NAMED = 2  # files of other languages
-
-#: How to install the packages in ``[tool.robotpy]`` on the robot.
-INSTALL_PACKAGES = f"with internet: {COMMANDS[1]}; then at the robot: {COMMANDS[2]}"
 
 #: How to install a package for a virtual robot, without the package's name.
 INSTALL_FOR_VIRTUAL_ROBOT = "in the environment in which pyfrc virtual-robot runs: python -m pip install"

@@ -22,7 +22,18 @@ import zlib
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from pyfrc_core.deploy.agent import compiling, host, program, releases, robot_paths, serve, start_monitor, system, wire
+from pyfrc_core.deploy.agent import (
+    compiling,
+    environments,
+    host,
+    program,
+    releases,
+    robot_paths,
+    serve,
+    start_monitor,
+    system,
+    wire,
+)
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
@@ -58,7 +69,7 @@ class Steps:
             # A function, which is bound to the path as the original is; our own method would not be.
             pathlib.Path.open = lambda path, *args, **options: self._opening(path, *args, **options)  # type: ignore[method-assign,assignment]
             os.fsync = self._fsyncing
-            for module in (system, releases):
+            for module in (system, releases, environments):
                 module.flush = self._flushing  # type: ignore[attr-defined]
         sys.addaudithook(self._hook)
 

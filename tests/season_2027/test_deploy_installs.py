@@ -1,4 +1,4 @@
-"""The first deploy to a blank SystemCore installs Python and packages; later ones what changed. A rollback undoes that."""
+"""The first deploy to a blank SystemCore installs Python and packages, later ones what changed; and back again."""
 
 from __future__ import annotations
 

@@ -7,6 +7,7 @@ to a release replaces both links (`releases`). An environment is complete when i
 from __future__ import annotations
 
 import json
+import os
 import re
 import sys
 from collections.abc import Iterable
@@ -132,6 +133,10 @@ class Environments:
         wheels = [Wheel(str(file), int(size), str(sha256)) for file, size, sha256 in request["wheels"]]
         if not (_NAME.fullmatch(name) and _NAME.fullmatch(python) and all(_SHA256.fullmatch(x.sha256) for x in wheels)):
             raise Refusal("protocol", "an environment has a name that is not one")
+        interpreter = self._pythons / python / "bin/python3"
+        if not os.path.lexists(interpreter):
+            what = "the Python that was sent is no longer there: another computer has deployed meanwhile"
+            raise Refusal("environment", what, "Run the command again.")
         complete = self.is_usable(name)
         missing = [] if complete else [each for each in wheels if not self._store(each).is_file()]
         if not complete:
@@ -143,7 +148,7 @@ class Environments:
         self._flush()
         for each in missing:
             (self._wheels / f"{each.sha256}.new").replace(self._store(each))
-        self._make(self.directory(name), self._pythons / python / "bin/python3", wheels)
+        self._make(self.directory(name), interpreter, wheels)
         self._flush()
         record = {"python": python, "wheels": [each.sha256 for each in wheels]}
         write_whole(self.directory(name) / RECORD, json.dumps(record))
@@ -178,7 +183,11 @@ class Environments:
             raise Refusal("environment", f"{python} has made no environment")
         self._activity.begin("unpack", len(wheels))
         for each in wheels:
-            unpack_wheel(self._store(each), each.file, place, packages, self._activity)
+            try:
+                unpack_wheel(self._store(each), each.file, place, packages, self._activity)
+            except Refusal:
+                remove(self._store(each))  # so that it is sent again
+                raise
         self._activity.begin("environment")
         # As programs are started. A package may have files for another version of Python, which do not count.
         self._run([str(place / "bin/python3"), "-O", "-m", "compileall", "-q", str(packages)], check=False)

@@ -1,0 +1,288 @@
+"""Environments on the robot: after any interruption, the program that starts is complete, with its packages."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import io
+import os
+import sys
+from collections.abc import Generator, Mapping
+from pathlib import Path
+from typing import Any
+from zipfile import ZipFile, ZipInfo
+
+import pytest
+from conftest import sampled
+from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
+
+from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
+from pyfrc_core.deploy.errors import DeployError, RefusedError
+from pyfrc_core.deploy.manifest import Entry, Manifest
+from pyfrc_core.deploy.targets.systemcore import SYSTEMCORE
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a robot runs Linux")
+
+Files = dict[str, bytes]
+PYTHON = "0123456789abcdef"
+FIRST, SECOND = "aaaaaaaaaaaaaaaa", "bbbbbbbbbbbbbbbb"
+OLD, NEW = {"robot.py": ROBOT_PY.encode()}, {"robot.py": b"# new\n" + ROBOT_PY.encode()}
+SPINNER = "spinner/__init__.py"
+
+
+def wheel(directory: Path, name: str, files: Mapping[str, str | bytes]) -> Entry:
+    """A wheel of these files."""
+    content = io.BytesIO()
+    with ZipFile(content, "w") as archive:
+        for path, text in files.items():
+            archive.writestr(ZipInfo(path), text)
+    file = directory / f"{name}-py3-none-any.whl"
+    file.write_bytes(content.getvalue())
+    sha256 = hashlib.sha256(content.getvalue()).hexdigest()
+    return Entry(file.name, len(content.getvalue()), sha256, False, file)
+
+
+class Packages:
+    """Two environments: the second has another version of a package, and one more."""
+
+    def __init__(self, directory: Path) -> None:
+        directory.mkdir()
+        kept = wheel(directory, "kept-1.0", {"kept.py": "A = 1\n" * 200, "kept-1.0.dist-info/METADATA": "Name: kept\n"})
+        first, second = (wheel(directory, f"spinner-{n}.0", {SPINNER: f"VERSION = {n}\n"}) for n in (1, 2))
+        more = wheel(directory, "more-1.0", {"more.py": "B = 1\n", "more-1.0.data/scripts/tool": "#!python\npass\n"})
+        self.wheels = {FIRST: Manifest((kept, first)), SECOND: Manifest((kept, second, more))}
+        self.content: dict[str | None, Files] = {None: {}}
+        self.content[FIRST] = {"kept.py": b"A = 1\n" * 200, SPINNER: b"VERSION = 1\n"}
+        self.content[SECOND] = {**self.content[FIRST], SPINNER: b"VERSION = 2\n", "more.py": b"B = 1\n"}
+
+
+def new_robot(root: Path) -> LocalRobot:
+    """A robot with a Python, as the shell script of an installation leaves it, and nothing else."""
+    robot = LocalRobot.new(root, SYSTEMCORE)
+    send_python(robot)
+    return robot
+
+
+def send_python(robot: LocalRobot) -> None:
+    python = robot.home / ".pyfrc/pythons" / PYTHON / "bin/python3"
+    python.parent.mkdir(parents=True, exist_ok=True)
+    python.unlink(missing_ok=True)
+    python.symlink_to(os.path.realpath(sys.executable))
+
+
+def copied(robot: LocalRobot, root: Path) -> LocalRobot:
+    return robot.copy(root)
+
+
+@contextlib.contextmanager
+def agent(robot: LocalRobot, agents: Agents, **options: Any) -> Generator[AgentClient]:
+    session = robot.start(agents, **options)
+    try:
+        yield session
+    finally:
+        session.close()
+
+
+def install(robot: LocalRobot, agents: Agents, packages: Packages, name: str, **cut: Any) -> int:
+    send_python(robot)  # if a deploy that does not need it has removed it
+    with agent(robot, agents, **cut) as session:
+        return session.install(name, PYTHON, packages.wheels[name], 10_000)
+
+
+def deploy(robot: LocalRobot, agents: Agents, project: Manifest, environment: str | None, **cut: Any) -> None:
+    with agent(robot, agents, **cut) as session:
+        session.deploy(project, DeployRequest("robot.py", {}, environment=environment))
+
+
+def started(robot: LocalRobot) -> tuple[Files, Files] | None:
+    """The files of the program that would be started, and of the packages that it would have; None without one."""
+    program = robot.startable()
+    if program is None:
+        return None
+    python = robot.root / robot.paths.start_command().split()[0].lstrip("/")
+    place = python.parent.parent
+    if place.is_symlink():
+        place = place.parent / place.readlink()
+    assert (place / "environment.json").is_file() or place.name in ("venv", "taken-1"), "an incomplete environment"
+    (packages,) = place.glob("lib/python3*/site-packages")
+    return program, {file.relative_to(packages).as_posix(): file.read_bytes() for file in packages.rglob("*.py")}
+
+
+@pytest.fixture
+def directory() -> Generator[Path]:
+    with directory_in_memory() as directory:
+        yield directory
+
+
+@pytest.fixture
+def packages(directory: Path) -> Packages:
+    return Packages(directory / "wheels")
+
+
+def test_a_change_sends_only_what_is_new_and_a_rollback_undoes_it(
+    directory: Path, packages: Packages, agents: Agents
+) -> None:
+    robot = new_robot(directory / "robot")
+    old, new = project_of(directory / "old", OLD), project_of(directory / "new", NEW)
+    assert install(robot, agents, packages, FIRST) == 2
+    assert started(robot) is None
+    deploy(robot, agents, old, FIRST)
+    assert started(robot) == (OLD, packages.content[FIRST])
+    assert install(robot, agents, packages, SECOND) == 2
+    assert install(robot, agents, packages, SECOND) == 0
+    assert started(robot) == (OLD, packages.content[FIRST])
+    deploy(robot, agents, new, SECOND)
+    assert started(robot) == (NEW, packages.content[SECOND])
+    tool = robot.home / "venv/bin/tool"
+    assert tool.read_text().startswith(f"#!{robot.home.resolve()}/.pyfrc/environments/{SECOND}/bin/python3\n")
+    assert os.access(tool, os.X_OK)
+    with agent(robot, agents) as session:
+        assert session.rollback().release.number == 1
+    assert started(robot) == (OLD, packages.content[FIRST])
+
+
+def test_what_no_release_needs_is_removed(directory: Path, packages: Packages, agents: Agents) -> None:
+    robot = new_robot(directory / "robot")
+    install(robot, agents, packages, FIRST)
+    deploy(robot, agents, project_of(directory / "0", OLD), FIRST)
+    install(robot, agents, packages, SECOND)
+    for number in range(1, 5):
+        deploy(robot, agents, project_of(directory / str(number), {"robot.py": f"# {number}\n"}), SECOND)
+    assert [each.name for each in (robot.home / ".pyfrc/environments").iterdir()] == [SECOND]
+    wheels = {f"{each.sha256}.whl" for each in packages.wheels[SECOND].entries}
+    assert {each.name for each in (robot.home / ".pyfrc/wheels").iterdir()} == wheels
+    assert [each.name for each in (robot.home / ".pyfrc/pythons").iterdir()] == [PYTHON]
+
+
+def test_another_tools_environment_is_kept_for_the_releases_that_use_it(
+    directory: Path, packages: Packages, agents: Agents
+) -> None:
+    robot = new_robot(directory / "robot")
+    site = robot.home / "venv/lib/python3.14/site-packages"
+    site.mkdir(parents=True)
+    (site / "theirs.py").write_text("C = 1\n")
+    deploy(robot, agents, project_of(directory / "old", OLD), None)
+    assert started(robot) == (OLD, {"theirs.py": b"C = 1\n"})
+    install(robot, agents, packages, SECOND)
+    deploy(robot, agents, project_of(directory / "new", NEW), SECOND)
+    assert started(robot) == (NEW, packages.content[SECOND])
+    with agent(robot, agents) as session:
+        session.rollback()
+    assert started(robot) == (OLD, {"theirs.py": b"C = 1\n"})
+    with agent(robot, agents) as session:
+        session.rollback(2)
+    assert started(robot) == (NEW, packages.content[SECOND])
+
+
+@pytest.mark.parametrize(
+    ("path", "why"),
+    [
+        ("../../../py/robot.py", "leads out"),
+        ("/etc/passwd", "leads out"),
+        ("a//b.py", "leads out"),
+        ("a\\b.py", "leads out"),
+        ("evil-1.0.data/nowhere/x", "an unknown place"),
+    ],
+)
+def test_a_wheel_cannot_write_elsewhere(
+    path: str, why: str, directory: Path, packages: Packages, agents: Agents
+) -> None:
+    robot = new_robot(directory / "robot")
+    packages.wheels[FIRST] = Manifest((wheel(directory, "evil-1.0", {path: "x"}),))
+    with pytest.raises(RefusedError, match=why):
+        install(robot, agents, packages, FIRST)
+    deploy(robot, agents, project_of(directory / "old", OLD), None)
+    assert not (robot.home / ".pyfrc/environments" / FIRST).exists(), "the next deploy removes it"
+
+
+def test_too_little_disk_space_is_said_before_anything_is_sent(
+    directory: Path, packages: Packages, agents: Agents
+) -> None:
+    robot = new_robot(directory / "robot")
+    with agent(robot, agents) as session, pytest.raises(RefusedError, match="too full to install packages") as caught:
+        session.install(FIRST, PYTHON, packages.wheels[FIRST], 1 << 50)
+    assert "Nothing was changed" in str(caught.value.remedy)
+    assert not (robot.home / ".pyfrc/wheels").exists()
+
+
+class Scenario:
+    """A robot before an installation and a deploy, both of which are interrupted anywhere.
+
+    :param name: ``first``: nothing is there; ``update``; ``theirs``: another tool's environment and program
+    """
+
+    def __init__(self, name: str, directory: Path, packages: Packages, agents: Agents) -> None:
+        self._directory, self._packages, self._agents = directory, packages, agents
+        self._before = new_robot(directory / "before")
+        self.project = project_of(directory / "new", NEW)
+        if name == "update":
+            install(self._before, agents, packages, FIRST)
+            deploy(self._before, agents, project_of(directory / "old", OLD), FIRST)
+        elif name == "theirs":
+            site = self._before.home / "venv/lib/python3.14/site-packages"
+            site.mkdir(parents=True)
+            (site / "theirs.py").write_text("C = 1\n")
+            deploy(self._before, agents, project_of(directory / "old", OLD), None)
+        self.old, self.new = started(self._before), (NEW, packages.content[SECOND])
+        self._installed = copied(self._before, directory / "installed")
+        install(self._installed, agents, packages, SECOND)
+        self.installing = self._installed.channel
+        whole = copied(self._installed, directory / "robot")
+        deploy(whole, agents, self.project, SECOND)
+        assert started(whole) == self.new
+        self.deploying = whole.channel
+
+    def check_installation(self, **cut: int | bool) -> None:
+        """Interrupt the installation, look, then install and deploy."""
+        robot = copied(self._before, self._directory / "robot")
+        with contextlib.suppress(DeployError):
+            install(robot, self._agents, self._packages, SECOND, **cut)
+        assert started(robot) == self.old, f"after {cut}"
+        install(robot, self._agents, self._packages, SECOND)
+        deploy(robot, self._agents, self.project, SECOND)
+        assert started(robot) == self.new, f"after {cut}, and another deploy"
+        assert not list((robot.home / ".pyfrc").rglob("*.new"))
+
+    def check_deploy(self, **cut: int | bool) -> bool:
+        """Interrupt the deploy, look, then deploy again. Return whether the new program was in place already."""
+        robot = copied(self._installed, self._directory / "robot")
+        with contextlib.suppress(DeployError):
+            deploy(robot, self._agents, self.project, SECOND, **cut)
+        found = started(robot)
+        assert found in (self.old, self.new), f"after {cut}"
+        install(robot, self._agents, self._packages, SECOND)
+        deploy(robot, self._agents, self.project, SECOND)
+        assert started(robot) == self.new, f"after {cut}, and another deploy"
+        return found == self.new
+
+
+SCENARIOS = sampled(["first", "update", "theirs"], "update")
+
+
+@pytest.fixture(params=SCENARIOS)
+def scenario(request: pytest.FixtureRequest, directory: Path, packages: Packages, agents: Agents) -> Scenario:
+    return Scenario(request.param, directory, packages, agents)
+
+
+@pytest.mark.parametrize("places", sampled([5, 50], 5))
+def test_connections_cut(scenario: Scenario, places: int) -> None:
+    """Through the installation and the deploy, in both directions: 200 times in all, by night."""
+    for number in range(places):
+        for way in ("to", "from"):
+            total = getattr(scenario.installing, f"bytes_{way}_robot")
+            scenario.check_installation(**{f"cut_{way}_robot": total * number // places})
+            total = getattr(scenario.deploying, f"bytes_{way}_robot")
+            scenario.check_deploy(**{f"cut_{way}_robot": total * number // places})
+
+
+@pytest.mark.parametrize("loses", [False, True], ids=["killed", "without power"])
+@pytest.mark.parametrize("each", sampled([10, 1], 10))
+def test_agents_killed_before_steps_on_the_disk(scenario: Scenario, each: int, loses: bool) -> None:
+    assert scenario.installing.steps is not None
+    assert scenario.deploying.steps is not None
+    for step in range(1, scenario.installing.steps + 1, each):
+        scenario.check_installation(last_step=step, loses=loses)
+    outcomes = [
+        scenario.check_deploy(last_step=step, loses=loses) for step in range(1, scenario.deploying.steps + 1, each)
+    ]
+    assert outcomes == sorted(outcomes), "once the new program is in place it stays there"
