@@ -209,7 +209,7 @@ def test_another_tool_deploys_after_us(robot: LocalRobot, project: Project, agen
 
 def test_where_names_cannot_be_exchanged(robot: LocalRobot, project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
     """An old kernel: the directory is moved away before the link takes its place; the start command leads past that."""
-    from pyfrc_core.deploy.agent import releases
+    from pyfrc_core.deploy.agent import releases, robot_paths
     from pyfrc_core.deploy.agent.activity import Activity
     from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 
@@ -218,7 +218,7 @@ def test_where_names_cannot_be_exchanged(robot: LocalRobot, project: Project, mo
     ours.adopt_directory(1)
     ours.directory(2).mkdir()
     (ours.directory(2) / "robot.py").write_text("# ours\n")
-    commands = releases.start_commands(ROBORIO.layout, "robot.py", debug=False)
+    commands = robot_paths.start_commands(ROBORIO.layout, "robot.py", debug=False)
     ours.write_record(2, {"files": {}, "commands": commands})
     for name, text in commands.items():
         (robot.home / name).write_text(text or "")

@@ -6,7 +6,7 @@ import contextlib
 import logging
 import socket
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -109,12 +109,22 @@ class Connection:
             raise connection_lost(self.address, error) from error
         return channel
 
+    @contextlib.contextmanager
+    def opened(self, command: str) -> Iterator[paramiko.Channel]:
+        """Start a command on the robot, and close its channel after the ``with`` block."""
+        channel = self.open(command)
+        try:
+            yield channel
+        finally:
+            with contextlib.suppress(OSError, EOFError):  # the connection may be lost
+                channel.close()
+
     def run(self, command: str) -> tuple[int, str]:
         """Run a command, and return its exit code and its output.
 
         :raises ConnectionFailedError: if the connection is lost
         """
-        with contextlib.closing(self.open(command)) as channel:
+        with self.opened(command) as channel:
             channel.set_combine_stderr(True)
             printed = bytearray()
             try:

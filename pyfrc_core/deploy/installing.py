@@ -206,7 +206,7 @@ def _send_python(connection: Connection, wanted: Environment, archive: Path, pha
         kilobytes=(size + unpacked * 5 // 4) // 1024,
         sha256=wanted.lock.python.sha256,
     )
-    with contextlib.closing(connection.open(script)) as channel:
+    with connection.opened(script) as channel:
         try:
             reply = channel.makefile("r").readline().strip()
             if reply == "there":

@@ -49,7 +49,7 @@ def _texts(connection: Connection) -> Iterator[str]:
 
     :raises NoConsoleError: if the command ends by itself
     """
-    with contextlib.closing(connection.open(shlex.join(connection.controller.layout.output))) as channel:
+    with connection.opened(shlex.join(connection.controller.layout.output)) as channel:
         channel.settimeout(_WAKE_SECONDS)
         unfinished = b""
         while True:

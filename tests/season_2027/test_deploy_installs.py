@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import shutil
 import sys
 import tarfile
 from collections.abc import Generator, Mapping
@@ -13,6 +14,7 @@ from zipfile import ZipFile, ZipInfo
 
 import pytest
 from conftest import MakeProject, Result, RobotProject
+from roborio import Proxy
 from systemcore import Systemcore, require_systemcore
 
 from pyfrc_core.season import CURRENT
@@ -24,6 +26,15 @@ ROBOT = """
     import wpilib
 
     print("program {number} with spinner", spinner.VERSION)
+
+
+    class MyRobot(wpilib.TimedRobot):
+        pass
+"""
+PLAIN = """
+    import wpilib
+
+    print("plain program {number}")
 
 
     class MyRobot(wpilib.TimedRobot):
@@ -76,8 +87,8 @@ class Laptop:
         self.home = home
         self._project = project
         cache = home / "wpilib" / str(CURRENT.year) / "robotpy"
-        self._packages, pythons = cache / "pip_cache", cache / CURRENT.downloads.python_cache
-        for directory in (self._packages, pythons):
+        self.packages, pythons = cache / "pip_cache", cache / CURRENT.downloads.python_cache
+        for directory in (self.packages, pythons):
             directory.mkdir(parents=True)
         content = python.read_bytes()
         (pythons / "python.tar.gz").write_bytes(content)
@@ -100,7 +111,7 @@ class Laptop:
             wheels.append(wheel(name, number, {f"{name}/__init__.py": f'VERSION = "{number}"\n'}))
         locked = []
         for file, content in wheels:
-            (self._packages / file).write_bytes(content)
+            (self.packages / file).write_bytes(content)
             name, number, *_ = file.split("-")
             locked.append(LockedFile(name, number, file, len(content), hashlib.sha256(content).hexdigest()))
         packages = tuple(sorted(locked, key=lambda each: each.name))
@@ -127,7 +138,9 @@ def blank() -> Generator[Systemcore]:
 
 @pytest.fixture
 def project(make_project: MakeProject) -> RobotProject:
-    return make_project({"robot.py": ROBOT.format(number=1), "spinner/__init__.py": "", "pyproject.toml": EXCLUDES})
+    return make_project(
+        {"robot.py": ROBOT.format(number=1), "spinner/__init__.py": 'VERSION = "here"\n', "pyproject.toml": EXCLUDES}
+    )
 
 
 #: The package is a stand-in on this computer, where the program is imported before it is deployed.
@@ -143,7 +156,6 @@ def laptop(project: RobotProject, tmp_path: Path, python_archive: Path) -> Lapto
 
 
 def test_from_nothing_to_two_rollbacks(blank: Systemcore, laptop: Laptop, project: RobotProject) -> None:
-    project.write({"spinner/__init__.py": 'VERSION = "here"\n'})
     laptop.sync(spinner="1.0")
     first = laptop.deploy(blank)
     assert "there is no Python on it yet" in first
@@ -166,3 +178,90 @@ def test_from_nothing_to_two_rollbacks(blank: Systemcore, laptop: Laptop, projec
     blank.said("program 1 with spinner 1.0")
     python = blank.home / ".python/bin/python3"
     assert python.parent.parent.is_symlink(), "where today's tool looks for it"
+
+
+def test_what_todays_tool_has_installed_is_kept_for_the_releases_that_use_it(
+    laptop: Laptop, project: RobotProject
+) -> None:
+    require_systemcore()
+    project.write({"robot.py": PLAIN.format(number=1)})
+    with Systemcore(wpilib=WPILIB, disk_size="400m") as robot:
+        assert "install " not in laptop.deploy(robot), "there is no lock"
+        robot.said("plain program 1")
+        project.write({"robot.py": ROBOT.format(number=2)})
+        laptop.sync(spinner="1.0")
+        laptop.deploy(robot)
+        robot.said("program 2 with spinner 1.0")
+        assert (robot.home / "venv").readlink().parent.name == "environments"
+        assert laptop.run(robot, "deploy", "--rollback").code == 0
+        robot.said("plain program 1")
+        assert (robot.home / "venv").readlink().name == "taken-1"
+
+
+def test_a_blank_robot_without_a_lock_or_without_the_files(
+    blank: Systemcore, laptop: Laptop, project: RobotProject
+) -> None:
+    refused = laptop.run(blank, "deploy", "--skip-tests")
+    assert refused.code == 1
+    assert refused.first_error.endswith("there is no Python on the robot (/home/systemcore/venv/bin/python3)")
+    assert "with internet: pyfrc sync; then at the robot: pyfrc deploy" in refused.stderr
+    laptop.sync(spinner="1.0")
+    (laptop.packages / f"wpilib-{WPILIB}-py3-none-any.whl").write_bytes(b"")
+    refused = laptop.run(blank, "deploy", "--skip-tests")
+    assert refused.code == 1
+    assert f"wpilib {WPILIB} for the robot has another content than the lock says" in refused.first_error
+    assert list(blank.home.iterdir()) == []
+
+
+def test_a_full_disk_is_said_before_anything_is_installed(laptop: Laptop) -> None:
+    require_systemcore()
+    laptop.sync(spinner="1.0")
+    with Systemcore(python=None, disk_size="20m") as robot:
+        refused = laptop.run(robot, "deploy", "--skip-tests")
+        assert refused.code == 1
+        assert "the robot's disk is too full to install Python: " in refused.first_error
+        assert not (robot.home / ".pyfrc/releases").exists()
+
+
+def test_a_damaged_archive_and_a_cut_connection_leave_the_robot_as_it_was(
+    blank: Systemcore, laptop: Laptop, project: RobotProject, python_archive: Path
+) -> None:
+    project.write({"robot.py": PLAIN.format(number=1)})
+    laptop.sync(spinner="1.0")
+    size = python_archive.stat().st_size
+    with Proxy((blank.host, blank.port), cut_to_robot=size // 2) as proxy:
+        cut = project.run(
+            *["deploy", "--skip-tests", "--robot", f"{proxy.host}:{proxy.port}"],
+            env={"HOME": str(laptop.home)},
+            cold=True,
+        )
+        assert cut.code == 1, cut.output
+    assert not (blank.home / "venv").exists()
+    assert not (blank.home / "robotCommand").exists()
+    laptop.deploy(blank)
+    blank.said("plain program 1")
+    assert not (blank.home / ".pyfrc/pythons/.new").exists()
+
+
+def test_two_laptops_with_one_lock_give_the_same_packages(
+    laptop: Laptop, project: RobotProject, tmp_path: Path, python_archive: Path
+) -> None:
+    """Byte for byte, and under the same name."""
+    require_systemcore()
+    project.write({"robot.py": PLAIN.format(number=1)})
+    other, seen = Laptop(tmp_path / "other", project, python_archive), []
+    for each in (laptop, other):
+        each.sync(spinner="1.0")
+        with Systemcore(python=None, disk_size="400m") as robot:
+            each.deploy(robot)
+            place = robot.home / ".pyfrc/environments"
+            seen.append(
+                {
+                    file.relative_to(place).as_posix(): file.read_bytes()
+                    for file in place.rglob("*")
+                    if file.is_file() and not file.is_symlink() and file.suffix != ".pyc"
+                }
+            )
+        shutil.rmtree(project.path / ".pyfrc")  # the next robot has another key
+    assert seen[0] == seen[1]
+    assert len(seen[0]) > 5
