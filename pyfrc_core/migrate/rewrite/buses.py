@@ -80,9 +80,17 @@ class Buses:
         names = self._names(node.args[0].value, scope) if node.args else {""}
         if names and names <= set(_OURS):
             port = self._port(node, scope)
-            args = [cst.Arg(port), *node.args[1:]]
-            self._file.edit(node, changed(args=args))
+            self._file.edit(node, changed(args=[cst.Arg(port)]))
             self._say_first(node)
+        elif node.args:
+            self._file.edit(node, lambda updated: updated.with_changes(args=[cst.Arg(updated.args[0].value)]))
+        if len(node.args) > 1:
+            self._file.say(
+                node,
+                "A phoenix6.CANBus takes no hoot file any more, so it is left out here.",
+                "To replay one, make a phoenix6.HootReplay of it before the devices.",
+                done=True,
+            )
 
     def _names(self, node: cst.BaseExpression, scope: Scope) -> set[str]:
         """Return the texts that an expression can be; nothing if it can be something else."""
