@@ -33,6 +33,28 @@ def remarks(tmp_path: Path, code: str) -> list[Remark]:
 
 #: Code, and what it becomes.
 CODE = {
+    "a short name of the dashboard": (
+        """
+        import wpilib
+        def show(x):
+            sd = wpilib.SmartDashboard
+            sd.putNumber("x", x)
+        def other(x):
+            sd = wpilib.SmartDashboard
+            sd.putNumber("x", x)
+            return sd
+        """,
+        """
+        import wpilib
+        import telemetry
+        def show(x):
+            telemetry.log("x", x)
+        def other(x):
+            sd = wpilib.SmartDashboard
+            telemetry.log("x", x)
+            return sd
+        """,
+    ),
     "cameras": (
         """
         from cscore import CameraServer as CS, VideoMode

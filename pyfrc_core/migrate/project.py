@@ -157,6 +157,9 @@ def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
             calls.call(node, scope)
             leftovers.call(node, scope)
     for node, scope in sites:
+        if isinstance(node, cst.Assign):
+            calls.short_name(node, scope)
+    for node, scope in sites:
         if isinstance(node, cst.Attribute):
             file.attribute(node, scope)
         elif isinstance(node, cst.SimpleString):

@@ -31,35 +31,10 @@ from .atoms import (
     of_type,
     union,
 )
+from .library import ITEM, ITEMS, OPERATORS, SAME, SINGLE
 from .scopes import Binding, Module, OwnClass, OwnFunction, Scope
 from .values import values
 
-_SINGLE = {"Optional", "Union", "Final", "ClassVar", "Annotated", "Type", "type"}
-_SAME = {
-    "list",
-    "tuple",
-    "set",
-    "sorted",
-    "reversed",
-    "iter",
-    "frozenset",
-    "zip",
-    "enumerate",
-    "filter",
-    "deepcopy",
-    "copy",
-}
-_ITEMS = {"values", "items", "copy"}
-_ITEM = {"get", "pop", "setdefault", "popleft"}
-
-_OPERATORS: dict[type[cst.CSTNode], str] = {
-    cst.Add: "__add__",
-    cst.Subtract: "__sub__",
-    cst.Multiply: "__mul__",
-    cst.Divide: "__truediv__",
-    cst.BitAnd: "__and__",
-    cst.BitOr: "__or__",
-}
 _TIMES = 4
 _AUTONOMOUS = "robotpy_ext.autonomous.StatefulAutonomous"
 
@@ -212,7 +187,7 @@ class Inference:
             if name.lower() in ("dict", "mapping", "mutablemapping", "defaultdict") and len(inner) == 2:
                 return dictionary(self.annotated(inner[0], scope), self.annotated(inner[1], scope))
             found = union(self.annotated(each, scope) for each in inner)
-            return found if name in _SINGLE else frozenset({Many(found)}) if found else NOTHING
+            return found if name in SINGLE else frozenset({Many(found)}) if found else NOTHING
         return frozenset(instance(each) for each in self.infer(node, scope) if isinstance(each, Ref | OwnRef))
 
     # Modules
@@ -322,17 +297,17 @@ class Inference:
             if name == "super":
                 own = scope.class_around()
                 return frozenset({OwnObj(own, above=True)}) if own is not None else NOTHING
-            if name in _SAME or name in ("next", "max", "min"):
+            if name in SAME or name in ("next", "max", "min"):
                 found = union(self.infer(each.value, scope) for each in node.args)
-                return found if name in _SAME else elements(found) | found
+                return found if name in SAME else elements(found) | found
         called = self.infer(node.func, scope)
         if isinstance(node.func, cst.Attribute):
             owner = self.infer(node.func.value, scope)
             kept = frozenset(each for each in owner if isinstance(each, Many))
             name = node.func.attr.value
-            if kept and name in _ITEMS:
+            if kept and name in ITEMS:
                 return kept if name == "copy" else many([items(kept), *([elements(kept)] if name == "items" else [])])
-            if kept and name in _ITEM:
+            if kept and name in ITEM:
                 return items(kept)
         return union(self._result(each) for each in called)
 
@@ -355,7 +330,7 @@ class Inference:
         return union(self._result(each) for each in self.attribute(owners, method))
 
     def _operation(self, node: cst.BinaryOperation, scope: Scope) -> Atoms:
-        name = _OPERATORS.get(type(node.operator), "")
+        name = OPERATORS.get(type(node.operator), "")
         left, right = self.infer(node.left, scope), self.infer(node.right, scope)
         return self._results(left, name) | self._results(right, name.replace("__", "__r", 1))
 

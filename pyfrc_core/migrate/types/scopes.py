@@ -11,8 +11,7 @@ from pathlib import Path
 
 import libcst as cst
 
-#: What puts its last argument into a container.
-_PUTS = {"add", "append", "appendleft", "insert", "setdefault"}
+from .library import PUTS
 
 
 @dataclass(eq=False)
@@ -178,7 +177,7 @@ class _Builder(cst.CSTVisitor):
     def visit_Call(self, node: cst.Call) -> None:
         self._site(node)
         self._module.called.add(node.func)
-        if isinstance(node.func, cst.Attribute) and node.func.attr.value in _PUTS and node.args:
+        if isinstance(node.func, cst.Attribute) and node.func.attr.value in PUTS and node.args:
             self._put(node.func.value, node.args[-1].value)
 
     def visit_Comparison(self, node: cst.Comparison) -> None:
@@ -233,6 +232,7 @@ class _Builder(cst.CSTVisitor):
     # Assignments
 
     def visit_Assign(self, node: cst.Assign) -> None:
+        self._site(node)
         for target in node.targets:
             self._assign(target.target, "value", node.value)
 
