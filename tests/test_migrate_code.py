@@ -33,6 +33,44 @@ def remarks(tmp_path: Path, code: str) -> list[Remark]:
 
 #: Code, and what it becomes.
 CODE = {
+    "buttons and axes of controllers, by numbers and by names": (
+        """
+        from commands2.button import CommandXboxController
+        from wpilib import XboxController
+        pad = CommandXboxController(0)
+        shoots, fast = pad.button(5), pad.axisGreaterThan(2, 0.5)
+        stops = pad.button(XboxController.Button.kA)
+        slow = pad.axisLessThan(XboxController.Axis.kLeftX, 0.1)
+        turn = pad.getRawAxis(XboxController.Axis.kRightX) + pad.getHID().getRawAxis(4)
+        """,
+        """
+        from commands2.button import CommandXboxController
+        from wpilib import XboxController
+        pad = CommandXboxController(0)
+        shoots, fast = pad.get_hid().button(9), pad.get_hid().axis_greater_than(4, 0.5)
+        stops = pad.get_hid().button(XboxController.Button.A)
+        slow = pad.get_hid().axis_less_than(XboxController.Axis.LEFT_X, 0.1)
+        turn = pad.get_hid().get_raw_axis(XboxController.Axis.RIGHT_X) + pad.get_controller().get_hid().get_raw_axis(2)
+        """,
+    ),
+    "a name of several types": (
+        """
+        from typing import List, Union
+        import rev
+        Config = Union[rev.SparkMaxConfig, "rev.SparkFlexConfig"]
+        def prepare(configs: Union[Config, List[Config]]):
+            for each in configs if isinstance(configs, list) else [configs]:
+                each.smartCurrentLimit(40)
+        """,
+        """
+        from typing import List, Union
+        import rev
+        Config = Union[rev.SparkMaxConfig, "rev.SparkFlexConfig"]
+        def prepare(configs: Union[Config, List[Config]]):
+            for each in configs if isinstance(configs, list) else [configs]:
+                each.smart_current_limit(40)
+        """,
+    ),
     "a short name of the dashboard": (
         """
         import wpilib
@@ -502,7 +540,7 @@ CODE = {
         if stick.get_raw_button(0) or stick.get_raw_button_pressed(FIRE - 1):
             pass
         JoystickButton(stick.get_hid(), 1).on_true(None)
-        driver.button(3).on_true(None)
+        driver.get_hid().button(3).on_true(None)
         """,
     ),
     "directions of a POV": (

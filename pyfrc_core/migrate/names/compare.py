@@ -24,6 +24,8 @@ from .packages import Class, Entry, Function, Packages, Value
 
 _MOVED_PACKAGES = ("wpilib", "wpilib_drivers", "wpimath", "wpiutil", "wpilog")
 _HID = "wpilib.GenericHID"
+#: Methods of a gamepad that take its Button or Axis only, no numbers.
+_OF_ENUMERATIONS = {"button", "axis_less_than", "axis_greater_than", "axis_magnitude_greater_than"}
 _COMMAND_HID = "commands2.button.CommandGenericHID"
 
 
@@ -143,10 +145,16 @@ class _Comparison:
             theirs = self._member(base, self._path(base), name)[0]
             kept = self._in_class(self._new_entry(target), [theirs])[0]
             ours = kept or self._member(path, target, name)[0]
+            if kept in _OF_ENUMERATIONS and self._has_hid(target) and "Joystick" not in target:
+                ours = f"get_hid().{theirs}"  # which also takes numbers, as in 2026
             if ours != theirs and theirs != "-" and "." not in theirs:
                 type_ = member.returns if isinstance(member, Function) else ""
                 found.append(f"{name}={ours}{f':{type_}' if type_ else ''}")
         return found
+
+    def _has_hid(self, target: str) -> bool:
+        """Return whether a class is a controller, which is no GenericHID any more, but has one."""
+        return bool(self._in_class(self._new_entry(target), ["get_hid"])[0])
 
     def _of_bases(self, entry: Class) -> list[tuple[str, str, Entry]]:
         found: list[tuple[str, str, Entry]] = []
@@ -167,8 +175,7 @@ class _Comparison:
         found = self._in_class(owner, spellings)
         if not found[0]:
             found = self._in_class(owner, [], normalized(name))
-        if not found[0] and self._in_class(owner, ["get_hid"])[0]:
-            # A controller is not a GenericHID any more: it has one.
+        if not found[0] and self._has_hid(target):
             hid = self._new.entries[_COMMAND_HID if target.startswith("commands2.") else _HID]
             through = self._in_class(hid, spellings, normalized(name))
             if through[0]:

@@ -42,9 +42,8 @@ class Arguments:
         for path in paths:
             if path in self._corrections["buttons"]:
                 self._button(node, scope, self._corrections["buttons"][path])
-            gamepad = self._gamepad(node, scope) if path in self._corrections["axes"] else None
-            if gamepad is not None:
-                self._number(node.args[self._corrections["axes"][path]], gamepad, "axes")
+            if path in self._corrections["axes"]:
+                self._axis(node, scope, self._corrections["axes"][path])
             if path in self._corrections["pov_arguments"]:
                 self._direction(node, self._corrections["pov_arguments"][path])
             if path in self._corrections["hid_arguments"]:
@@ -114,6 +113,15 @@ class Arguments:
         self._file.say(
             node, "Buttons count from 0 now: 1 is subtracted here.", "Better subtract it from the constant.", done=True
         )
+
+    def _axis(self, node: cst.Call, scope: Scope, position: int) -> None:
+        gamepad = self._gamepad(node, scope)
+        if gamepad is None or len(node.args) <= position:
+            return
+        value = node.args[position].value
+        is_constant = bool(self._file.inference.infer(value, scope))  # of an enumeration
+        if not is_constant and not (isinstance(value, cst.Attribute) and value.attr.value == "value"):
+            self._number(node.args[position], gamepad, "axes")
 
     def _gamepad(self, node: cst.Call, scope: Scope) -> Gamepad | None:
         """Return the gamepad that a call is one of, or that it gets as its first argument."""

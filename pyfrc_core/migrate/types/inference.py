@@ -127,15 +127,11 @@ class Inference:
             return many([self.infer(node.elt, scope.module.comprehensions.get(node.elt, scope))])
         if isinstance(node, cst.Subscript):
             found = self.infer(node.value, scope)
-            generic = frozenset(each for each in found if isinstance(each, OwnRef) or self._is_class(each))
+            generic = frozenset(each for each in found if isinstance(each, OwnRef | Ref))
             return items(found) | self._results(found, "__getitem__") | generic
         if isinstance(node, cst.Lambda):
             return frozenset({OwnCallable(self._functions[node])}) if node in self._functions else NOTHING
         return NOTHING
-
-    def _is_class(self, atom: Atom) -> bool:
-        name = self.table.name(atom.path) if isinstance(atom, Ref) else None
-        return name is not None and name.is_class
 
     def named(self, name: str, scope: Scope) -> Atoms:
         """Return what a name can be in a scope."""
@@ -188,7 +184,13 @@ class Inference:
                 return dictionary(self.annotated(inner[0], scope), self.annotated(inner[1], scope))
             found = union(self.annotated(each, scope) for each in inner)
             return found if name in SINGLE else frozenset({Many(found)}) if found else NOTHING
-        return frozenset(instance(each) for each in self.infer(node, scope) if isinstance(each, Ref | OwnRef))
+        found = frozenset(instance(each) for each in self.infer(node, scope) if isinstance(each, Ref | OwnRef))
+        if not found and isinstance(node, cst.Name):  # Alias = Union[A, B]
+            aliases = [each for each in scope.find(node.value) if each.kind == "value"]
+            found = union(
+                self.annotated(each.node, each.scope) for each in aliases if not isinstance(each.node, cst.Name)
+            )
+        return found
 
     # Modules
 
