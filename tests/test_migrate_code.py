@@ -33,6 +33,36 @@ def remarks(tmp_path: Path, code: str) -> list[Remark]:
 
 #: Code, and what it becomes.
 CODE = {
+    "an old name of a base class": (
+        """
+        import commands2
+        from commands2 import Command, SubsystemBase, SubsystemBase as Part
+        class Drive(commands2.SubsystemBase):
+            pass
+        class Arm(Part):
+            def setup(self):
+                self.setDefaultCommand(Move(self))
+        class Shooter(SubsystemBase):
+            pass
+        class Move(Command):
+            def isFinished(self):
+                return True
+        """,
+        """
+        import commands2
+        from commands2 import Command, Subsystem, Subsystem as Part
+        class Drive(commands2.Subsystem):
+            pass
+        class Arm(Part):
+            def setup(self):
+                self.set_default_command(Move(self))
+        class Shooter(Subsystem):
+            pass
+        class Move(Command):
+            def is_finished(self):
+                return True
+        """,
+    ),
     "buttons and axes of controllers, by numbers and by names": (
         """
         from commands2.button import CommandXboxController

@@ -71,7 +71,7 @@ class Table:
         homes = {path.rpartition(".")[0] for path in ours}
         self.modules: Mapping[str, str] = {**data["modules"], **{home: home for home in homes}}
         self.corrections = corrections
-        self._aliases: Mapping[str, str] = data["aliases"]
+        self._aliases: Mapping[str, str] = {**data["aliases"], **corrections["old_aliases"]}
         self._lines: Mapping[str, str] = {**data["names"], **{path: f"();{members}" for path, members in ours.items()}}
         self._names: dict[str, Name | None] = {}
         self._camel: frozenset[str] | None = None

@@ -157,7 +157,7 @@ class FileRewriter:
         elif first.owner:
             is_value = first.member is not None and first.member.is_value
             self._rename_member(node, scope, target, is_value=is_value)
-        elif target != first.path:
+        elif target != first.path or target.rpartition(".")[2] != node.attr.value:
             self._respell(node, scope, first.path, target)
 
     def _say_note(self, node: cst.Attribute | cst.Name, path: str) -> None:
@@ -251,7 +251,10 @@ class FileRewriter:
         if not bindings:
             self._from_star(node, scope, old, new)
             return
-        if node.value == old.rpartition(".")[2] != new.rpartition(".")[2] and not self._renamed_by_import(node, scope):
+        as_imported = node.value == old.rpartition(".")[2] or old in {
+            self.table.canonical(each.path) for each in bindings
+        }
+        if as_imported and node.value != new.rpartition(".")[2] and not self._renamed_by_import(node, scope):
             self.edit(node, renamed(new.rpartition(".")[2]))
 
     def _renamed_by_import(self, node: cst.Name, scope: Scope) -> bool:
