@@ -21,9 +21,6 @@ _PLATFORMS = {"windows": "win32", "macos": "darwin"}
 
 _AUTOCRLF = {"GIT_CONFIG_KEY_0": "core.autocrlf", "GIT_CONFIG_VALUE_0": "true"}
 
-#: Of a new interpreter that crashes, pytest's captured output is lost with it.
-_LOST = "output before a crash"
-
 #: What runs when no test is named: the files that are about what differs there.
 FILES = {
     "windows": (
@@ -49,12 +46,6 @@ LONG = (
     "test_migrate.py::test_five_thousand_lines_are_valid_afterwards",
 )
 
-#: What fails there, and why.
-KNOWN = {
-    "test_failures.py::test_a_robot_that_takes_its_process_down_fails_its_own_test_only": _LOST,
-    "test_isolation.py::test_output_and_logs_are_shown_for_what_fails_only": _LOST,
-}
-
 
 def main() -> int:
     """Run the tests, and return pytest's exit code."""
@@ -64,7 +55,7 @@ def main() -> int:
         environment.pop("PYFRC_NO_SKIPS", None)  # what is about Linux alone is skipped
         if not any(argument.partition("::")[0].endswith(".py") for argument in arguments):
             arguments += [f"tests/{name}" for name in FILES[system]]
-            arguments += [f"--deselect=tests/{name}" for name in (*LONG, *KNOWN)]
+            arguments += [f"--deselect=tests/{name}" for name in LONG]
         return subprocess.call([sys.executable, "-m", "pytest", *arguments], cwd=_ROOT, env=environment)
 
 

@@ -89,7 +89,7 @@ class IsolatedTests:
                 raise
             finally:
                 for process in self._running.values():
-                    process.worker.kill()
+                    process.close()
                 self._running.clear()
                 self._end_interpreters(session.config)
                 durations.save()

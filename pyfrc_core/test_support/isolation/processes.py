@@ -6,8 +6,10 @@ import signal
 import sys
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import IO
 
 import pytest
@@ -83,7 +85,7 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin, interpreters: Interpret
 
     :param more: how many tests are known to follow
     """
-    from .spawned import TestJob, run_in_interpreter
+    from .spawned import OUTPUT, TestJob, run_in_interpreter
 
     job = TestJob(
         [str(argument) for argument in item.config.invocation_params.args],
@@ -94,7 +96,21 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin, interpreters: Interpret
         agreed(),
     )
     worker = interpreters.begin(partial(run_in_interpreter, job), more)
-    return TestProcess(worker, worker.printed, partial(interpreters.end, worker), item.nodeid)
+
+    def files() -> list[Path]:
+        return [file for kind, content in worker.messages() if kind == OUTPUT for file in content]
+
+    def captured() -> str:
+        return worker.printed() + "".join(file.read_text("utf-8", "replace") for file in files())
+
+    def close() -> None:
+        left = files()
+        interpreters.end(worker)
+        for file in left:
+            with suppress(OSError):
+                file.unlink()
+
+    return TestProcess(worker, captured, close, item.nodeid)
 
 
 # -- on the other side -----------------------------------------------------------------------------------------------

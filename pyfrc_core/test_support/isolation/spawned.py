@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
+from ...compat.pytest_private import capture_into
 from ...measure.processes import measure_here
 from ...processes.crash_report import CrashLog
 from ...processes.worker import Send
@@ -16,6 +19,10 @@ from ..options import TestOptions
 if TYPE_CHECKING:
     from ...project import Project
     from ..pytest_plugin import PyFrcPlugin
+
+
+#: The kind of the message with the files of standard output and standard error that pytest captures into.
+OUTPUT = "output"
 
 
 @dataclass(frozen=True)
@@ -57,6 +64,7 @@ class OnlyOneTest:
         from ...runtime.turns import take
         from .messages import ReportSender
 
+        self._send((OUTPUT, _capture_into_files(session.config)))
         take(self._job.turns)
         self._plugin.crash_log = self._log
         self._log.enable_fault_handler()  # pytest has one of its own
@@ -64,6 +72,16 @@ class OnlyOneTest:
             if item.nodeid == self._job.nodeid:
                 ReportSender(self._send).run(item, shares=False)
         return True
+
+
+def _capture_into_files(config: pytest.Config) -> list[Path]:
+    """Have pytest capture into files that outlive this process; the other one removes them."""
+    files = [tempfile.mkstemp(prefix="pyfrc-output-") for _ in range(2)]
+    (stdout, _), (stderr, _) = files
+    capture_into(config, (stdout, stderr))
+    for descriptor, _ in files:
+        os.close(descriptor)
+    return [Path(name) for _, name in files]
 
 
 def run_in_interpreter(job: TestJob, send: Send, log: CrashLog) -> int:
