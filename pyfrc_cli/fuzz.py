@@ -16,7 +16,7 @@ from pyfrc_core._version import requirement
 from pyfrc_core.processes.loading import loading
 from pyfrc_core.wording import counted
 
-from .project_options import chosen_project, project_options
+from .project_options import chosen_project, from_here, project_options
 from .verbosity import hint, verbosity
 
 if TYPE_CHECKING:
@@ -219,7 +219,7 @@ def _compare(project: Project, revision: str, options: CampaignOptions) -> int:
     click.secho(f"The outputs differ from those of {compared.revision}, first", fg="red")
     for line in (*compared.story, compared.difference):
         click.echo(f"  {line}")
-    click.echo(f"  pyfrc replay {os.path.relpath(compared.file)}")
+    click.echo(f"  pyfrc replay {from_here(compared.file)}")
     hint(matches)
     return 1
 
@@ -304,7 +304,7 @@ def _annotation(found: FuzzFinding, root: Path) -> str:
     file, colon, line = found.failure.place.rpartition(":")
     where = ""
     if colon:
-        path = os.path.relpath(root / file, os.environ.get("GITHUB_WORKSPACE") or ".").replace(os.sep, "/")
+        path = from_here(root / file, os.environ.get("GITHUB_WORKSPACE") or ".")
         where = f"file={_escaped(path, in_property=True)},line={line},"
     story = "\n".join([*found.story, f"pyfrc replay {found.entry.display_path}"])
     return f"::error {where}title=pyfrc fuzz::{_escaped(story)}"

@@ -61,9 +61,9 @@ def chosen_project(directory: Path | None, main: Path | None, robot_class: str |
     return project
 
 
-def from_here(file: Path) -> str:
-    """Return the path relative to the current directory, where that is possible."""
+def from_here(file: Path, here: str = ".") -> str:
+    """Return the path relative to the current directory, or to another one, where that is possible."""
     try:
-        return Path(os.path.relpath(file)).as_posix()
+        return Path(os.path.relpath(file, here)).as_posix()
     except ValueError:  # on Windows: on another drive
         return str(file)

@@ -17,7 +17,7 @@ from .other_season import in_2027
 from .places import class_named, frames_of, is_in_opmode, line_of_class, users_class, users_frame
 
 _STACK_LINE = re.compile(r'File "([^"]+)", line (\d+)')
-_FILE_AND_LINE = re.compile(r"(?P<file>[^\s()]+\.py):(?P<line>\d+)")
+_FILE_AND_LINE = re.compile(r"(?P<file>.+\.py):(?P<line>\d+)")
 
 _OWN_CHANNEL = "Each device needs a channel of its own: change one of the two to the number that it is wired to."
 #: Instead, if it was this line that made the device before.
@@ -207,7 +207,7 @@ ROWS = (
         "self.addRequirements(subsystem) in the command's __init__.",
     ),
     KnownError(
-        r"IllegalCommandUse: Commands that have been composed may not be.*originally composed at (?P<place>.+?)\)",
+        r"IllegalCommandUse: Commands that have been composed may not.*originally composed at (?P<place>.+?\.py:\d+)\)",
         "this command is already part of another one, composed at {place}",
         "Use a command object once: create a second one for the second use, for example with a function that returns "
         "a new command each time.",

@@ -41,6 +41,7 @@ from ..runtime.scripts.files import recorded, traced
 from ..runtime.seeds import seed_generators
 from ..runtime.threads.cooperative import line_of_thread
 from ..runtime.threads.robot_threads import RobotThread
+from ..wording import from_here
 from ..wpi import robots
 from . import controller, opmodes
 from .controller import TestController
@@ -276,7 +277,7 @@ class PyFrcPlugin(WatchedTests):
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         """Print the directory of the data logs that robots have written."""
         if self._data_logs() - self._former_logs:
-            terminalreporter.write_line(f"data logs: {os.path.relpath(self.project.root / TEST_LOGS)}")
+            terminalreporter.write_line(f"data logs: {from_here(self.project.root / TEST_LOGS)}")
 
     def _data_logs(self) -> set[tuple[str, int]]:
         """Return the current data logs of tests, with their modification times."""
