@@ -1,13 +1,13 @@
 """How quickly the page of `pyfrc sim --ui web` shows what happens, and what its server costs.
 
-    python benchmarks/sim_page.py [--robot tests/robots/competition/rev_swerve]
+    python benchmarks/sim_page.py [--robot tests/robots/competition/rev_swerve] [--minutes 20]
 
 Needs Chromium, and pyfrc's development requirements.
 
 The robot is a copy that has one motor more, which follows a key at once. In real time: from the key to the end of the
 frame that paints the motor's number, 40 times; frames a second for 5 s while 8 values are plotted and the robot drives;
-meanwhile, the processor time of the server's process. Then, after 150 s of a match at speed 0: from choosing a moment
-to the end of the frame that paints its values in every panel, 60 times.
+meanwhile, the processor time of the server's process. Then, after a practice match at speed 0, and for the rest of
+`--minutes` disabled: from choosing a moment to the end of the frame that paints its values in every panel, 60 times.
 """
 
 from __future__ import annotations
@@ -169,7 +169,9 @@ def main() -> None:
     """Measure, and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--robot", type=Path, default=ROBOT, help="a robot whose autonomous and teleop need no person")
-    robot = parser.parse_args().robot
+    parser.add_argument("--minutes", type=float, default=2.5, help="the robot time after which moments are chosen")
+    given = parser.parse_args()
+    robot = given.robot
     with open_browser() as browser:
         with serving(robot) as (process, address):
             page = opened(browser, address, "Driving")
@@ -192,11 +194,12 @@ def main() -> None:
             page = opened(browser, address, "Driving")
             page.get_by_role("button", name="Practice", exact=True).click()
             page.locator(".state.enabled").wait_for(timeout=60_000)
-            while page.evaluate(MODEL)[0] < 150:
+            while page.evaluate(MODEL)[0] < 60 * given.minutes:
                 page.wait_for_timeout(200)
             page.keyboard.press("F5")
             page.get_by_role("button", name="Run", exact=True).first.wait_for()
-            print(line("a moment of a match of 150 s, in every panel", page.evaluate(SEEK, MOMENTS), "ms"))
+            what = f"a moment of {given.minutes:g} minutes, in every panel"
+            print(line(what, page.evaluate(SEEK, MOMENTS), "ms"))
 
 
 if __name__ == "__main__":
