@@ -87,7 +87,8 @@ export function drawOrigin(context, view, field, [x, y]) {
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.font = font(11, "bold ");
-  for (const [name, right, down] of [["x", wayX, 0], ["y", 0, wayY]]) {
+  for (const name of ["x", "y"]) {
+    const [right, down] = name === "x" ? [wayX, 0] : [0, wayY];
     const at = (pixels) => [corner[0] + right * pixels, corner[1] + down * pixels];
     context.strokeStyle = color(name === "x" ? "red" : "green");
     context.fillStyle = context.strokeStyle;

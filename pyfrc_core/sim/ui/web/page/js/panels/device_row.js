@@ -31,7 +31,7 @@ export class DeviceRow extends Component {
 }
 
 // A part of a row that draws a path's value in `paint(value)` whenever it changes.
-class Painted extends Component {
+export class Painted extends Component {
   element = createRef();
 
   paint(_value, _index) {}
@@ -49,7 +49,7 @@ class Painted extends Component {
   }
 }
 
-class Meter extends Painted {
+export class Meter extends Painted {
   paint(value) {
     const { low, high } = this.props.row;
     const [bar, text] = this.element.current.children;

@@ -2,7 +2,11 @@
 import { model } from "#js/model.js";
 import { settings } from "#js/settings.js";
 import { Icon, Live, classes, html } from "#js/view.js";
+import { motorsOf } from "#js/motors.js";
 import { DeviceRow } from "#js/panels/device_row.js";
+import { MotorTable } from "#js/panels/motor_table.js";
+
+const MANY = 100; // rows of a group that is closed at first
 
 export class DevicesPanel extends Live {
   parts = ["panels", "settings", "hello"];
@@ -16,14 +20,18 @@ export class DevicesPanel extends Live {
     const found = groups
       .map((group) => ({ ...group, rows: group.rows.filter((row) => matches(row, group.title, words)) }))
       .filter((group) => group.rows.length);
+    const motors = motorsOf(model.panels).filter(({ name, device }) => words.every((word) => `motors ${name} ${device}`.toLowerCase().includes(word)));
+    const isClosed = (title, rows) => !words.length && (closed[title] ?? rows.length > MANY);
+    const toggle = (title, rows) => this.setState({ closed: { ...closed, [title]: !isClosed(title, rows) } });
     return html`<div class="devices">
       <label class="search"><${Icon} name="search" /><input type="search" placeholder="Search devices" value=${search}
         aria-label="Search devices" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
       <div class="scroll">
         ${pinned.length > 0 && html`<${Group} title="Pinned" rows=${pinned} pins=${pins} />`}
+        ${motors.length > 0 && html`<${Group} key="Motors" title="Motors" rows=${motors} closed=${isClosed("Motors", [])} toggle=${() => toggle("Motors", [])}
+          content=${() => html`<${MotorTable} motors=${motors} />`} />`}
         ${found.map((group) => html`<${Group} key=${group.title} title=${group.title} rows=${group.rows} pins=${pins}
-          closed=${closed[group.title] && !words.length}
-          toggle=${() => this.setState({ closed: { ...closed, [group.title]: !closed[group.title] } })} />`)}
+          closed=${isClosed(group.title, group.rows)} toggle=${() => toggle(group.title, group.rows)} />`)}
         ${!found.length && html`<p class="empty">${model.panels.length ? "No device is called that." : "Devices appear here when the robot creates them."}</p>`}
       </div>
     </div>`;
@@ -52,11 +60,13 @@ function rowKey(row) {
   return row.paths[0] ?? `heading ${row.label}`;
 }
 
-function Group({ title, rows, pins, closed, toggle }) {
+// `content` returns what is shown instead of the rows.
+function Group({ title, rows, pins = new Set(), closed, toggle, content = null }) {
   return html`<section class="group">
     <h3><button class=${classes({ fold: true, closed })} aria-expanded=${!closed} onClick=${toggle} disabled=${!toggle}>
-      ${toggle && html`<${Icon} name="chevron" />`}${title}</button></h3>
-    ${!closed && byDevice(rows).map((some) => html`<div class="device" key=${rowKey(some[0])}>
+      ${toggle && html`<${Icon} name="chevron" />`}${title}${closed && html`<small class="faint">${rows.length} ${content ? "motors" : "rows"}</small>`}</button></h3>
+    ${!closed && content?.()}
+    ${!closed && !content && byDevice(rows).map((some) => html`<div class="device" key=${rowKey(some[0])}>
       ${some.map((row) => html`<${DeviceRow} key=${rowKey(row)} row=${row} pinned=${pins.has(rowKey(row))}
         named=${title === "Pinned"} pin=${() => togglePin(rowKey(row))} />`)}</div>`)}
   </section>`;

@@ -34,10 +34,6 @@ export class PlotPanel extends Live {
   others = new Map(); // path: series of the compared branch
   computed = new Computed();
 
-  interval() {
-    return this.config.table ? TABLE_INTERVAL : 0;
-  }
-
   componentDidMount() {
     super.componentDidMount();
     this.size = new ElementSize(this.area.current, () => this.resize());
@@ -72,6 +68,7 @@ export class PlotPanel extends Live {
 
   render({ id }, { over, at }) {
     const { curves, seconds, table: isTable } = this.config;
+    this.interval = isTable ? TABLE_INTERVAL : 0;
     const moment = at ?? model.past?.t ?? model.t;
     const isNumber = ({ path }) => this.isNumber(path);
     const plot = { curves, x: this.config.x, isNumber, change: this.change, remove: this.remove, setX: this.setX, copy: (curve) => addCurve(id, { ...curve, hidden: undefined }) };
