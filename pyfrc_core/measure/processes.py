@@ -14,6 +14,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from ..processes import spawn
 from ..processes.exit import before_every_exit, exit_by_signal
 from ..processes.fork import Fork
 
@@ -43,6 +44,7 @@ def announced(kind: str, settings: dict[str, object]) -> Iterator[None]:
         del os.environ[_KINDS[kind]]
         if not before_every_exit:
             Fork.grace_seconds = 0.0
+            spawn.first_calls.remove(measure_here)
 
 
 def is_announced(kind: str) -> bool:
@@ -63,6 +65,8 @@ def measure_here() -> None:
 
 def _begin(kind: str, settings: dict[str, object]) -> Callable[[], object]:
     Fork.grace_seconds = _PATIENCE
+    if measure_here not in spawn.first_calls:
+        spawn.first_calls.append(measure_here)
     save: Callable[[], object] = importlib.import_module(f".{kind}", __package__).begin(settings)
     before_every_exit.append(save)
     return save

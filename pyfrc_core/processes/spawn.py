@@ -31,6 +31,10 @@ WRITES_UTF_8 = {"PYTHONIOENCODING": "utf-8:backslashreplace"}
 popen: Callable[..., Any] = subprocess.Popen
 
 
+#: Called in each new interpreter before what it is started for; can be pickled.
+first_calls: list[Callable[[], object]] = []
+
+
 class Interpreter(Protocol):
     """A process that was started; with methods of `subprocess.Popen`."""
 
@@ -67,7 +71,7 @@ class Start:
     def job(self) -> bytes:
         """Return what the interpreter reads from its standard input."""
         owner = os.getpid() if self.ends_with_owner else None
-        return encode(_Job(sys.path, str(Path.cwd()), owner, pickle.dumps(self.call)))
+        return encode(_Job(sys.path, str(Path.cwd()), owner, pickle.dumps((first_calls, self.call))))
 
 
 @dataclass(frozen=True)
@@ -77,7 +81,7 @@ class _Job:
     :param path: `sys.path`
     :param directory: the current one
     :param owner: the process that it is to end with
-    :param call: pickled by itself, since unpickling it needs `path`
+    :param call: what it does, after `first_calls`; pickled by themselves, since unpickling them needs `path`
     """
 
     path: list[str]
@@ -143,5 +147,8 @@ def main() -> None:
     sys.path[:] = job.path
     os.chdir(job.directory)
     with collector_paused():
-        call: Callable[[], object] = pickle.loads(job.call)
+        calls: tuple[list[Callable[[], object]], Callable[[], object]] = pickle.loads(job.call)
+    first, call = calls
+    for each in first:
+        each()
     call()

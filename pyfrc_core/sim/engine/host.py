@@ -90,9 +90,6 @@ class Exited:
 
 def main(hosting: Hosting) -> None:
     """The process."""
-    from ...measure.processes import measure_here
-
-    measure_here()
     connection = _connect(hosting, hosting.name)
     if connection is None:
         shutil.rmtree(hosting.temporary, ignore_errors=True)

@@ -40,9 +40,6 @@ def start_interpreters(project: Project, options: TestOptions) -> Interpreters:
 
 def _prepare(main_file: Path) -> InitialState:
     """Import what each test needs; return the state in which each is to begin."""
-    from ...measure.processes import measure_here
-
-    measure_here()
     from ...project import Project
     from ...runtime.as_good_as_new.state import ProcessState
     from ...runtime.patches.install import patches

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import pytest
 
 from ...compat.pytest_private import capture_into
-from ...measure.processes import measure_here
 from ...processes.crash_report import CrashLog
 from ...processes.worker import Send
 from ..options import TestOptions
@@ -87,7 +86,6 @@ def _capture_into_files(config: pytest.Config) -> list[Path]:
 def run_in_interpreter(job: TestJob, send: Send, log: CrashLog) -> int:
     """Run the test, and return pytest's exit code."""
     os.chdir(job.directory)
-    measure_here()
     from ..pytest_plugin import PyFrcPlugin
 
     project = job.project
