@@ -20,7 +20,7 @@ from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 from pyfrc_core.deploy.agent_stream import TimeLimits
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
 from pyfrc_core.deploy.manifest import Manifest
-from pyfrc_core.deploy.targets.roborio import ROBORIO
+from pyfrc_core.deploy.targets import CONTROLLERS, ControllerKind
 
 Script = Iterable[bytes]
 
@@ -73,6 +73,12 @@ HELLO = wire.message_frame({"done": FACTS})
 REQUEST = DeployRequest("robot.py", {})
 
 
+@pytest.fixture(params=CONTROLLERS, ids=lambda each: each.name, autouse=True)
+def controller(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same from each kind of robot."""
+    monkeypatch.setattr(FakeRobot, "controller", request.param, raising=False)
+
+
 def packed(text: bytes) -> bytes:
     return wire.frame(wire.MESSAGE, zlib.compress(text))
 
@@ -85,7 +91,7 @@ class FakeRobot:
     """
 
     address = "10.12.34.2"
-    controller = ROBORIO
+    controller: ControllerKind
 
     def __init__(self, *scripts: bytes, then: Script = (), status: int | None = -1, errors: bytes = b"") -> None:
         self._scripts = iter(scripts)
@@ -300,6 +306,14 @@ NEEDS: list[Any] = [
 def test_contents_that_were_not_offered(need: dict[str, Any], project: Manifest) -> None:
     message = protocol_error(FakeRobot(HELLO, wire.message_frame(need)), lambda robot: robot.deploy(project, REQUEST))
     assert "'need'" in message
+
+
+@pytest.mark.parametrize("need", [{"need": ["other.whl"], "bytes": 1}, {"need": ["robot.py", "robot.py"]}, {"need": 1}])
+def test_wheels_that_were_not_offered(need: dict[str, Any], project: Manifest) -> None:
+    robot = FakeRobot(HELLO, wire.message_frame(need))
+    session = AgentClient.start(robot)
+    with pytest.raises(DeployError, match="not from pyfrc's agent"):
+        session.install("a" * 16, "b" * 16, project, 1)
 
 
 def test_a_phase_that_is_not_known_is_one_of_a_later_agent(project: Manifest) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import random
 from collections.abc import Generator
 from pathlib import Path
@@ -17,8 +18,14 @@ from systemcore import Systemcore, require_systemcore
 
 from pyfrc_core.deploy.agent.disk import free_bytes
 from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest, Watched
+from pyfrc_core.deploy.connection import connect
+from pyfrc_core.deploy.discovery import Address
 from pyfrc_core.deploy.errors import ConnectionFailedError, RefusedError
+from pyfrc_core.deploy.host_keys import HostKeys
+from pyfrc_core.deploy.login import Credentials
 from pyfrc_core.deploy.manifest import Manifest
+from pyfrc_core.deploy.targets import AdministratorTask
+from pyfrc_core.deploy.targets.systemcore import SYSTEMCORE
 
 pytestmark = pytest.mark.bare
 
@@ -296,3 +303,27 @@ def test_without_a_readable_journal_the_process_decides(systemcore: Systemcore, 
         robot.restart()
         watched = robot.watch(PATIENCE, unheard=0.5)
         assert (watched.verdict, watched.output) == ("unheard", "")
+
+
+def test_a_changed_password_is_asked_for_once_and_counts_for_the_whole_command(tmp_path: Path) -> None:
+    require_systemcore()
+    asked: list[str] = []
+
+    def ask(robot: str) -> str:
+        asked.append(robot)
+        return "secret"
+
+    with Systemcore(password="secret") as computer:
+        address = Address(computer.host, computer.port)
+        keys = HostKeys(tmp_path).of_robot(address, SYSTEMCORE)
+        with pytest.raises(
+            ConnectionFailedError, match="refuses systemcore with the password systemcore, which is the"
+        ):
+            connect(address, SYSTEMCORE, keys)
+        assert keys.known() == [], "an unknown key is pinned only after the login"
+        with connect(address, SYSTEMCORE, keys, credentials=Credentials(ask_password=functools.cache(ask))) as robot:
+            assert robot.administer(AdministratorTask("sudo -n id", "", "")) is None
+        assert asked == [f"systemcore@{address} (its key: {robot.key.fingerprint})"]
+        with pytest.raises(ConnectionFailedError, match="with this password, and with the default one"):
+            connect(address, SYSTEMCORE, keys, credentials=Credentials(ask_password=lambda robot: "wrong"))
+    assert not [file for file in tmp_path.rglob("*") if file.is_file() and b"secret" in file.read_bytes()]

@@ -41,7 +41,8 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
     target = choose_target(project, options.choice, talk.ask)
     program = prepare(project, options, talk)
     progress = talk.progress
-    wanted = wanted_environment(project, target.controller) if options.check_versions and not options.dry_run else None
+    installs = options.check_versions and not (options.dry_run or options.in_place)
+    wanted = wanted_environment(project, target.controller) if installs else None
     with connected_agent(target, options.choice, progress, program.imports.modules, wanted) as (connection, robot):
         if robot.facts.other_languages:
             progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))

@@ -130,6 +130,29 @@ def test_a_changed_password_is_asked_for_at_a_terminal_only(project: RobotProjec
         assert list(robot.home.glob(".pyfrc")) == []
 
 
+def test_a_disk_that_cannot_be_written(project: RobotProject, robot: Systemcore) -> None:
+    assert deploy(project, robot).code == 0
+    robot.run("chown", "-R", "root", "/home/systemcore/.pyfrc")
+    project.write({"robot.py": ROBOT.format(version=2)})
+    result = deploy(project, robot)
+    assert result.code == 1, result.output
+    assert "on the robot: sudo chown -R systemcore /home/systemcore/.pyfrc" in result.stderr
+    assert info(project, robot)["running"]
+
+
+@pytest.mark.parametrize("clock", ["@0", "@4000000000"], ids=["1970", "2096"])
+def test_a_wrong_clock_is_no_obstacle(clock: str, project: RobotProject, robot: Systemcore) -> None:
+    """As on a robot whose Driver Station has not set it yet: files seem to be old, or of the future."""
+    assert deploy(project, robot).code == 0
+    ours = "find /home/systemcore -xdev -path /home/systemcore/.python -prune -o -exec"
+    everything = f"{ours} touch -h -d {clock} {{}} +"
+    robot.run("sh", "-c", everything)
+    assert "nothing has changed" in deploy(project, robot).stdout
+    project.write({"robot.py": ROBOT.format(version=2)})
+    assert deploy(project, robot).code == 0
+    robot.said("this is version 2")
+
+
 @contextmanager
 def driver_station(robot: Systemcore, on_field: bool) -> Iterator[None]:
     """The Driver Station of 2027 on this computer, which is connected to the robot."""

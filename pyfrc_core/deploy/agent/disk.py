@@ -127,10 +127,10 @@ def link_or_copy(source: str, target: str) -> None:
         shutil.copy2(source, target, follow_symlinks=False)
 
 
-def disk_problem(error: OSError, administrator: str) -> tuple[str, str]:
+def disk_problem(error: OSError, by_administrator: str) -> tuple[str, str]:
     """Return what is wrong with the robot's disk, and what the user can do.
 
-    :param administrator: the user who may change everything on the robot
+    :param by_administrator: where a user types a command for the administrator
     """
     if error.errno == errno.EROFS:
         remedy = "Switch the robot off and on again; if that does not help, image it."
@@ -139,7 +139,7 @@ def disk_problem(error: OSError, administrator: str) -> tuple[str, str]:
     for name in names if error.errno in (errno.EACCES, errno.EPERM) else ():
         there = next((each for each in (name, *name.parents) if each.exists() and not each.is_symlink()), name)
         if not os.access(there, os.W_OK):
-            remedy = f"Give it to {user()}, as {administrator} on the robot: chown -R {user()} {there}"
+            remedy = f"Give it to {user()}, {by_administrator} chown -R {user()} {there}"
             return f"{there} on the robot belongs to another user, and {user()} cannot write to it", remedy
     what = error.strerror or str(error) or type(error).__name__
     is_taken = error.errno in (errno.EEXIST, errno.EISDIR, errno.ENOTDIR, errno.ENOTEMPTY)

@@ -62,6 +62,11 @@ class Layout(NamedTuple):
     shown_python: str = ""
 
     @property
+    def by_administrator(self) -> str:
+        """Return where a user types a command for the administrator, for messages."""
+        return f"as {self.administrator} on the robot:" if self.administrator != self.user else "on the robot: sudo"
+
+    @property
     def command_files(self) -> list[str]:
         """Return the names of the files with start commands."""
         return [each for each in (self.command, self.debug_command) if each]

@@ -240,8 +240,7 @@ class Releases:
             raise Refusal(
                 "disk",
                 f"{layout.code} belongs to another user of the robot, and cannot be moved",
-                f"Give it to {layout.user}, as {layout.administrator} on the robot: "
-                f"chown -R {layout.owner} {layout.code}",
+                f"Give it to {layout.user}, {layout.by_administrator} chown -R {layout.owner} {layout.code}",
             )
 
     def adopt_directory(self, number: int) -> None:

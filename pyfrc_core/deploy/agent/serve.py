@@ -116,7 +116,7 @@ class Agent:
                     free=free,
                 )
             else:
-                self._send_error("disk", *disk_problem(error, self._paths.layout.administrator))
+                self._send_error("disk", *disk_problem(error, self._paths.layout.by_administrator))
         except Exception:
             import traceback
 
