@@ -174,6 +174,22 @@ def test_another_tools_environment_is_kept_for_the_releases_that_use_it(
     assert started(robot) == (NEW, packages.content[SECOND])
 
 
+def test_another_tools_program_keeps_the_packages_that_it_was_deployed_with(
+    directory: Path, packages: Packages, agents: Agents
+) -> None:
+    robot = new_robot(directory / "robot")
+    install(robot, agents, packages, FIRST)
+    deploy(robot, agents, project_of(directory / "old", OLD), FIRST)
+    (robot.home / "py").unlink()
+    (robot.home / "py").mkdir()
+    (robot.home / "py/robot.py").write_text("# theirs\n")
+    install(robot, agents, packages, SECOND)
+    deploy(robot, agents, project_of(directory / "new", NEW), SECOND)
+    with agent(robot, agents) as session:
+        assert session.rollback().release.number == 2
+    assert started(robot) == ({"robot.py": b"# theirs\n"}, packages.content[FIRST])
+
+
 @pytest.mark.parametrize(
     ("path", "why"),
     [

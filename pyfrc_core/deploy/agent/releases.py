@@ -256,9 +256,11 @@ class Releases:
             about = json.loads(deployed or "{}")
         except ValueError:
             about = {}
-        self.write_record(
-            number, {"taken": True, "debug": self.paths.is_debug(), "commands": commands, "deploy": about}
-        )
+        record: Record = {"taken": True, "debug": self.paths.is_debug(), "commands": commands, "deploy": about}
+        environment = None if self.environments is None else self.environments.current()
+        if environment is not None:
+            record["environment"] = environment
+        self.write_record(number, record)
 
     def recover(self) -> None:
         """Clean up after an interrupted deploy, and complete it if it was interrupted after the switch."""
