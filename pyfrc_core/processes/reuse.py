@@ -8,6 +8,8 @@ An interpreter that crashes, or is ended because it hangs, is replaced in the sa
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
 
 from ..processors import usable_processors
 from .interpreter import Interpreter, Prepare, SpawnedWorker
@@ -37,6 +39,8 @@ class Interpreters:
         self._unused: list[Interpreter] = []
         self._used: list[Interpreter] = []
         self._working: list[Interpreter] = []
+        #: Files of their work that could not be removed: `close` does it.
+        self.left: list[Path] = []
         self._start_ahead(ahead)
 
     def begin(self, work: Work, more: int = 0) -> SpawnedWorker:
@@ -73,6 +77,9 @@ class Interpreters:
         for interpreter in (*self._unused, *self._used, *self._working):
             interpreter.close()
         self._unused, self._used, self._working = [], [], []
+        for file in self.left:
+            with suppress(OSError):
+                file.unlink()
 
     def _take(self) -> Interpreter:
         """Return an interpreter that is as good as new, started now if there is none."""

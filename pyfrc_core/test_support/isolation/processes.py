@@ -6,7 +6,6 @@ import signal
 import sys
 import tempfile
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -107,8 +106,10 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin, interpreters: Interpret
         left = files()
         interpreters.end(worker)
         for file in left:
-            with suppress(OSError):
+            try:
                 file.unlink()
+            except OSError:  # on Windows: the interpreter still has it open
+                interpreters.left.append(file)
 
     return TestProcess(worker, captured, close, item.nodeid)
 
