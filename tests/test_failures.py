@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 
 import pytest
 from conftest import MakeProject, Result, RobotProject
@@ -114,6 +115,9 @@ TROUBLED_ROBOT = """
     def helped_by_another_method(number):
         return 1 / number
 """
+
+#: As signals are named, and exit codes of Windows.
+FAULT = "access violation" if sys.platform == "win32" else "segmentation fault"
 
 TROUBLED_TESTS = """
     import pytest
@@ -305,7 +309,7 @@ def test_an_endless_loop_is_ended_and_named(
     ("trouble", "line", "what", "said"),
     [
         ("leaves", "os._exit(3)", "ended itself with exit code 3", "said before leaving"),
-        ("segfaults", "ctypes.string_at(0)", "segmentation fault", "said before the fault"),
+        ("segfaults", "ctypes.string_at(0)", FAULT, "said before the fault"),
     ],
 )
 def test_a_robot_that_takes_its_process_down_fails_its_own_test_only(
