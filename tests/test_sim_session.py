@@ -15,6 +15,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import FrozenInstanceError, replace
 from types import MappingProxyType
+from typing import Any
 
 import ntcore
 import pytest
@@ -24,9 +25,11 @@ from spelling import spelled
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.processes.fork import FORK_IS_SAFE
+from pyfrc_core.processes.spawn import Interpreter
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import parse_script
 from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.sim.engine import host_process
 from pyfrc_core.sim.engine.scene import Pose
 from pyfrc_core.sim.engine.snapshot import Snapshot
 from pyfrc_core.sim.engine.watch import Watch
@@ -389,15 +392,26 @@ def test_real_time_goes_on_by_itself(project: Project) -> None:
 
 
 @pytest.mark.skipif(not FORK_IS_SAFE, reason="it is the only way here, and so tested by all others")
-def test_where_processes_cannot_be_forked(project: Project) -> None:
+def test_where_processes_cannot_be_forked(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The next one is started ahead, and takes over."""
+    started: list[Interpreter] = []
+    start_host = host_process.start_host
+
+    def start(*arguments: Any) -> Interpreter:
+        started.append(start_host(*arguments))
+        return started[-1]
+
+    monkeypatch.setattr(host_process, "start_host", start)
     with Simulation(project, replace(STILL, fork=False)) as simulation:
         drive_forward(simulation)
         run(simulation, 1)
         there = simulation.snapshot
         run(simulation, 1)
+        assert [host.poll() for host in started] == [None, None]
         simulation.rewind(1.0)
         wait(simulation, lambda: simulation.status.state == "paused")
         assert released(simulation.snapshot) == released(there)
+        assert [host.poll() is None for host in started] == [False, True, True]
 
 
 @pytest.mark.parametrize(

@@ -102,7 +102,9 @@ def main(hosting: Hosting) -> None:
         _Forks(hosting, connection).serve()
     else:
         with suppress(EOFError):
-            _become_the_robot(hosting, connection.recv())
+            while isinstance(command := connection.recv(), Preload):
+                _preload(command.modules)
+            _become_the_robot(hosting, command)
 
 
 def _connect(hosting: Hosting, who: str | int) -> Connection | None:

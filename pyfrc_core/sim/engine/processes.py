@@ -10,6 +10,8 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
+from itertools import count
 from multiprocessing.connection import Listener
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -36,6 +38,19 @@ _PATIENCE = 1.0
 _HOST_PATIENCE = CLOSING_SECONDS + _PATIENCE
 
 
+@dataclass
+class _Spare:
+    """A host that has no robot yet.
+
+    :param output: what it prints into
+    """
+
+    name: str
+    process: Interpreter
+    output: OutputPipe
+    connection: Connection | None = None
+
+
 class RobotProcesses:
     """One robot's process at a time, each in place of the one before.
 
@@ -44,7 +59,8 @@ class RobotProcesses:
     :param on_message: what a robot's process says, with the number of its launch
     :param on_exit: it has ended: the launch's number, the exit code, its crash log's contents
     :param on_output: what robots print
-    :param fork: whether to fork them; where that is not safe, each is a new interpreter
+    :param fork: whether to fork them; where that is not safe, each is a new interpreter, and while one runs, the next
+        is started ahead: to start the robot again takes no time
     """
 
     def __init__(
@@ -68,6 +84,11 @@ class RobotProcesses:
         self._launched_at = time.monotonic()
         self._host: Interpreter | None = None
         self._host_name = ""
+        self._hosts = count(1)
+        #: The host that was started ahead.
+        self._spare: _Spare | None = None
+        #: What it is to import.
+        self._preloaded: tuple[str, ...] = ()
         self._host_connection: Connection | None = None
         self._host_reader: threading.Thread | None = None
         self._robot: Outbox | None = None
@@ -129,9 +150,13 @@ class RobotProcesses:
 
     def preload(self, modules: tuple[str, ...]) -> None:
         """Have robots to come find these modules imported."""
-        if self._forks:
-            with self._lock:
+        with self._lock:
+            self._preloaded = modules
+            if self._forks:
                 self._tell_host(Preload(modules))
+            elif self._spare is not None and self._spare.connection is not None:
+                with suppress(OSError):  # it has ended
+                    self._spare.connection.send(Preload(modules))
 
     def close(self) -> None:
         """End everything; a robot that listens may bring its files to an end before."""
@@ -147,6 +172,7 @@ class RobotProcesses:
             output, self._output = self._output, None
             if self._host is not None:
                 self._end_host()
+            self._end_spare()
         if output is not None:  # what was printed until now is not lost
             output.close()
         # In a thread of its own: when the listener has left its loop already, this waits until the listener is closed.
@@ -161,11 +187,24 @@ class RobotProcesses:
         self._host_connection, self._host_reader, self._for_host = None, None, []
         if self._output is not None:
             _thread(self._output.close, "pyfrc sim: end of output")
-        self._output = output = OutputPipe(self._on_output)
-        self._host_name = f"host {os.urandom(8).hex()}"
-        hosting = Hosting(self._listener.address, self._key, self._forks, self._temporary.name, self._host_name)
-        self._host = host = host_process.start_host(hosting, output.writing_end)
-        _thread(self._wait_for, "pyfrc sim: end", host, self._number)
+        if self._spare is not None and self._spare.process.poll() is not None:
+            self._end_spare()
+        started, self._spare = self._spare or self._start_host(), None
+        self._host, self._output, self._host_name = started.process, started.output, started.name
+        self._host_connection = started.connection
+        _thread(self._wait_for, "pyfrc sim: end", started.process, self._number)
+
+    def _start_host(self) -> _Spare:
+        name, output = f"host {next(self._hosts)}", OutputPipe(self._on_output)
+        hosting = Hosting(self._listener.address, self._key, self._forks, self._temporary.name, name)
+        return _Spare(name, host_process.start_host(hosting, output.writing_end), output)
+
+    def _end_spare(self) -> None:
+        spare, self._spare = self._spare, None
+        if spare is not None:
+            kill_group(spare.process)
+            spare.process.wait()
+            spare.output.close()
 
     def _end_host(self) -> None:
         host, self._host = self._host, None
@@ -213,7 +252,12 @@ class RobotProcesses:
                     self._for_host.clear()
                     if self._forks:
                         self._host_reader = _thread(self._hear_host, "pyfrc sim: host", connection)
+                elif self._spare is not None and who == self._spare.name:
+                    self._spare.connection = connection
+                    self.preload(self._preloaded)
                 elif who == self._number and not self._closed:
+                    if self._spare is None and not self._forks:
+                        self._spare = self._start_host()
                     self._robot = Outbox(connection)
                     for message in self._for_robot:
                         self.send(message)
