@@ -310,6 +310,7 @@ class RobotRun:
             self.when_constructed.clear()
             self.when_initialized.clear()
             self.timed_loop = TimedLoop(self.clock, 0, self._on_initialized, self.overruns.count)
+            robots.release(self.robot)
             self.robot = self.physics = None
             timing.run_freely()
 

@@ -185,7 +185,7 @@ def persistent_values() -> Iterator[tuple[str, str, Any]]:
 
 
 #: Entries that WPILib publishes for itself, in C++, for as long as the process lives.
-OF_WPILIB = ("/FMSInfo/", "/LiveWindow/.status/", "/Preferences/.type", "/Shuffleboard/.")
+OF_WPILIB = ("/.schema/", "/FMSInfo/", "/LiveWindow/.status/", "/Preferences/.type", "/Shuffleboard/.")
 
 
 def forget_entries() -> None:

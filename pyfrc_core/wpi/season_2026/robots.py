@@ -146,6 +146,10 @@ def end(robot: Any) -> None:
     robot.endCompetition()
 
 
+def release(robot: object) -> None:
+    """Have a robot that has ended hold on to none of its parts, which collection cannot see in C++: it has none."""
+
+
 def cancel_first_alarm(robot: wpilib.TimedRobot) -> None:
     """Cancel the alarm that the robot's constructor has set, by WPILib's own function even if it is overridden."""
 

@@ -11,10 +11,17 @@ import wpilib
 from wpilib.simulation import RoboRioSim, SimDeviceSim
 
 from ..device_values import Sensor, SimValue, SimValueKind, find_sensor
-from . import sparks
+from . import imu, sparks
 
-#: Reset all devices of the simulated HAL to their initial values.
-reset_all = hal.simulation.reset_all_sim_data
+_reset_all = hal.simulation.reset_all_sim_data
+
+
+def reset_all() -> None:
+    """Reset all devices of the simulated HAL to their initial values; WPILib leaves out the IMU."""
+    _reset_all()
+    for value in imu.VALUES:
+        imu.writer(value)(0.0)
+
 
 #: Return the battery's voltage.
 battery_voltage = RoboRioSim.get_vin_voltage

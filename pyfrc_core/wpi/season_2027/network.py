@@ -191,7 +191,7 @@ def persistent_values() -> Iterator[tuple[str, str, Any]]:
 
 
 #: Entries that WPILib publishes for itself, in C++, for as long as the process lives.
-OF_WPILIB = ("/FMSInfo/", "/DriverStation/", "/Preferences/.type")
+OF_WPILIB = ("/.schema/", "/FMSInfo/", "/DriverStation/", "/Preferences/.type")
 
 
 def forget_entries() -> None:

@@ -158,6 +158,12 @@ def end(robot: Any) -> None:
     robot.end_competition()
 
 
+def release(robot: object) -> None:
+    """Have a robot that has ended hold on to none of its parts, which collection cannot see in C++: its opmodes."""
+    if isinstance(robot, wpilib.OpModeRobotBase):
+        robot.clear_opmodes()
+
+
 def cancel_first_alarm(robot: wpilib.TimedRobot) -> None:
     """Cancel the alarm that the robot's constructor has set, by WPILib's own function even if it is overridden."""
 

@@ -109,7 +109,13 @@ def _made(opmode: Any) -> Any:
         if _current is not None:
             _current.remove()
         _current = _Callbacks(opmode, run.timed_loop)
+        run.at_close(_forget)
     return opmode
+
+
+def _forget() -> None:
+    global _current
+    _current = None
 
 
 def look() -> None:
