@@ -16,7 +16,7 @@ def forget_inputs() -> None:
 
 
 def forget_power_distributions() -> None:
-    """Forget the power distributions: in WPILib's simulation, one stays when its object is gone."""
+    """Forget the power distributions: in WPILib's simulation, one stays when its object is gone, and does no harm."""
     for number in range(MODULES):
         module = pneumatics.PowerDistribution(number)
         if pneumatics.exists(module):

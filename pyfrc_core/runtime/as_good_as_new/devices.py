@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from ...hal import existing_devices
 from ...hal.reset import forget_inputs, forget_power_distributions
+from ...wpi import sim_devices
 from .part import Part
 
 
@@ -17,6 +18,7 @@ class Devices(Part):
 
     def restore(self) -> None:
         forget_power_distributions()
+        sim_devices.forget_parts()
 
     def left_over(self) -> Iterator[str]:
         left = [device for device in existing_devices() if device not in self._before]

@@ -56,6 +56,8 @@ class ProjectModules(Part):
             if isinstance(getattr(changed[name], "__file__", None), str):
                 self.names.add(name)
             self._remove_from_package(name, changed[name])
+            if issubclass(type(changed[name]), ModuleType):
+                vars(changed[name]).clear()  # its functions would keep what it has, and C++ the functions
         for name, module in self._modules.items():
             sys.modules[name] = module
         for name, values in self._paths.items():

@@ -34,8 +34,8 @@ class ProcessState:
         #: In the order in which they are put back.
         self._parts: list[Part] = [
             LastRun(),
+            Tables(),  # before the scheduler, which a dashboard may show
             Commands(),
-            Tables(),
             Streams(),
             Directory(),
             Environment(),

@@ -20,7 +20,8 @@ def reset_all() -> None:
     """Reset all devices of the simulated HAL to their initial values; WPILib leaves out the IMU."""
     _reset_all()
     for value in imu.VALUES:
-        imu.writer(value)(0.0)
+        for number in (1.0, 0.0):  # the HAL takes -0.0 for 0.0, and would keep it
+            imu.writer(value)(number)
 
 
 #: Return the battery's voltage.

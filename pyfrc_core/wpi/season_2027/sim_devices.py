@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any, Literal, NamedTuple, TypeAlias
 
@@ -14,6 +15,7 @@ __all__ = [
     "Device",
     "SimValue",
     "access",
+    "forget_parts",
     "handle_of",
     "names",
     "only_robot_writes",
@@ -21,6 +23,10 @@ __all__ = [
     "values_of",
     "watch",
 ]
+
+_reset = hs.reset_sim_device_data
+#: The name of a SimDevice for a sensor of a SPARK; its first group is that of the SPARK.
+_PART = re.compile(r"(SPARK (?:MAX|Flex) \[[\d,]+\]) .+")
 
 #: A SimDevice that was opened by its name.
 Device: TypeAlias = SimDeviceSim
@@ -41,6 +47,14 @@ values_of: Callable[[Device], list[tuple[str, bool]]] = SimDeviceSim.enumerate_v
 def names() -> list[str]:
     """Return the names of the SimDevices that exist, without those that stand for a PWM channel (`hal`'s table)."""
     return [name for name in SimDeviceSim.enumerate_devices("") if not name.startswith(PWM_MOTOR)]
+
+
+def forget_parts() -> None:
+    """Remove what REV's library leaves of SPARKs that are gone, if there is no other SimDevice."""
+    there = names()
+    parts = list(filter(None, map(_PART.fullmatch, there)))
+    if there and len(parts) == len(there) and not any(part[1] in there for part in parts):
+        _reset()
 
 
 class SimValue(NamedTuple):
