@@ -10,7 +10,6 @@ import signal
 import socket
 import struct
 import subprocess
-import sys
 import threading
 from collections.abc import Callable, Iterator
 from importlib.metadata import version
@@ -18,6 +17,7 @@ from pathlib import Path
 
 import pytest
 from at_terminal import run_at_terminal
+from competition_field import deploy_on_field
 from conftest import sampled
 from roborio import Proxy, Roborio, require_roborio
 from skips import missing_programs, require
@@ -536,23 +536,7 @@ def test_on_a_competition_field_nothing_is_deployed(make_project) -> None:
     require_roborio()  # for its namespaces: the port of the Driver Station is one for the whole computer
     require("deploying on a competition field", missing_programs("ip"))
     project = make_project(program())
-    code = """
-import json, socket, subprocess, sys, threading
-subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
-with socket.create_server(("127.0.0.1", 1742)) as listener:
-    def serve():
-        with listener.accept()[0] as connected:
-            connected.sendall(json.dumps({"robotIP": 0, "FMS Connected": True}).encode() + b"\\n")
-    threading.Thread(target=serve, daemon=True).start()
-    sys.exit(subprocess.run([sys.executable, "-m", "pyfrc", *sys.argv[1:]]).returncode)
-"""
-    done = subprocess.run(
-        ["unshare", "-n", sys.executable, "-c", code, "deploy", "--skip-tests", "--team", "1234", "--no-resolve"],
-        cwd=project.path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = deploy_on_field(project, 1742, {"robotIP": 0, "FMS Connected": True})
     assert done.returncode == 1, done.stdout + done.stderr
     assert "competition field (FMS)" in done.stderr
     assert "when your match is over" in done.stderr

@@ -123,7 +123,7 @@ def test_a_wrong_option_is_told(make_project: MakeProject, args: list[str], mess
         ("undeploy 1234", "Write: pyfrc undeploy --team 1234"),
         ("console 10.12.34.2", "Write: pyfrc console --robot 10.12.34.2"),
         ("deploy everything", "unexpected extra argument (everything)"),
-        ("sync", "There is no command 'sync'. To download what the robot needs: python -m pip install robotpy, then: "),
+        ("download", "There is no command 'download'. To download what the robot needs: pyfrc sync"),
         ("run", "There is no command 'run'. To run the robot on this computer: pyfrc sim. To start it on the robot: "),
         ("rollback", "There is no command 'rollback'. To go back to an earlier release: pyfrc deploy --rollback"),
     ],

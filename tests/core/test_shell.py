@@ -16,6 +16,7 @@ ROOT = Path(__file__).parents[2]
 #: Where commands are for a robot, or the system is asked before.
 ELSEWHERE = (
     "pyfrc_core/deploy/agent/",
+    "pyfrc_core/deploy/installing.py",
     "pyfrc_core/deploy/targets/",
     "pyfrc_core/virtual_robot/",
     "pyfrc_core/shell.py",

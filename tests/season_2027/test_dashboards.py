@@ -134,8 +134,7 @@ def test_the_robot_begins_at_its_start_and_is_placed_on_the_field(make_project: 
         page.command("place", x=10, y=12, degrees=90)
         page.run_for(0.1)
         assert page.parts["robot"] == pytest.approx([10, 12, 1.57079632])
-        (pose,) = page.values["nt:/Tunables/Field/Robot"]
-        assert pose["value"]["translation"]["x"] == pytest.approx(3.048)
+        assert page.values["nt:/Tunables/Field/Robot/0/translation/x"] == pytest.approx(3.048)
 
 
 def test_fuzz_varies_what_the_robot_tunes(make_project: MakeProject) -> None:

@@ -13,7 +13,9 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+from competition_field import deploy_on_field
 from conftest import MakeProject, Result, RobotProject
+from skips import missing_programs, require
 from systemcore import Systemcore, require_systemcore
 
 ROBOT = """
@@ -154,9 +156,9 @@ def test_a_wrong_clock_is_no_obstacle(clock: str, project: RobotProject, robot: 
 
 
 @contextmanager
-def driver_station(robot: Systemcore, on_field: bool) -> Iterator[None]:
+def driver_station(robot: Systemcore) -> Iterator[None]:
     """The Driver Station of 2027 on this computer, which is connected to the robot."""
-    said = json.dumps({"robotIp": robot.host, "fmsControlled": on_field}).encode() + b"\n"
+    said = json.dumps({"robotIp": robot.host, "fmsControlled": False}).encode() + b"\n"
     with socket.create_server(("127.0.0.1", 6770)) as listener:
 
         def serve() -> None:
@@ -174,18 +176,18 @@ def driver_station(robot: Systemcore, on_field: bool) -> Iterator[None]:
             thread.join()
 
 
-def test_a_deploy_in_a_match_is_refused(project: RobotProject, robot: Systemcore) -> None:
-    with driver_station(robot, on_field=True):
-        for result in (deploy(project, robot), project.run("deploy", "--skip-tests", "--team", "1234", cold=True)):
-            assert result.code == 1
-            assert "connected to a competition field (FMS)" in result.first_error
-    assert list(robot.home.glob(".pyfrc")) == []
+def test_a_deploy_in_a_match_is_refused(project: RobotProject) -> None:
+    require_systemcore()
+    require("deploying on a competition field", missing_programs("ip"))
+    done = deploy_on_field(project, 6770, {"robotIp": "10.12.34.2", "fmsControlled": True})
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "connected to a competition field (FMS)" in done.stderr
 
 
 def test_the_driver_stations_robot_is_found(project: RobotProject, robot: Systemcore) -> None:
     if robot.port != 22:
         pytest.skip("deploying through the Driver Station: needs port 22, which this computer's own SSH server has")
-    with driver_station(robot, on_field=False):
+    with driver_station(robot):
         result = project.run("deploy", "--skip-tests", "--team", "9999", cold=True)
     assert result.code == 0, result.output
     assert f"find       {robot.host} (the Driver Station's robot)" in result.stdout
