@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from ..encoding import find_wrong_encoding
-from ..errors import ProjectError, PyfrcError, nearest
+from ..errors import ProjectError, PyfrcError, RobotCodeError, nearest
 from ..hal import HalData
 from ..invariants.load import Invariant, load_invariants
 from ..processes.lent_streams import lent_streams
@@ -86,6 +86,7 @@ class PyFrcPlugin(WatchedTests):
         project: Project | None = None,
         options: TestOptions | None = None,
         imports_late: str = "",
+        published: tuple[Opmode, ...] | RobotCodeError | None = None,
     ) -> None:
         self.project = project or Project(Path(robot_file).resolve())
         self.options = options or TestOptions.combined(self.project.settings.test)
@@ -93,6 +94,8 @@ class PyFrcPlugin(WatchedTests):
         self.crash_log: CrashLog | None = None
         #: Why each test's process imports the robot's modules itself; empty when a fork inherits them.
         self.imports_late = imports_late
+        #: The robot's opmodes, or why they are not known; None while nobody has asked.
+        self.published = published
         self._former_logs: set[tuple[str, int]] = set()
         self._robot_class = robot_class
         self._robot_file = str(Path(robot_file).resolve())
@@ -157,12 +160,20 @@ class PyFrcPlugin(WatchedTests):
         """One of the opmodes that your robot publishes: the test runs once for each of them."""
         return opmodes.value_of(request.param)
 
-    @cached_property
     def opmodes(self) -> tuple[Opmode, ...]:
-        """What the robot publishes."""
-        if self._robot_class is not None and not robots.can_have_opmodes(self._robot_class):
-            return ()
-        return opmodes.published_opmodes(self.project)
+        """Return what the robot publishes; only the first call asks it.
+
+        :raises RobotCodeError: when the robot cannot be made
+        """
+        if self.published is None:
+            try:
+                can_have = robots.can_have_opmodes(self._robot_class)
+                self.published = opmodes.published_opmodes(self.project) if can_have else ()
+            except RobotCodeError as error:
+                self.published = error
+        if isinstance(self.published, RobotCodeError):
+            raise self.published
+        return self.published
 
     @pytest.fixture
     def robot_file(self) -> str:
@@ -254,7 +265,7 @@ class PyFrcPlugin(WatchedTests):
         try:
             if "gamedata" in metafunc.fixturenames:
                 metafunc.parametrize("gamedata", self.project.game_specific_messages or [""])
-            opmodes.run_for_each(metafunc, lambda: self.opmodes)
+            opmodes.run_for_each(metafunc, self.opmodes)
             if "_physics" in metafunc.fixturenames and self._physics_module is not None:
                 self.project.sim_config  # noqa: B018
         except PyfrcError as wrong:

@@ -44,6 +44,19 @@ TEST = """
 """
 
 
+READY_MADE = """
+    from pyfrc.tests import *
+"""
+
+
+def test_only_one_process_asks_the_robot_for_its_opmodes(make_project: MakeProject) -> None:
+    counts = ROBOT.replace("self.publish_opmodes()", "self.publish_opmodes()\n            open('made', 'a').write('x')")
+    project = make_project({"robot.py": counts, "tests/test_robot.py": READY_MADE})
+    result = project.run("test", "--isolation", "reuse", "--", "-k", "test_opmode or test_disabled")
+    assert result.code == 0, result.output
+    assert len((project.path / "made").read_text("utf-8")) == 3  # to be asked, and in two tests
+
+
 def test_one_interpreter_runs_all_tests(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, "tests/test_drive.py": TEST})
     found = []

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import pytest
 
 _KEY = "pyfrc/durations"
+_TYPICAL_SECONDS = 0.3
 
 
 class Durations:
@@ -22,6 +23,10 @@ class Durations:
     def add(self, report: pytest.TestReport) -> None:
         """Add the duration of a test's setup, call or teardown."""
         self._measured[report.nodeid] = self._measured.get(report.nodeid, 0.0) + report.duration
+
+    def total(self, tests: Iterable[str]) -> float:
+        """Return how many seconds tests have to do, as far as that is known."""
+        return sum(_number(self.known.get(test), unknown=_TYPICAL_SECONDS) for test in tests)
 
     def save(self) -> None:
         """Keep what was measured, and of tests that did not run what was known."""
@@ -40,5 +45,5 @@ def longest_first(tests: Sequence[str], durations: Mapping[str, float]) -> list[
     return sorted(range(len(tests)), key=lambda index: -seconds[index])
 
 
-def _number(duration: object) -> float:
-    return float(duration) if isinstance(duration, int | float) else math.inf
+def _number(duration: object, unknown: float = math.inf) -> float:
+    return float(duration) if isinstance(duration, int | float) else unknown

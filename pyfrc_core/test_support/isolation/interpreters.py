@@ -29,10 +29,11 @@ def opened_interpreters(project: Project, options: TestOptions) -> Iterator[Inte
 
 
 def start_interpreters(project: Project, options: TestOptions) -> Interpreters:
-    """Return the interpreters, of which as many are started now as tests run at a time."""
-    prepare = None if options.isolation == "spawn" else partial(_prepare, project.main_file)
-    jobs = usable_processors() if options.jobs == "auto" else min(options.jobs, usable_processors())
-    return Interpreters(prepare, jobs, keeps_output=True)
+    """Return the interpreters, of which some are started now: one if it will be used again, others as need be."""
+    if options.isolation == "spawn":
+        jobs = usable_processors() if options.jobs == "auto" else min(options.jobs, usable_processors())
+        return Interpreters(None, jobs, keeps_output=True)
+    return Interpreters(partial(_prepare, project.main_file), 1, keeps_output=True)
 
 
 # -- on the other side -----------------------------------------------------------------------------------------------

@@ -51,6 +51,10 @@ _NOT_FORKED = "Each robot test runs in an interpreter that imports the robot aga
 _NOT_AS_GOOD_AS_NEW = "A new interpreter for each test, because a test has left {}."
 
 
+#: What a new interpreter costs: one more has to have as much to do.
+_START_SECONDS = 1.0
+
+
 class IsolatedTests:
     """The part of the plugin that runs tests in processes of their own.
 
@@ -110,6 +114,8 @@ class IsolatedTests:
     def _run_all(self, session: pytest.Session) -> None:
         jobs = 1 if session.config.option.usepdb else _number_of_jobs(self._plugin.options.jobs)
         items = session.items
+        if self._interpreters is not None and self._plugin.options.jobs == "auto":
+            jobs = min(jobs, self._worth_starting(items))
         waiting: list[pytest.Item] = []
         if any(map(self._uses_robot, items)):
             resolve_module_files()
@@ -147,6 +153,14 @@ class IsolatedTests:
                     self._running[item] = spawned_test(item, plugin, self._interpreters, more)
         self._finish(session, waiting, down_to=0)
         _tear_down_shared(session, previous, None)
+
+    def _worth_starting(self, items: list[pytest.Item]) -> int:
+        """Return how many interpreters have enough to do, if tests use them again."""
+        assert self._durations is not None
+        if self._plugin.options.isolation == "spawn":
+            return len(items)
+        seconds = self._durations.total(item.nodeid for item in items if self._uses_robot(item))
+        return max(1, int(seconds / _START_SECONDS))
 
     def _end_interpreters(self, config: pytest.Config) -> None:
         if self._interpreters is None:

@@ -93,6 +93,7 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin, interpreters: Interpret
         replace(plugin.project),
         plugin.options,
         agreed(),
+        plugin.published,
     )
     worker = interpreters.begin(partial(run_in_interpreter, job), more)
 

@@ -16,7 +16,9 @@ from ...processes.worker import Send
 from ..options import TestOptions
 
 if TYPE_CHECKING:
+    from ...errors import RobotCodeError
     from ...project import Project
+    from ...wpi.opmodes import Opmode
     from ..pytest_plugin import PyFrcPlugin
 
 
@@ -32,6 +34,7 @@ class TestJob:
     :param directory: where pytest was called
     :param turns: see `turns.agreed`
     :param project: without what the other process has read of it
+    :param published: see `PyFrcPlugin`
     """
 
     __test__ = False  # pytest: not a test class, for all its name
@@ -41,7 +44,8 @@ class TestJob:
     nodeid: str
     project: Project
     options: TestOptions
-    turns: str | None = None
+    turns: str | None
+    published: tuple[Opmode, ...] | RobotCodeError | None
 
 
 class OnlyOneTest:
@@ -90,5 +94,7 @@ def run_in_interpreter(job: TestJob, send: Send, log: CrashLog) -> int:
 
     project = job.project
     _ = project.settings  # before pytest reads the same pyproject.toml, which may begin with a byte-order mark
-    plugin = PyFrcPlugin(None, project.main_file, project.root, project=project, options=job.options)
+    plugin = PyFrcPlugin(
+        None, project.main_file, project.root, project=project, options=job.options, published=job.published
+    )
     return int(pytest.main(job.args, plugins=[plugin, OnlyOneTest(job, plugin, send, log)]))

@@ -76,8 +76,8 @@ def has_loop_of_its_own(robot: object) -> bool:
     return not is_timed(robot) or type(robot).startCompetition is not wpilib.TimedRobot.startCompetition
 
 
-def can_have_opmodes(robot_class: type[Any]) -> bool:
-    """Return whether robots of a class can have opmodes: there are none before 2027."""
+def can_have_opmodes(robot_class: type[Any] | None) -> bool:
+    """Return whether robots of a class, or of any class, can have opmodes: there are none before 2027."""
     return False
 
 

@@ -76,9 +76,9 @@ def has_loop_of_its_own(robot: object) -> bool:
     return True
 
 
-def can_have_opmodes(robot_class: type[Any]) -> bool:
-    """Return whether robots of a class can have opmodes."""
-    return issubclass(robot_class, wpilib.OpModeRobotBase)
+def can_have_opmodes(robot_class: type[Any] | None) -> bool:
+    """Return whether robots of a class, or of any class, can have opmodes."""
+    return robot_class is None or issubclass(robot_class, wpilib.OpModeRobotBase)
 
 
 #: The periods that robots with opmodes were made with: WPILib does not return them.
