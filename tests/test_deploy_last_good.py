@@ -72,6 +72,21 @@ def test_back_to_the_one_before_if_it_ran_and_else_to_the_newest_that_did(
     assert deploy(4, False).fallback == 2
 
 
+def test_the_newest_that_ran_although_an_older_one_was_watched_for_longer(
+    robot: LocalRobot, agents: Agents, deploy: DeployAndWatch
+) -> None:
+    """Deploys that were interrupted during the watch have no verdict."""
+    releases = Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None))
+    for number, lasted in ((1, 2.9), (2, 2.6)):
+        deploy(number, True)
+        releases.update_record(number, lambda record, lasted=lasted: {**record, "lasted": lasted})
+    deploy(3, None)
+    deploy(4, None)
+    with contextlib.closing(robot.start(agents)) as session:
+        assert [each.ran for each in session.facts.releases] == [True, True, False, False]
+        assert session.rollback().release.number == 2
+
+
 def test_the_robot_knows_which_program_it_has_seen_run(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
     """Only the same files, started by the same command, count, and only if the last watched start was not an end."""
 

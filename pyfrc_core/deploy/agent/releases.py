@@ -126,9 +126,11 @@ class Releases:
         before = self.record(number).get("from") if number is not None else None
         if before not in earlier:
             before = max(earlier, default=None)
-        if before is None or standing(self.record(before)).good:
+        keys = {each: standing(self.record(each)) for each in earlier}
+        if before is None or keys[before].good:
             return before
-        return max(earlier, key=lambda each: (*standing(self.record(each)), each == before, each))
+        good = [each for each in earlier if keys[each].good]
+        return max(good) if good else max(earlier, key=lambda each: (*keys[each], each == before, each))
 
     def current(self) -> int | None:
         """Return the release that ``~/py`` links to, or None: another tool's program, or no program."""
