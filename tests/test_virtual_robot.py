@@ -22,7 +22,12 @@ from skips import require
 from started_commands import StartedCommand
 
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
-from pyfrc_core.deploy.targets import CONTROLLERS
+from pyfrc_core.deploy.connection import connect
+from pyfrc_core.deploy.discovery import parse_address
+from pyfrc_core.deploy.errors import RefusedError
+from pyfrc_core.deploy.host_keys import HostKeys
+from pyfrc_core.deploy.login import Credentials
+from pyfrc_core.deploy.targets import CONTROLLERS, ControllerKind
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.doctor.steps import Step
@@ -153,6 +158,20 @@ def test_a_project_for_another_controller_is_refused(project: RobotProject, dire
         2,
         "error: there is no controller 'crio'\n  Write: --controller roborio or systemcore\n",
     )
+
+
+@pytest.mark.parametrize("there", CONTROLLERS, ids=lambda each: each.name)
+def test_another_controller_is_refused_without_asking_for_a_password(
+    project: RobotProject, directory: Path, there: ControllerKind
+) -> None:
+    (expected,) = (each for each in CONTROLLERS if each is not there)
+    asked: list[str] = []
+    with started(project, directory, "--controller", there.name.lower()) as robot:
+        address = parse_address(robot.address)
+        keys = HostKeys(directory).of_robot(address, expected)
+        with pytest.raises(RefusedError, match=f"this robot has a {there.name}, but"):
+            connect(address, expected, keys, credentials=Credentials(ask_password=asked.append))
+    assert asked == []
 
 
 @pytest.mark.slow

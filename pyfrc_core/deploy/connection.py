@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from .discovery import CONNECT_SECONDS, Address
 from .errors import ConnectionFailedError, DeployError
 from .host_keys import HostKey, Recognized, RobotKeys
-from .login import NONE_OFFERED, STEP_SECONDS, Credentials, LoginRefusedError, log_in, other_controller
+from .login import NONE_OFFERED, STEP_SECONDS, Credentials, log_in
 from .targets import AdministratorTask, ControllerKind
 
 if TYPE_CHECKING:
@@ -171,6 +171,7 @@ def connect(
     :param credentials: the user's own keys, for a robot that requires one
     :raises HostKeyError: if the robot's key is not a known one
     :raises ConnectionFailedError: if the login fails
+    :raises RefusedError: if the robot has another controller
     """
     # The error has the content of paramiko's log messages.
     logging.getLogger("paramiko").setLevel(logging.CRITICAL)
@@ -191,8 +192,6 @@ def connect(
         recognized = keys.check(key, accepted_key, robot_name, pin)
     except BaseException as error:
         transport.close()
-        if isinstance(error, LoginRefusedError):
-            raise other_controller(address, controller) or error from error
         if isinstance(error, (paramiko.SSHException, OSError, EOFError)):
             raise _not_let_in(address, error) from error
         raise

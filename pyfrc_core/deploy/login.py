@@ -86,10 +86,6 @@ def _key_in(file: Path) -> paramiko.PKey:
         ) from None
 
 
-class LoginRefusedError(ConnectionFailedError):
-    """The robot refuses the user."""
-
-
 def log_in(
     transport: paramiko.Transport,
     address: Address,
@@ -101,7 +97,8 @@ def log_in(
     """Log in with the default password, with a key, or with a password for which the user is asked.
 
     :param key: the robot's, which the question names
-    :raises LoginRefusedError: if the robot refuses all of them
+    :raises ConnectionFailedError: if the robot refuses all of them
+    :raises RefusedError: if it has another controller
     """
     import paramiko
 
@@ -115,6 +112,7 @@ def log_in(
             with contextlib.suppress(paramiko.AuthenticationException):
                 transport.auth_publickey(user, own)
                 return
+    _refuse_other_controller(address, controller)  # before a question that cannot help
     if "password" in allowed and controller.password and credentials.ask_password is not None:
         with contextlib.suppress(paramiko.AuthenticationException):
             password = credentials.ask_password(f"{user}@{address} (its key: {key.fingerprint})")
@@ -143,8 +141,11 @@ def _try_password(transport: paramiko.Transport, user: str, password: str) -> li
     return allowed
 
 
-def other_controller(address: Address, controller: ControllerKind) -> RefusedError | None:
-    """Return an error if the robot has another controller: if it lets that one's user in."""
+def _refuse_other_controller(address: Address, controller: ControllerKind) -> None:
+    """Check that the robot has no other controller: that it does not let that one's user in.
+
+    :raises RefusedError: if it does
+    """
     import paramiko
 
     for other in CONTROLLERS:
@@ -156,14 +157,13 @@ def other_controller(address: Address, controller: ControllerKind) -> RefusedErr
                 transport.banner_timeout = transport.handshake_timeout = transport.auth_timeout = STEP_SECONDS
                 transport.start_client(timeout=STEP_SECONDS)
                 if _try_password(transport, other.layout.user, other.password) is None:
-                    return RefusedError(
+                    raise RefusedError(
                         f"this robot has a {other.name}, but the robots of season {CURRENT.year} have a "
                         f"{controller.name}",
                         where=str(address),
                         remedy="Choose another robot with --team or --robot, or deploy with the WPILib of the season "
                         f"that has a {other.name}.",
                     )
-    return None
 
 
 def _refused(
@@ -173,7 +173,7 @@ def _refused(
     allowed: list[str],
     offered: int,
     credentials: Credentials,
-) -> LoginRefusedError:
+) -> ConnectionFailedError:
     if offered:
         what = f"the robot refuses {user} with {credentials.offered(offered)}"
         remedy = "Offer the right key: --identity FILE, or ssh-add FILE and --ssh-agent."
@@ -194,4 +194,4 @@ def _refused(
     else:
         what = f"the robot lets {user} in only with a key, and {credentials.offered(0)}"
         remedy = "Offer a key of yours: --identity FILE; or ssh-add FILE and --ssh-agent."
-    return LoginRefusedError(what, where=str(address), remedy=remedy)
+    return ConnectionFailedError(what, where=str(address), remedy=remedy)

@@ -206,7 +206,7 @@ class _Session(paramiko.ServerInterface):
         self._password = password
 
     def get_allowed_auths(self, username: str) -> str:
-        return "password" if self._password else "none,password"
+        return "password"
 
     def check_auth_none(self, username: str) -> int:
         return self.check_auth_password(username, "")
