@@ -18,8 +18,9 @@ from roborio.local import Agents, LocalRobot, project_of
 
 from pyfrc_core.config.robotpy import RobotPackages, load_robot_packages
 from pyfrc_core.deploy.facts import RobotFacts
-from pyfrc_core.deploy.robot_checks import VIRTUAL_IMAGE
+from pyfrc_core.deploy.robot_checks import VIRTUAL_IMAGE, obstacles
 from pyfrc_core.deploy.robot_packages import ImportSearch, PackageProblem, unfit_packages
+from pyfrc_core.deploy.targets import CONTROLLERS
 from pyfrc_core.errors import SettingsError
 
 GUIDE = (Path(__file__).parents[1] / "docs/deploy.md").read_text("utf-8")
@@ -204,6 +205,17 @@ def test_a_virtual_robot_gets_what_the_project_asks_for_from_pip(facts: RobotFac
     remedies = [each.remedy for each in unfit_packages(packages, virtual)]
     installed = [each.partition("python -m pip install ")[2] for each in remedies]
     assert installed == ["wpilib==2026.9.9.", "robotpy-cscore.", '"numpy>=1".']
+
+
+@pytest.mark.parametrize("there", [{"wpilib": None}, {"wpilib": "2020.1.1", "python": "3.8.0"}], ids=["none", "other"])
+def test_a_virtual_robot_gets_another_wpilib_only_from_its_start(
+    facts: RobotFacts, there: dict[str, str | None]
+) -> None:
+    """To deploy installs nothing on it."""
+    virtual = dataclasses.replace(facts, image=VIRTUAL_IMAGE, **there)
+    remedies = [each.remedy for each in obstacles(virtual, CONTROLLERS[0])]
+    start = f"Start the virtual robot with wpilib {OURS}, as here: pyfrc virtual-robot."
+    assert remedies == [start] * len(there)
 
 
 @pytest.mark.parametrize("module", ["commands2", "cscore", "robotpy_apriltag"])

@@ -57,14 +57,17 @@ def obstacles(facts: RobotFacts, controller: ControllerKind) -> Iterator[Obstacl
         yield Obstacle(f"this is not a {controller.name}: {facts.not_controller}", remedy)
         return
     ours = _our_wpilib()
+    prepare, same_version = PREPARE, same_version_on_both(ours)
+    if facts.image == VIRTUAL_IMAGE:  # nothing is installed on it
+        prepare = same_version = f"Start the virtual robot with wpilib {ours}, as here: pyfrc virtual-robot."
     if facts.wpilib is None:
-        yield Obstacle("there is no wpilib for Python on the robot", PREPARE)
+        yield Obstacle("there is no wpilib for Python on the robot", prepare)
     wrong_python = python_problem(facts.python, ours)
     if wrong_python is not None:
-        yield Obstacle(wrong_python, PREPARE, certain=False)
+        yield Obstacle(wrong_python, prepare, certain=False)
     if facts.wpilib not in (None, ours):
         text = f"the robot has wpilib {facts.wpilib}, this computer has {ours}: what passes here may fail there"
-        yield Obstacle(text, same_version_on_both(ours), certain=False)
+        yield Obstacle(text, same_version, certain=False)
     wrong_image = image_problem(facts.image, ours, controller)
     if wrong_image is not None:
         yield Obstacle(wrong_image, image, certain=False)
