@@ -174,6 +174,7 @@ def test_changes_that_are_in_no_commit_are_refused(project: RobotProject) -> Non
     assert "robotInit" in text(project, "robot.py")
     assert project.run("migrate", "--uncommitted").code == 1
     assert text(project, "robot.py") == NEW_ROBOT
+    assert project.run("migrate").code == 2, "a second run, without a commit in between"
 
 
 def test_a_file_that_is_no_python_stays_and_is_named(project: RobotProject) -> None:

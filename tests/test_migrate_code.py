@@ -1327,6 +1327,18 @@ def test_another_meaning_is_said_at_its_line(tmp_path: Path, name: str) -> None:
     assert [each.line for each in remarks(tmp_path, code) if said in str(each) and each.done] == [here]
 
 
+def test_ports_that_do_not_suffice_are_counted(tmp_path: Path) -> None:
+    """Three devices share ports with others, and one port is free."""
+    sensors = ["wpilib.Encoder(0, 1)", "wpilib.Encoder(2, 3)", "wpilib.DigitalInput(4)"]
+    devices = [*(f"wpilib.PWMSparkMax({port})" for port in range(3)), *sensors]
+    code = "\n".join(["import wpilib", *devices, ""])
+    assert [each.remedy for each in remarks(tmp_path, code)] == [
+        "SystemCore's ports 0 to 5 are for PWM, digital, analog and LEDs together, but this project needs 8. Replace "
+        "some by CAN devices, such as a motor controller with an encoder; motors and servos can also be on an "
+        "ExpansionHub."
+    ] * 3
+
+
 def test_a_module_with_the_name_of_a_new_one_is_reported(tmp_path: Path) -> None:
     """CTRE's generated projects have a telemetry.py."""
     (tmp_path / "telemetry.py").write_text("class Telemetry:\n    pass\n", "utf-8")

@@ -45,7 +45,7 @@ class World:
         monkeypatch.setattr(hang_detector, "ThreadTimes", lambda: watchers)
         monkeypatch.setattr(hang_detector, "_wall", lambda: self.wall)
         monkeypatch.setattr(hang_detector, "_wait", self._wait)
-        monkeypatch.setattr(hang_detector, "_exit", lambda code: self.log.append(f"exit {code}"))
+        monkeypatch.setattr(hang_detector, "exit_now", lambda code: self.log.append(f"exit {code}"))
         monkeypatch.setattr(hang_detector, "current_frames", lambda: {DRIVER: self.frame, 22: self.frame})
         monkeypatch.setattr(
             hang_detector, "faulthandler", SimpleNamespace(dump_traceback_later=lambda *args, **more: None)

@@ -11,6 +11,11 @@ from ..report import Report
 _PWM_MOTOR = "wpilib.PWMMotorController"
 #: Also the simulated HAL lets only one of these have a channel.
 _EXCLUSIVE = {"digital", "LED"}
+#: What to do if the ports do not suffice.
+_TOO_FEW = (
+    "Replace some by CAN devices, such as a motor controller with an encoder; motors and servos can also be on an "
+    "ExpansionHub."
+)
 
 
 @dataclass(frozen=True, order=True)
@@ -42,8 +47,12 @@ class Ports:
     def report(self, report: Report) -> None:
         """Report the devices that share a port, or have one that SystemCore has not."""
         count: int = self._table.corrections["ports"]["count"]
-        free = ", ".join(str(each) for each in range(count) if each not in self._uses) or "none"
-        remedy = f"SystemCore's ports 0 to {count - 1} are for PWM, digital, analog and LEDs together. "
+        free = [str(each) for each in range(count) if each not in self._uses]
+        needed = sum(len({use.kind for use in found}) for found in self._uses.values())
+        ports = f"SystemCore's ports 0 to {count - 1} are for PWM, digital, analog and LEDs together"
+        share, write = (f"{ports}. {do}; free: {', '.join(free)}." for do in ("Give each its own", "Write yours"))
+        if needed > count:
+            share = write = f"{ports}, but this project needs {needed}. {_TOO_FEW}"
         for number, found in self._uses.items():
             first, *others = sorted(found)
             for use in (first, *others):
@@ -51,6 +60,6 @@ class Ports:
                 if use.kind != first.kind:
                     what += f", as the {first.path.rpartition('.')[2]} in {first.file}:{first.line}."
                     stops = {use.kind, first.kind} == _EXCLUSIVE
-                    report.add(use.file, use.line, what, f"{remedy}Give each its own; free: {free}.", done=not stops)
+                    report.add(use.file, use.line, what, share, done=not stops)
                 elif number >= count and use.kind != "LED":
-                    report.add(use.file, use.line, f"{what}.", f"{remedy}Write yours; free: {free}.", done=True)
+                    report.add(use.file, use.line, f"{what}.", write, done=True)

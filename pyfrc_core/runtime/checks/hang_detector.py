@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 from ...compat.c_calls import raise_in_thread
 from ...compat.cpython_private import allocate_lock, current_frames, start_bare_thread
-from ...processes.exit import EXIT_HANGS, prepare_sudden_exit
+from ...processes.exit import EXIT_HANGS, exit_now, prepare_sudden_exit
 from ...processes.standstill import Standstill, StandstillNotice
 from ..exceptions import TestFroze
 from ..patches.active_run import Run, active_run
@@ -50,7 +50,6 @@ _IMPORT = "<frozen importlib"
 _SIGNAL = getattr(signal, "SIGVTALRM", None)  # not on Windows
 _wait, _wall = time.sleep, time.monotonic
 _get_ident = threading.get_ident
-_exit = os._exit
 
 
 class _Interruption:
@@ -300,7 +299,7 @@ class HangDetector:
             return
         self._log.write(text)
         prepare_sudden_exit()
-        _exit(EXIT_HANGS)
+        exit_now(EXIT_HANGS)
 
 
 class _Standing:
