@@ -129,6 +129,9 @@ class _Progress:
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
+    def waiting(self) -> None:
+        hint("Another pyfrc sync is running: waiting until it has ended.")
+
     def finding(self, package: str) -> None:
         if self._bars is not None:
             self._bars.update(self._task, description=f"find      {package}", total=None, completed=0, visible=True)
@@ -137,10 +140,12 @@ class _Progress:
         if self._bars is not None:
             self._bars.update(self._task, description=f"get       {what}", total=total, completed=there, visible=True)
 
-    def got(self, locked: LockedFile, how: str) -> None:
+    def got(self, locked: LockedFile, how: str, url: str | None = None) -> None:
         from pyfrc_core.wording import size_text
 
         line = f"get       {locked!s:<40} {size_text(locked.size):>9}  {how}"
+        if verbosity().verbose and url is not None:
+            line += f" from {url}"
         if self._bars is not None:
             self._bars.console.print(line, markup=False, highlight=False)
         else:

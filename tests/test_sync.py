@@ -20,6 +20,7 @@ from pyfrc_core.errors import PyfrcError
 from pyfrc_core.project import find_project
 from pyfrc_core.season import CURRENT, SEASONS
 from pyfrc_core.sync import LOCK_FILE, Lock, load_lock
+from pyfrc_core.sync.cache import LOCKED_WHILE_CHANGED
 from pyfrc_core.sync.synchronize import SyncOptions, synchronize
 
 ROBOT = """
@@ -79,7 +80,9 @@ class Laptop:
 
     def cached(self) -> dict[str, bytes]:
         """Return the cache's files by name."""
-        files = [each for each in (self.home / CACHE).rglob("*") if each.is_file()]
+        files = [
+            each for each in (self.home / CACHE).rglob("*") if each.is_file() and each.name != LOCKED_WHILE_CHANGED
+        ]
         return {each.name: each.read_bytes() for each in files}
 
 
@@ -335,6 +338,69 @@ def test_wheels_of_a_directory_are_locked_without_an_address(laptop: Laptop, tmp
     assert other.cached() == laptop.cached()
 
 
+def test_pips_variable_for_directories_of_wheels_holds_also_with_a_lock(laptop: Laptop) -> None:
+    wheel = add_wheel(laptop.project.path / "wheels", "own-lib", "1.0")
+    laptop.project.write({"pyproject.toml": pyproject(requires='"own-lib"')})
+    laptop.sync(PIP_FIND_LINKS="wheels")
+    (laptop.home / CACHE / "pip_cache" / wheel.name).unlink()
+    assert "get       own-lib 1.0 " in laptop.sync(PIP_FIND_LINKS="wheels")
+    assert laptop.cached()[wheel.name] == wheel.read_bytes()
+
+
+@pytest.mark.parametrize("kind", ["address", "path"])
+def test_python_may_be_a_file_of_this_computer(laptop: Laptop, tmp_path: Path, kind: str) -> None:
+    python = tmp_path / "py.tar.gz"
+    shutil.copyfile(laptop.index.python, python)
+    named = {"PYFRC_SYNC_PYTHON": python.as_uri() if kind == "address" else str(python)}
+    assert f"copied from {python.as_uri()}\n" in laptop.sync("-v", **named)
+    assert (laptop.lock.python.file, laptop.lock.python.url) == (python.name, None)
+    (laptop.home / CACHE / CURRENT.downloads.python_cache / python.name).unlink()
+    laptop.sync(**named)
+    assert laptop.cached()[python.name] == python.read_bytes()
+
+
+@pytest.mark.parametrize("where", ["http", "file"])
+def test_a_wrong_address_of_python_is_that_of_the_variable(laptop: Laptop, tmp_path: Path, where: str) -> None:
+    named = f"{laptop.index.url}/gone.tar.gz" if where == "http" else str(tmp_path / "gone.tar.gz")
+    failed = laptop.run(PYFRC_SYNC_PYTHON=named)
+    assert failed.code == 1
+    assert failed.first_error == f"Python {CURRENT.downloads.python} is not at {named}"
+    assert "The variable PYFRC_SYNC_PYTHON names this address" in failed.stderr
+
+
+def test_a_name_that_no_lock_can_have_is_refused_before_the_download(laptop: Laptop) -> None:
+    failed = laptop.run(PYFRC_SYNC_PYTHON=f"{laptop.index.url}/")
+    assert failed.code == 2
+    assert f"PYFRC_SYNC_PYTHON is {laptop.index.url}/, whose last part cannot be" in failed.first_error
+    assert not (laptop.project.path / LOCK_FILE).exists()
+
+
+def test_a_component_that_does_not_exist_is_refused_before_the_download(laptop: Laptop) -> None:
+    laptop.project.write({"pyproject.toml": pyproject(components='"comands2"')})
+    refused = laptop.run()
+    assert refused.code == 2
+    assert refused.first_error == "pyproject.toml:3: components has 'comands2', which does not exist"
+    assert "Did you mean 'commands2'?" in refused.stderr
+    assert laptop.index.requests == []
+
+
+def test_two_at_once_wait_for_each_other(laptop: Laptop) -> None:
+    index, name = laptop.index, laptop.index.python.name
+    index.cut_after[name], index.may_go_on = 200_000, threading.Event()
+    environment = index.environment(laptop.home)
+    part = laptop.home / CACHE / CURRENT.downloads.python_cache / f".{name}.part"
+    with laptop.project.start("sync", env=environment) as first:
+        while not part.exists() or part.stat().st_size < 196_608:  # what is written in whole pieces
+            assert first.poll() is None
+            time.sleep(0.001)
+        with laptop.project.start("sync", env=environment) as second:
+            assert second.stdout is not None
+            assert "waiting until it has ended" in second.stdout.readline()
+            index.may_go_on.set()
+            assert (first.wait(), second.wait()) == (0, 0)
+    assert laptop.cached()[name] == index.python.read_bytes()
+
+
 @pytest.mark.parametrize(
     ("requires", "message"),
     [
@@ -376,10 +442,10 @@ def test_what_is_no_wheel_is_refused_with_how_to_make_one(laptop: Laptop) -> Non
 def test_without_internet_one_sentence_says_so(laptop: Laptop, tmp_path: Path) -> None:
     laptop.sync()
     other = another(laptop, tmp_path)
-    nowhere = {"PIP_INDEX_URL": "http://127.0.0.1:9/simple", "PYFRC_SYNC_INDEX": "", "PIP_RETRIES": "0"}
+    nowhere = {"PIP_INDEX_URL": "http://localhost:9/simple", "PIP_RETRIES": "0"}  # the other index can be reached
     failed = laptop.run("--upgrade", **nowhere)
     assert failed.code == 1
-    assert failed.first_error == "the package index cannot be reached: Connection refused"
+    assert failed.first_error == "the package index localhost cannot be reached: Connection refused"
     assert "pyfrc sync --from DIRECTORY" in failed.stderr
     laptop.index.close()
     failed = other.run()

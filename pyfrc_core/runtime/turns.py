@@ -14,13 +14,13 @@ import contextlib
 import os
 import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from types import FrameType
 from typing import IO, Any
 
 from ..compat.cpython_private import get_frame
+from ..file_lock import lock
 from ..project.robot_files import is_pyfrc
 from .patches.active_run import active_run
 
@@ -85,7 +85,7 @@ class _Turn:
         self._wrote = False
         if self._read_how() != "together":
             self._file = (self._directory / "turn").open("ab")
-            _lock(self._file)
+            lock(self._file)
             if self._read_how() == "together":
                 self.end()
 
@@ -134,21 +134,3 @@ def _is_ours() -> bool:
             return is_pyfrc(file)
         frame = frame.f_back
     return True
-
-
-def _lock(file: IO[bytes]) -> None:
-    """Wait until no other process has the lock of this file; it ends when the file is closed."""
-    if sys.platform == "win32":
-        import msvcrt
-
-        while True:
-            try:
-                file.seek(0)
-                msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-                break
-            except OSError:
-                time.sleep(0.05)
-    else:
-        import fcntl
-
-        fcntl.flock(file, fcntl.LOCK_EX)

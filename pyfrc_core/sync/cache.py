@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import PyfrcError
 from ..file_hash import hash_file
+from ..file_lock import lock
 from ..season import Season
 from .lock import PYTHON, LockedFile
 
+#: The file in a cache that a process locks while it changes the cache.
+LOCKED_WHILE_CHANGED = ".pyfrc-sync.lock"
 _REMEDY = "With internet: pyfrc sync. Without: pyfrc sync --from DIRECTORY, with one that pyfrc sync --to has filled."
 
 
@@ -38,6 +43,19 @@ class Cache:
             return path.stat().st_size == locked.size and hash_file(path) == (locked.sha256, locked.size)
         except OSError:
             return False
+
+    @contextmanager
+    def changed_alone(self, waiting: Callable[[], None]) -> Iterator[None]:
+        """Let only one process at a time change the cache: all use the same names for incomplete files.
+
+        :param waiting: is called if another process is changing it
+        """
+        self.root.mkdir(parents=True, exist_ok=True)
+        with (self.root / LOCKED_WHILE_CHANGED).open("ab") as file:
+            if not lock(file, wait=False):
+                waiting()
+                lock(file)
+            yield
 
 
 def cache_of(season: Season) -> Cache:

@@ -50,12 +50,14 @@ class Download:
     :param url:    its address: ``http:``, ``https:``, or ``file:``
     :param to:     where it is to be
     :param sha256: its hash; None if unknown
+    :param named_by: the variable of the environment that names the address, if one does
     """
 
     what: str
     url: str
     to: Path
     sha256: str | None = None
+    named_by: str | None = None
 
     @property
     def part(self) -> Path:
@@ -89,7 +91,7 @@ class Downloader:
         wanted.to.parent.mkdir(parents=True, exist_ok=True)
         try:
             if urlsplit(wanted.url).scheme == "file":
-                shutil.copyfile(url2pathname(urlsplit(wanted.url).path), wanted.part)
+                _copy(wanted)
             elif not self._receive(wanted, advanced):
                 return False
             self._check(wanted)
@@ -241,6 +243,20 @@ def _reason(error: BaseException) -> str:
     return str(reason) or type(reason).__name__
 
 
+def _copy(wanted: Download) -> None:
+    file = url2pathname(urlsplit(wanted.url).path)
+    try:
+        shutil.copyfile(file, wanted.part)
+    except (FileNotFoundError, IsADirectoryError):
+        remedy = _other_address(wanted) or "Run pyfrc sync again."
+        raise DownloadError(f"{wanted.what} is not at {file}", remedy=remedy) from None
+
+
+def _other_address(wanted: Download) -> str | None:
+    """Return what to do if nothing is at an address that the user has named."""
+    return f"The variable {wanted.named_by} names this address: correct it, or unset it." if wanted.named_by else None
+
+
 def _unreachable(wanted: Download, why: str) -> DownloadError:
     remedy = "Connect this computer to the internet, and run pyfrc sync again: it goes on where it ended."
     if "certificate" in why:
@@ -250,6 +266,8 @@ def _unreachable(wanted: Download, why: str) -> DownloadError:
 
 def _refused(wanted: Download, refused: urllib.error.HTTPError) -> DownloadError:
     refused.close()
+    if refused.code == 404 and (correct := _other_address(wanted)):
+        return DownloadError(f"{wanted.what} is not at {wanted.url}", remedy=correct)
     if refused.code == 404:
         remedy = "Run pyfrc sync --upgrade for versions that are there now; or see docs/sync.md for another address."
         return DownloadError(f"{wanted.what} is no longer at {wanted.url}", remedy=remedy)

@@ -78,6 +78,11 @@ class Lock:
         return (self.python, *self.packages)
 
 
+def is_file_name(text: str) -> bool:
+    """Return whether a lock can have a file of this name."""
+    return _FILE_NAME.fullmatch(text) is not None
+
+
 def lock_file_of(project: Project) -> Path:
     """Return the path of a project's lock, which may not exist."""
     return project.pyproject.parent / LOCK_FILE

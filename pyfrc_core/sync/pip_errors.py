@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from urllib.parse import urlsplit
 
 from ..errors import PyfrcError
 from ..season import Season
@@ -22,6 +23,9 @@ _MISSING = re.compile(
 _CONFLICT = re.compile(r"The conflict is caused by:\s*\n(?P<reasons>(?:[ \t]+\S.*\n)+)")
 _UNREACHABLE = re.compile(r"Retrying \(Retry\(|Could not fetch URL|Connection to \S+ timed out|ConnectTimeoutError")
 _REASON = re.compile(r"\[Errno -?\d+\] ([^'\")\n]+)|(certificate.verify.failed)|(timed out)", re.IGNORECASE)
+_INDEXES = re.compile(r"^Looking in indexes: (.+)$", re.MULTILINE)
+#: The path of what pip tries again to get, or the host of it.
+_TRIED = re.compile(r"Retrying \(Retry\(.*: (/\S*)$|Could not fetch URL (\S+?):? |host='([^']+)'", re.MULTILINE)
 _FULL = "No space left on device"
 _ERROR = re.compile(r"^ERROR: (?!Ignored the following|pip's dependency resolver)(.+)$", re.MULTILINE)
 
@@ -56,7 +60,21 @@ def unreachable_index(printed: str) -> PyfrcError:
     )
     if found is not None and found[2]:
         remedy = "A network that inspects connections needs its certificate in pip's settings: docs/sync.md."
-    return PyfrcError(f"the package index cannot be reached: {why.strip()}", remedy=remedy)
+    return PyfrcError(f"{_tried_indexes(printed)} cannot be reached: {why.strip()}", remedy=remedy)
+
+
+def _tried_indexes(printed: str) -> str:
+    """Return the hosts of the indexes that pip could not reach, as far as its output names them."""
+    listed = _INDEXES.search(printed)
+    hosts = []
+    for index in map(urlsplit, listed[1].split(", ") if listed else []):
+        for path, url, host in _TRIED.findall(printed):
+            tried = path.startswith(index.path) if path else index.hostname in (host, urlsplit(url).hostname)
+            if tried and index.hostname and index.hostname not in hosts:
+                hosts.append(index.hostname)
+    if not hosts:
+        return "the package index"
+    return f"the package index {' or '.join(hosts)}"
 
 
 def _no_wheel(missing: re.Match[str], season: Season) -> PyfrcError:

@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import Protocol
 from urllib.parse import unquote, urlsplit
 
-from ..errors import PyfrcError, SettingsError
+from ..errors import PyfrcError, SettingsError, UsageError
 from ..file_hash import hash_file
 from ..project import Project
 from ..season import Season
 from ..wording import size_text
-from .addresses import python_url_of
+from .addresses import PYTHON_VARIABLE, link_directories, replaced_python_url
 from .cache import Cache, cache_of
 from .carry import find_in, lock_in, take
 from .download import Download, Downloader, DownloadError
-from .lock import PYTHON, Lock, LockedFile, load_lock, lock_file_of, save_lock
+from .lock import PYTHON, Lock, LockedFile, is_file_name, load_lock, lock_file_of, save_lock
 from .pip_errors import NothingFitsError
 from .resolve import Found, find_packages
 from .wanted import Wanted, load_wanted
@@ -43,14 +43,17 @@ class SyncOptions:
 class SyncProgress(Protocol):
     """Shows what is being done."""
 
+    def waiting(self) -> None:
+        """Show that another process is changing the cache."""
+
     def finding(self, package: str) -> None:
         """Show that pip looks at a package."""
 
     def received(self, what: str, there: int, total: int | None) -> None:
         """Show how many bytes of a file are there; `total` is None if unknown."""
 
-    def got(self, locked: LockedFile, how: str) -> None:
-        """Show that a file is complete, and how it was got, such as ``downloaded``."""
+    def got(self, locked: LockedFile, how: str, url: str | None = None) -> None:
+        """Show that a file is complete, and how it was got, such as ``downloaded``; `url` is its address."""
 
 
 @dataclass(frozen=True)
@@ -75,22 +78,24 @@ def synchronize(
     """
     file = lock_file_of(project)
     wanted = load_wanted(project.pyproject, season, installed)
-    previous = _previous(file, season, options.upgrade)
-    work = _Work(season, cache_of(season), options, progress)
-    if options.source is not None:
-        usable = previous if not options.upgrade else None
-        lock = usable or lock_in(options.source, season)
-        if lock.requirements != wanted.locked:
-            whose = file.name if usable else f"the lock in {options.source}"
-            raise _other_requirements(whose, lock, wanted)
-        work.take_all(lock, options.source)
-    elif previous is not None and previous.requirements == wanted.locked and not options.upgrade:
-        lock = previous
-        work.get_all(lock)
-    else:
-        lock = work.make_lock(wanted, previous, keep=not options.upgrade)
-    if lock != previous:
-        save_lock(file, lock)
+    cache = cache_of(season)
+    with cache.changed_alone(progress.waiting):
+        previous = _previous(file, season, options.upgrade)
+        work = _Work(season, cache, options, progress)
+        if options.source is not None:
+            usable = previous if not options.upgrade else None
+            lock = usable or lock_in(options.source, season)
+            if lock.requirements != wanted.locked:
+                whose = file.name if usable else f"the lock in {options.source}"
+                raise _other_requirements(whose, lock, wanted)
+            work.take_all(lock, options.source)
+        elif previous is not None and previous.requirements == wanted.locked and not options.upgrade:
+            lock = previous
+            work.get_all(lock)
+        else:
+            lock = work.make_lock(wanted, previous, keep=not options.upgrade)
+        if lock != previous:
+            save_lock(file, lock)
     return Synced(lock, previous)
 
 
@@ -136,6 +141,11 @@ def _other_requirements(whose: str, lock: Lock, wanted: Wanted) -> PyfrcError:
     )
 
 
+def _without_file(url: str) -> str | None:
+    """Return an address for the lock: none for a file, which only this computer has."""
+    return None if url.startswith("file:") else url
+
+
 class _Work:
     """Gets files into the cache."""
 
@@ -144,7 +154,7 @@ class _Work:
         self._cache = cache
         self._options = options
         self._progress = progress
-        self._directories = [Path(each) for each in options.find_links if Path(each).is_dir()]
+        self._directories = link_directories(options.find_links)
         self._downloader = Downloader(options.use_certifi)
 
     def take_all(self, lock: Lock, source: Path) -> None:
@@ -207,13 +217,16 @@ class _Work:
             if not self._cache.has(locked):
                 self._get(locked)
             return locked
-        url = python_url_of(self._season)
+        url = replaced_python_url() or self._season.downloads.python_url
         file = unquote(urlsplit(url).path.rpartition("/")[2])
-        python = LockedFile(PYTHON, self._season.downloads.python, file, 0, "", url)
-        return self._get(python)
+        if not is_file_name(file):
+            text = f"{PYTHON_VARIABLE} is {url}, whose last part cannot be the name of a file in the lock"
+            raise UsageError(text, remedy="Use letters, digits and ._+-! in its name, such as python.tar.gz.")
+        python = LockedFile(PYTHON, self._season.downloads.python, file, 0, "", _without_file(url))
+        return self._get(python, url)
 
     def _package(self, found: Found, old: LockedFile | None) -> LockedFile:
-        url = None if found.url.startswith("file:") else found.url
+        url = _without_file(found.url)
         if old is not None and old.version == found.version:
             new = old
         else:
@@ -227,7 +240,8 @@ class _Work:
 
     def _get(self, locked: LockedFile, url: str | None = None) -> LockedFile:
         """Get one file, and return it with its size and hash."""
-        url = url or locked.url
+        replaced = replaced_python_url() if locked.name == PYTHON else None
+        url = replaced or url or locked.url
         if locked.sha256 and (directory := self._directory_with(locked)) is not None:
             self._copy(locked, directory)
             return locked
@@ -242,13 +256,15 @@ class _Work:
         def advanced(there: int, total: int | None) -> None:
             self._progress.received(str(locked), there, total)
 
-        downloaded = self._downloader.get(Download(str(locked), url, path, locked.sha256 or None), advanced)
+        variable = PYTHON_VARIABLE if replaced else None
+        wanted = Download(str(locked), url, path, locked.sha256 or None, variable)
+        downloaded = self._downloader.get(wanted, advanced)
         sha256, size = hash_file(path)
         if locked.size and locked.size != size:  # cannot be with the same hash
             raise DownloadError(f"{locked}: the lock has a wrong size", remedy="Run pyfrc sync --upgrade.")
         whole = replace(locked, sha256=sha256, size=size)
         if downloaded:
-            self._progress.got(whole, "downloaded")
+            self._progress.got(whole, "copied" if url.startswith("file:") else "downloaded", url)
         return whole
 
     def _directory_with(self, locked: LockedFile) -> Path | None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..config.robotpy import load_robot_packages
+from ..config.robotpy import load_robot_packages, unknown_components
 from ..errors import SettingsError
 from ..season import Season
 
@@ -30,9 +30,12 @@ def load_wanted(pyproject: Path, season: Season, installed: str | None) -> Wante
     pyfrc itself is left out: a robot does not need it.
 
     :param installed: the version of WPILib on this computer
-    :raises SettingsError: with the file and line of a requirement that cannot be read, or that is not for wheels
+    :raises SettingsError: with the file and line of a requirement that cannot be read, or that is not for wheels, and
+        of a component that does not exist
     """
     packages = load_robot_packages(pyproject)
+    for text, remedy in unknown_components(packages):
+        raise SettingsError(text, where=packages.lines["components"], remedy=remedy)
     requires = []
     for each in packages.requires:
         if each.url is not None and not each.url.partition("#")[0].endswith(".whl"):
