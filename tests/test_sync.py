@@ -11,6 +11,7 @@ from collections import namedtuple
 from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 from conftest import MakeProject, Result, RobotProject
@@ -495,7 +496,7 @@ def test_a_full_disk_is_noticed_before_the_download(
     monkeypatch.setenv("HOME", str(other.home))
     options = SyncOptions()
     with pytest.raises(PyfrcError, match=r"the disk is too full: .* kB are needed in .*robotpy"):
-        synchronize(find_project(other.project.path), CURRENT, None, options, progress=None)  # type: ignore[arg-type]
+        synchronize(find_project(other.project.path), CURRENT, None, options, Mock())
     assert other.cached() == {}
 
 
