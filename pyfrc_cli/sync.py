@@ -101,11 +101,16 @@ def _report(synced: Synced) -> None:
 
 
 def _compare_with_here(synced: Synced) -> None:
-    from pyfrc_core.sync.install import different_here
+    from pyfrc_core.season import CURRENT
+    from pyfrc_core.sync.install import different_here, missing_here
 
-    if found := list(different_here(synced.lock)):
-        more = f" and {len(found) - 3} more" if len(found) > 3 else ""
-        hint(f"This computer has {', '.join(found[:3])}{more}. For the same here: pyfrc sync --install")
+    for says, found in (
+        ("has", list(different_here(synced.lock))),
+        ("does not have", list(missing_here(synced.lock, CURRENT))),
+    ):
+        if found:
+            more = f" and {len(found) - 3} more" if len(found) > 3 else ""
+            hint(f"This computer {says} {', '.join(found[:3])}{more}. For the same here: pyfrc sync --install")
 
 
 class _Progress:

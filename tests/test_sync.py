@@ -482,6 +482,7 @@ def test_other_versions_here_are_named_and_installed_on_request(laptop: Laptop) 
     version = metadata.version("click")
     printed = laptop.sync()
     assert f"This computer has click {version} (the robot: 99.0). For the same here: pyfrc sync --install" in printed
+    assert "This computer does not have simple-lib. For the same here: pyfrc sync --install" in printed
     printed = laptop.sync("--install", PIP_DRY_RUN="1")
     assert "Would install click-99.0 simple-lib-1.0" in printed
 

@@ -18,12 +18,31 @@ from .lock import Lock
 def different_here(lock: Lock) -> Iterator[str]:
     """Yield each package that this computer has in another version than the lock."""
     for each in lock.packages:
-        try:
-            here = metadata.version(each.name)
-        except metadata.PackageNotFoundError:
-            continue
-        if here != each.version:
+        here = _version_here(each.name)
+        if here not in (None, each.version):
             yield f"{each.name} {here} (the robot: {each.version})"
+
+
+def missing_here(lock: Lock, season: Season) -> Iterator[str]:
+    """Yield each package that the project itself asks for, also on this computer, and that this computer lacks.
+
+    Without the package that only needs all of WPILib.
+    """
+    from packaging.requirements import Requirement
+    from packaging.utils import canonicalize_name
+
+    for needed in map(Requirement, lock.requirements):
+        name = canonicalize_name(needed.name)
+        for_here = needed.marker is None or needed.marker.evaluate({"extra": ""})
+        if for_here and name != season.downloads.packages and _version_here(name) is None:
+            yield name
+
+
+def _version_here(package: str) -> str | None:
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return None
 
 
 def install_here(lock: Lock, season: Season, find_links: Sequence[str], quiet: bool = False) -> None:
