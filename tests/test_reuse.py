@@ -6,7 +6,7 @@ import re
 import sys
 
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject, RobotProject, sampled
 
 pytestmark = pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="nothing is forked here to compare with")
 
@@ -134,7 +134,7 @@ def hashes(project: RobotProject, isolation: str) -> tuple[dict[str, str], str]:
     return {file.name: file.read_text().splitlines()[-1] for file in traces}, result.output
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", sampled(list(ROBOTS), "commands"))
 def test_one_interpreter_runs_all_tests(name: str, make_project: MakeProject) -> None:
     if name == "rev":
         pytest.importorskip("rev")

@@ -156,6 +156,7 @@ def test_two_laptops_with_the_same_lock_have_the_same_bytes(laptop: Laptop, tmp_
     assert other.lock == laptop.lock
 
 
+@pytest.mark.slow
 def test_a_new_requirement_leaves_the_other_versions_as_they_are(laptop: Laptop) -> None:
     laptop.sync()
     laptop.index.add("simple-lib", "2.0")
@@ -181,6 +182,7 @@ def test_another_version_of_wpilib_replaces_all_its_packages(laptop: Laptop) -> 
     assert laptop.packages["wpilib"] == laptop.packages["robotpy-hal"] == newer
 
 
+@pytest.mark.slow
 def test_upgrade_takes_the_newest(laptop: Laptop) -> None:
     laptop.sync()
     laptop.index.add("simple-lib", "2.0")
@@ -231,6 +233,7 @@ def test_an_interrupted_download_goes_on_where_it_ended(laptop: Laptop) -> None:
     assert laptop.cached()[name] == laptop.index.python.read_bytes()
 
 
+@pytest.mark.slow
 def test_a_killed_download_goes_on_where_it_ended(laptop: Laptop) -> None:
     index, name = laptop.index, laptop.index.python.name
     index.cut_after[name], index.may_go_on = 200_000, threading.Event()
@@ -327,6 +330,7 @@ def test_a_directory_carries_everything_to_a_laptop_without_internet(laptop: Lap
     assert f"the lock in {stick} is not for" in refused.first_error
 
 
+@pytest.mark.slow
 def test_wheels_of_a_directory_are_locked_without_an_address(laptop: Laptop, tmp_path: Path) -> None:
     wheels = laptop.project.path / "wheels"
     add_wheel(wheels, "own-lib", "1.0")
@@ -339,6 +343,7 @@ def test_wheels_of_a_directory_are_locked_without_an_address(laptop: Laptop, tmp
     assert other.cached() == laptop.cached()
 
 
+@pytest.mark.slow
 def test_pips_variable_for_directories_of_wheels_holds_also_with_a_lock(laptop: Laptop) -> None:
     wheel = add_wheel(laptop.project.path / "wheels", "own-lib", "1.0")
     laptop.project.write({"pyproject.toml": pyproject(requires='"own-lib"')})
@@ -348,6 +353,7 @@ def test_pips_variable_for_directories_of_wheels_holds_also_with_a_lock(laptop: 
     assert laptop.cached()[wheel.name] == wheel.read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["address", "path"])
 def test_python_may_be_a_file_of_this_computer(laptop: Laptop, tmp_path: Path, kind: str) -> None:
     python = tmp_path / "py.tar.gz"
@@ -360,6 +366,7 @@ def test_python_may_be_a_file_of_this_computer(laptop: Laptop, tmp_path: Path, k
     assert laptop.cached()[python.name] == python.read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("where", ["http", "file"])
 def test_a_wrong_address_of_python_is_that_of_the_variable(laptop: Laptop, tmp_path: Path, where: str) -> None:
     named = f"{laptop.index.url}/gone.tar.gz" if where == "http" else str(tmp_path / "gone.tar.gz")
@@ -455,6 +462,7 @@ def test_without_internet_one_sentence_says_so(laptop: Laptop, tmp_path: Path) -
     assert failed.first_error == expected
 
 
+@pytest.mark.slow
 def test_a_lock_that_does_not_fit_is_refused_and_replaced_only_on_request(laptop: Laptop) -> None:
     laptop.sync()
     file = laptop.project.path / LOCK_FILE
@@ -475,6 +483,7 @@ def test_a_lock_that_does_not_fit_is_refused_and_replaced_only_on_request(laptop
     assert file.read_text("utf-8") == fitting
 
 
+@pytest.mark.slow
 def test_other_versions_here_are_named_and_installed_on_request(laptop: Laptop) -> None:
     # A package that pyfrc needs is installed here. pip only shows what it would install.
     laptop.index.add("click", "99.0")
@@ -501,6 +510,7 @@ def test_a_full_disk_is_noticed_before_the_download(
     assert other.cached() == {}
 
 
+@pytest.mark.slow
 def test_a_quiet_sync_prints_nothing(laptop: Laptop) -> None:
     assert laptop.sync("-q") == ""
 
