@@ -62,7 +62,7 @@ def systemcore() -> Generator[Systemcore]:
 Kind = type[Roborio] | type[Systemcore]
 
 
-@pytest.fixture(params=[Roborio, Systemcore], ids=lambda kind: kind.controller.name)
+@pytest.fixture(params=sampled([Roborio, Systemcore], Roborio), ids=lambda kind: kind.controller.name)
 def kind(request: pytest.FixtureRequest) -> Kind:
     if request.param is Roborio:
         require_roborio()

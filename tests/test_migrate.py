@@ -288,6 +288,7 @@ def test_the_settings_name_the_packages_of_the_new_season(project: RobotProject,
         assert text(project, name) == new
 
 
+@pytest.mark.slow
 def test_five_thousand_lines_are_valid_afterwards(make_project: MakeProject) -> None:
     """How long it took is in docs/migrate.md."""
     files = {f"part{number}.py": DRIVE for number in range(200)}
