@@ -17,8 +17,8 @@ from pathlib import Path
 
 import pytest
 from at_terminal import run_at_terminal
-from competition_field import deploy_on_field
 from conftest import sampled
+from driver_stations import deploy_on_field, driver_station
 from roborio import Proxy, Roborio, require_roborio
 from skips import missing_programs, require
 
@@ -86,44 +86,13 @@ def code_on(robot: Roborio) -> str:
 # -- the way that everybody goes ---------------------------------------------------------------------------------------
 
 
-def alone_on_port(port: int) -> socket.socket:
-    """Listens there, when it is this test's turn: another run of this suite may be at the same test."""
-    for _ in range(2000):
-        try:
-            return socket.create_server(("127.0.0.1", port))
-        except OSError:
-            threading.Event().wait(0.1)
-    raise AssertionError(f"somebody listens on port {port} all the time: a Driver Station?")
-
-
-@contextlib.contextmanager
-def driver_station(robot: Roborio) -> Iterator[None]:
-    """A Driver Station on this computer, which is connected to the robot."""
-    number = struct.unpack("!I", socket.inet_aton(robot.host))[0]
-    said = json.dumps({"robotIP": number, "FMS Connected": False}).encode() + b"\n"
-    with alone_on_port(1742) as listener:
-
-        def serve() -> None:
-            with contextlib.suppress(OSError):
-                while True:
-                    with listener.accept()[0] as connected:
-                        connected.sendall(said)
-
-        thread = threading.Thread(target=serve, daemon=True)
-        thread.start()
-        try:
-            yield
-        finally:  # or the thread would go on accepting, and no other test could ever listen there
-            listener.shutdown(socket.SHUT_RDWR)
-            thread.join()
-
-
 def test_a_new_user_comes_to_a_running_program_with_one_command_and_one_question(robot: Roborio, make_project) -> None:
     if robot.port != 22:
         require("deploying through the Driver Station", ["port 22, which this computer's own SSH server has"])
     project = make_project({})
     assert project.run("init").code == 0
-    with driver_station(robot):
+    number = struct.unpack("!I", socket.inet_aton(robot.host))[0]
+    with driver_station(1742, {"robotIP": number, "FMS Connected": False}):
         code, shown = run_at_terminal(project, ["deploy"], [("What is your team number?", "9999")])
         assert code == 0, shown
         assert len(re.findall(r"\w\?", shown)) == 1, shown

@@ -200,10 +200,11 @@ def _send_python(connection: Connection, wanted: Environment, archive: Path, pha
         stream.seek(-4, 2)
         (unpacked,) = struct.unpack("<I", stream.read())  # gzip's last field
     size = archive.stat().st_size
+    needed = size + unpacked * 5 // 4
     script = _SEND_PYTHON.format(
         pythons=shlex.quote(f"{wanted.home}/pythons"),
         name=wanted.python_name,
-        kilobytes=(size + unpacked * 5 // 4) // 1024,
+        kilobytes=needed // 1024,
         sha256=wanted.lock.python.sha256,
     )
     with connection.opened(script) as channel:
@@ -213,8 +214,8 @@ def _send_python(connection: Connection, wanted: Environment, archive: Path, pha
                 return False
             if reply.startswith("full "):
                 raise RefusedError(
-                    f"the robot's disk is too full to install Python: {(size + unpacked * 5 // 4) // 1000:,} kB are "
-                    f"needed, {one_line(reply)[5:]} kB are free",
+                    f"the robot's disk is too full to install Python: {needed // 1000:,} kB are needed, "
+                    f"{one_line(reply)[5:]} kB are free",
                     where=str(connection.address),
                     remedy="Remove old logs from the robot. Nothing was changed.",
                 )

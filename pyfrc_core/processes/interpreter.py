@@ -23,6 +23,7 @@ from itertools import count
 from pathlib import Path
 from typing import IO, NoReturn, Protocol
 
+from ..text_files import write_whole
 from . import spawn
 from .crash_report import CrashLog
 from .exit import exit_now
@@ -272,9 +273,9 @@ def _serve(prepare: Prepare | None, directory: Path) -> NoReturn:
             messages.close()
             if state is None or status is None:
                 exit_now(1 if status is None else status)
-            _write_whole(files.done, str(status))
+            write_whole(files.done, [str(status)])
             left = state.restore()
-            _write_whole(files.left, "\n".join(left))
+            write_whole(files.left, ["\n".join(left)])
             if left:
                 break
     exit_now(0)
@@ -292,10 +293,3 @@ def _take_requests() -> IO[bytes]:
     os.close(nowhere)
     sys.stdin = Path(os.devnull).open(encoding="utf-8")  # noqa: SIM115 - until this process ends
     return requests
-
-
-def _write_whole(file: Path, text: str) -> None:
-    """Write a file that is found whole, or not at all."""
-    new = file.with_suffix(".new")
-    new.write_text(text, "utf-8")
-    new.replace(file)

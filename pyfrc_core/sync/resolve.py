@@ -27,7 +27,8 @@ from .wanted import robot_environment
 #: The oldest pip that reports what it would install, for another computer.
 _OLDEST_PIP = (23, 0)
 #: Settings of the user's for pip that do not fit: they are about installing here.
-_NOT_HERE = {"PIP_USER": "0", "PIP_REQUIRE_VIRTUALENV": "0", "PIP_TARGET": "", "PIP_PREFIX": "", "PIP_DRY_RUN": "0"}
+_NOT_HERE = {"PIP_TARGET", "PIP_PREFIX"}
+_OFF = {"PIP_USER": "0", "PIP_REQUIRE_VIRTUALENV": "0", "PIP_DRY_RUN": "0"}
 _COLLECTING = re.compile(r"Collecting ([^ =<>!~;\[]+)")
 
 
@@ -91,10 +92,8 @@ def find_packages(
 
 
 def _run(command: Sequence[str], finding: Callable[[str], None]) -> tuple[str, int]:
-    environment = {**os.environ, **_NOT_HERE, "PYTHONUTF8": "1", "PYTHONUNBUFFERED": "1"}
-    for name, value in _NOT_HERE.items():
-        if not value:
-            environment.pop(name)
+    kept = {name: value for name, value in os.environ.items() if name not in _NOT_HERE}
+    environment = {**kept, **_OFF, "PYTHONUTF8": "1", "PYTHONUNBUFFERED": "1"}
     printed = []
     with subprocess.Popen(
         command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment

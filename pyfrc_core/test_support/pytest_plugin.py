@@ -94,7 +94,7 @@ class PyFrcPlugin(WatchedTests):
         self.crash_log: CrashLog | None = None
         #: Why each test's process imports the robot's modules itself; empty when a fork inherits them.
         self.imports_late = imports_late
-        #: The robot's opmodes, or why they are not known; None while nobody has asked.
+        #: The robot's opmodes, or why they are not known; None before the robot is asked.
         self.published = published
         self._former_logs: set[tuple[str, int]] = set()
         self._robot_class = robot_class

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import json
 import re
-import socket
 import sys
-import threading
-from collections.abc import Generator, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Generator
 from importlib.metadata import version
 from pathlib import Path
 
 import pytest
-from competition_field import deploy_on_field
 from conftest import MakeProject, Result, RobotProject
+from driver_stations import deploy_on_field, driver_station
 from skips import missing_programs, require
 from systemcore import Systemcore, require_systemcore
 
@@ -155,27 +152,6 @@ def test_a_wrong_clock_is_no_obstacle(clock: str, project: RobotProject, robot: 
     robot.said("this is version 2")
 
 
-@contextmanager
-def driver_station(robot: Systemcore) -> Iterator[None]:
-    """The Driver Station of 2027 on this computer, which is connected to the robot."""
-    said = json.dumps({"robotIp": robot.host, "fmsControlled": False}).encode() + b"\n"
-    with socket.create_server(("127.0.0.1", 6770)) as listener:
-
-        def serve() -> None:
-            with suppress(OSError):
-                while True:
-                    with listener.accept()[0] as connected:
-                        connected.sendall(said)
-
-        thread = threading.Thread(target=serve, daemon=True)
-        thread.start()
-        try:
-            yield
-        finally:
-            listener.shutdown(socket.SHUT_RDWR)
-            thread.join()
-
-
 def test_a_deploy_in_a_match_is_refused(project: RobotProject) -> None:
     require_systemcore()
     require("deploying on a competition field", missing_programs("ip"))
@@ -187,7 +163,7 @@ def test_a_deploy_in_a_match_is_refused(project: RobotProject) -> None:
 def test_the_driver_stations_robot_is_found(project: RobotProject, robot: Systemcore) -> None:
     if robot.port != 22:
         pytest.skip("deploying through the Driver Station: needs port 22, which this computer's own SSH server has")
-    with driver_station(robot):
+    with driver_station(6770, {"robotIp": robot.host, "fmsControlled": False}):
         result = project.run("deploy", "--skip-tests", "--team", "9999", cold=True)
     assert result.code == 0, result.output
     assert f"find       {robot.host} (the Driver Station's robot)" in result.stdout

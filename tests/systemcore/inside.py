@@ -58,7 +58,7 @@ class Service:
         self._starts: deque[float] = deque()
         self._restarts = 0
         self._unfinished = b""
-        #: The reply to whoever waits for its end, and when it is killed.
+        #: The reply to the one who waits for its end, and when it is killed.
         self.stopping: tuple[str, float] | None = None
 
     def start(self) -> str:

@@ -108,6 +108,12 @@ def with_last(method: cst.FunctionDef, statement: cst.BaseStatement) -> cst.Func
     return method.with_changes(body=body.with_changes(body=[*before, statement]))
 
 
+def first_parameter(function: cst.FunctionDef | cst.Lambda) -> str:
+    """Return the name of a function's first parameter; "" if it has none."""
+    parameters = function.params.params
+    return parameters[0].name.value if parameters else ""
+
+
 def is_pass(statement: cst.CSTNode) -> bool:
     """Return whether a statement is `pass`."""
     return isinstance(statement, cst.SimpleStatementLine) and isinstance(statement.body[0], cst.Pass)

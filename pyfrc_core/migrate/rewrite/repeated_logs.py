@@ -8,7 +8,7 @@ from __future__ import annotations
 import libcst as cst
 
 from ..types.scopes import OwnClass, OwnFunction, Scope
-from .edits import with_last
+from .edits import first_parameter, with_last
 from .file import FileRewriter
 
 _ONCE = {"__init__", "robotInit", "createObjects"}
@@ -36,9 +36,9 @@ class RepeatedLogs:
         if function is None or own is None or function.name not in _ONCE:
             return False
         line = _line_of(node, function)
-        periodic = self._periodic(own, _first_parameter(function.node))
+        periodic = self._periodic(own, first_parameter(function.node))
         shown = node.args[-1].value
-        if line is None or periodic is None or not _is_own(shown, _first_parameter(function.node)):
+        if line is None or periodic is None or not _is_own(shown, first_parameter(function.node)):
             return False
         root = self._file.consume(node.func, scope)
         code = f"{self._file.imports.spell('telemetry.log', root, scope)}({arguments})"
@@ -57,7 +57,7 @@ class RepeatedLogs:
                 method = methods[0]
                 finder = _Returns()
                 method.visit(finder)
-                if not finder.found and _first_parameter(method) == parameter:
+                if not finder.found and first_parameter(method) == parameter:
                     return method
         return None
 
@@ -77,11 +77,6 @@ def _line_of(node: cst.Call, function: OwnFunction) -> cst.SimpleStatementLine |
             if isinstance(statement, cst.Expr) and statement.value is node:
                 return each
     return None
-
-
-def _first_parameter(function: cst.FunctionDef | cst.Lambda) -> str:
-    parameters = function.params.params
-    return parameters[0].name.value if parameters else ""
 
 
 def _is_own(node: cst.BaseExpression, parameter: str) -> bool:

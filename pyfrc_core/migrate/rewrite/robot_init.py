@@ -7,7 +7,7 @@ from typing import Any
 import libcst as cst
 
 from ..types.scopes import OwnClass, Scope
-from .edits import is_pass, renamed, with_last
+from .edits import first_parameter, is_pass, renamed, with_last
 from .file import FileRewriter
 
 _CALL = "super().__init__()"
@@ -28,7 +28,7 @@ def rewrite(file: FileRewriter, own: OwnClass, method: cst.FunctionDef) -> None:
         return
     name = "robot_init"
     file.edit(method, renamed(name))
-    first = node.params.params[0].name.value if node.params.params else "self"
+    first = first_parameter(node) or "self"
     call = cst.ensure_type(cst.parse_statement(f"{first}.{name}()"), cst.SimpleStatementLine)
     file.edit(node, lambda updated: with_last(updated, call))
     file.say(method, f"robotInit is called {name} now, by the constructor.", done=True)

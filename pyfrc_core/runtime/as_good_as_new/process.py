@@ -148,7 +148,7 @@ def _state_of(logger: logging.Logger) -> tuple[tuple[Any, ...], tuple[Any, ...],
 
 
 class Randomness(Part):
-    """The state of Python's random generator, and of numpy's."""
+    """The state of Python's random generator. Each run seeds numpy's (`seeds`)."""
 
     def __init__(self) -> None:
         self._before = random.getstate()

@@ -9,7 +9,7 @@ from .part import Part
 
 
 class Commands(Part):
-    """The command scheduler, which is made anew."""
+    """The command scheduler: the next run gets a new one."""
 
     def restore(self) -> None:
         commands.forget_all()

@@ -34,7 +34,7 @@ class LeaveLine(wpilib.PeriodicOpMode):
 
 @wpilib.autonomous(name="Stay", description="Stand still, for matches in which our partners need the space")
 class Stay(wpilib.PeriodicOpMode):
-    """The smallest opmode. A drive must be told what to do in each turn, even if that is nothing."""
+    """The smallest opmode. A drive must be told in each turn what to do, also to stand still."""
 
     def __init__(self, robot: MyRobot) -> None:
         """Called when the opmode is selected, while the robot is disabled."""
