@@ -11,7 +11,7 @@ from browser_pages import HOSTILE, INJECTED, REFUSED, ROBOT, shared_browser  # n
 from recorded_pages import run_in
 from sim_robots import FILES
 
-from pyfrc_core.sim.ui.web.history import MISSING, ValueHistory, packed
+from pyfrc_core.sim.engine.value_history import MISSING, ValueHistory, packed
 
 SCRIPT = """\
 {"format": "pyfrc-input 1", "end": 4.0}
@@ -132,12 +132,12 @@ def test_a_page_of_a_replay_and_of_a_failure_that_fuzz_has_found(make_project: A
     place = project.place("robot.py", "{}[5]")
     assert hello["status"]["failure"]["headline"].startswith(f"{place}: KeyError")
     assert hello["status"]["state"] == "failed"
-    assert hello["recorded"]["what"] == f"pyfrc fuzz: tests/fuzz/{page.stem}.jsonl"
+    assert hello["source"]["title"] == f"pyfrc fuzz: tests/fuzz/{page.stem}.jsonl"
     result = project.run("replay", f"tests/fuzz/{page.stem}.jsonl", "--page", "replayed.html")
     assert result.code == 1
     assert "wrote replayed.html" in result.output
     hello = run_in(project.path / "replayed.html")["hello"]
-    assert hello["recorded"]["what"] == f"pyfrc replay tests/fuzz/{page.stem}.jsonl"
+    assert hello["source"]["title"] == f"pyfrc replay tests/fuzz/{page.stem}.jsonl"
 
 
 def test_a_page_that_cannot_be_written_is_an_error_before_the_run(make_project: Any) -> None:

@@ -8,8 +8,8 @@ import random
 import pytest
 
 from pyfrc_core.sim.engine.changes import Change, RunBegan
+from pyfrc_core.sim.engine.value_history import MISSING, ValueHistory
 from pyfrc_core.sim.ui.web.console import MOST_IMPORTANT, MOST_LINES, Console
-from pyfrc_core.sim.ui.web.history import MISSING, ValueHistory
 from pyfrc_core.sim.ui.web.marks import Marks
 from pyfrc_core.sim.ui.web.messages import json_text, read_value
 from pyfrc_core.sim.ui.web.plots import series

@@ -165,14 +165,23 @@ def served(
     """Serve a simulation of a project."""
     given = {"speed": 0, "paused": True, "network_values": True, **options}
     simulation = Simulation(find_project(made.path), SimOptions(**given))
+    with served_source(simulation, share, allowed_hosts) as found:
+        assert simulation.wait_for(lambda: simulation.status.state != "starting", PATIENCE)
+        yield found
+
+
+@contextmanager
+def served_source(source: Any, share: Share | None = None, allowed_hosts: tuple[str, ...] = ()) -> Iterator[Served]:
+    """Serve any source."""
     printed: list[str] = []
     front_end = WebFrontEnd(printed.append, WebOptions(share, allowed_hosts=allowed_hosts, opens_browser=False))
     codes: list[int] = []
-    thread = threading.Thread(target=lambda: codes.append(front_end.run(simulation)), daemon=True)
+    thread = threading.Thread(target=lambda: codes.append(front_end.run(source)), daemon=True)
     thread.start()
-    assert simulation.wait_for(lambda: simulation.status.state != "starting", PATIENCE)
+    with source.reports:
+        assert source.reports.wait_for(lambda: front_end.server is not None, PATIENCE)
     try:
-        yield Served(simulation, front_end, printed)
+        yield Served(source, front_end, printed)
     finally:
         front_end.close()
         thread.join(PATIENCE)

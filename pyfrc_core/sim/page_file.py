@@ -13,6 +13,7 @@ from ..text_files import write_whole
 from .engine.options import SimOptions
 from .engine.simulation import Simulation
 from .engine.snapshot import Failure
+from .engine.source import Source
 from .ui.headless import Headless
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class PageFile:
-    """The page of one simulation, which reports NetworkTables and is recorded.
+    """The page of one source; a simulation reports NetworkTables and is recorded.
 
     :param file: where to write it
     :param what: what was run, for the reader of the page
@@ -36,7 +37,7 @@ class PageFile:
         self._collector: Collector | None = None
         self._front_end: WebFrontEnd | None = None
 
-    def follow(self, simulation: Simulation, front_end: FrontEnd | None = None) -> None:
+    def follow(self, source: Source, front_end: FrontEnd | None = None) -> None:
         """Begin to collect what the page will show.
 
         :param front_end: the one that collects it for itself, too
@@ -49,11 +50,11 @@ class PageFile:
             assert isinstance(front_end, WebFrontEnd)
             self._front_end = front_end
         else:
-            self._collector = Collector(simulation, lambda: None)
+            self._collector = Collector(source, lambda: None)
             self._collector.start()
 
-    def write(self, simulation: Simulation, failure: Failure | None = None) -> bool:
-        """Write the page of a simulation that is closed, and return whether there was anything to write.
+    def write(self, source: Source, failure: Failure | None = None) -> bool:
+        """Write the page of a source that is closed, and return whether there was anything to write.
 
         :param failure: the failure, if it is none that the simulation knows
         :raises UsageError: when the file cannot be written
@@ -61,11 +62,11 @@ class PageFile:
         from .ui.web.recorded_page import RunTitle, recorded_page
 
         collector = self._collector if self._front_end is None else self._front_end.collector
-        if collector is None or (simulation.snapshot is None and simulation.status.failure is None):
+        if collector is None or (source.snapshot is None and source.status.failure is None):
             return False
         collector.close()
         try:
-            write_whole(self.file, [recorded_page(simulation, collector, RunTitle(self._what, failure))])
+            write_whole(self.file, [recorded_page(source, collector, RunTitle(self._what, failure))])
         except OSError as error:
             raise UsageError(f"--page {self.file} cannot be written: {error.strerror}") from None
         return True

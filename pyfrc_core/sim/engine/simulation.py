@@ -29,12 +29,13 @@ from .recording import Recording
 from .scene import Pose, Tag
 from .snapshot import Failure, Snapshot, Status
 from .snapshot_builder import SnapshotBuilder, status_after, status_at_start
+from .source import SimulationSource
 
 #: A running robot does not respond when it has sent nothing for this time, in wall seconds.
 _SILENCE = 1.0
 
 
-class Simulation(Controls):
+class Simulation(Controls, SimulationSource):
     """A robot that a person, a script or a dashboard can drive.
 
     All methods may be called at any time, from any thread. A call that makes no sense at that moment does nothing, or

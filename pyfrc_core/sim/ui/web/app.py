@@ -26,7 +26,7 @@ from .single_file import PAGE
 from .updates import UpdateBuilder
 
 if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
+    from ...engine.source import Source
     from .collector import Collector
 
 #: Types that some systems have wrong, in the Windows registry for example: browsers refuse files of another type.
@@ -53,21 +53,21 @@ class _PageFiles(StaticFiles):
 
 
 class WebApp:
-    """Serves the pages of one simulation.
+    """Serves the pages of one source.
 
-    :param close: ends the simulation
+    :param close: ends it
     :param watching: whether saved files bring new code
     """
 
     def __init__(
         self,
-        simulation: Simulation,
+        source: Source,
         collector: Collector,
         close: Callable[[], object],
         access: Access,
         watching: bool = False,
     ) -> None:
-        self._simulation, self._collector, self._access = simulation, collector, access
+        self._source, self._collector, self._access = source, collector, access
         self._close, self._watching = close, watching
         self._clients: dict[int, PageClient] = {}
         self._count = 0
@@ -106,11 +106,11 @@ class WebApp:
         return FileResponse(PAGE / "index.html", headers={"Cache-Control": "no-cache"})
 
     async def _image(self, request: Request) -> Response:
-        image = self._simulation.project.sim_config.field.image
+        image = self._source.project.sim_config.field.image
         if self._access.role_of(request.scope) is None:
             return PlainTextResponse(_NO_KEY, 403)
         # Looked at again: the file may be another one since the page was made.
-        file = None if image is None else field_picture(self._simulation.project.root, image)[0]
+        file = None if image is None else field_picture(self._source.project.root, image)[0]
         if file is None:
             return PlainTextResponse("There is no picture of the field.\n", 404)
         return FileResponse(file, media_type=picture_kind(file), headers={"Cache-Control": "no-cache"})
@@ -124,13 +124,13 @@ class WebApp:
         self._count += 1
         number, token = self._count, socket.query_params.get("token", "")
         image = f"/field-image?token={token}"
-        driver = self._simulation.attach() if role == "drive" else None
+        writer = self._source.attach() if role == "drive" else None
         client = PageClient(
             socket,
             self._collector,
-            None if driver is None else PageCommands(self._simulation, driver, self._collector, self._close),
+            PageCommands(self._source, writer, self._collector, self._close) if role == "drive" else None,
             UpdateBuilder(self._collector, image),
-            lambda: greeting(self._simulation, number, role == "view", self._watching),
+            lambda: greeting(self._source, number, role == "view", self._watching),
             lambda: len(self._clients),
             self._executor,
         )
@@ -147,9 +147,9 @@ class WebApp:
             for found in await asyncio.gather(*tasks, return_exceptions=True):
                 if isinstance(found, Exception) and not isinstance(found, _GONE):
                     await self._report(socket, found, role)
-            if driver is not None:
+            if writer is not None:
                 with suppress(RuntimeError):  # the simulation has ended
-                    self._executor.submit(driver.leave)  # after what the page has asked for
+                    self._executor.submit(writer.leave)  # after what the page has asked for
 
     @staticmethod
     async def _report(socket: WebSocket, error: Exception, role: Role) -> None:

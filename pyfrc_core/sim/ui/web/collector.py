@@ -1,4 +1,4 @@
-"""Reads a simulation by cursors, on a thread of its own, and keeps what every page shows."""
+"""Reads a source, such as a simulation, by cursors, on a thread of its own, and keeps what every page shows."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from .runs import Branch, Runs
 
 if TYPE_CHECKING:
     from ...engine.scene import Field
-    from ...engine.simulation import Simulation
     from ...engine.snapshot import Failure, Snapshot, Status
+    from ...engine.source import Source
 
 #: How often to look when nothing is reported, and the shortest interval of looks, in wall seconds.
 _LONGEST, _SHORTEST = 0.1, 0.008
@@ -58,19 +58,19 @@ def _moment_of(state: State) -> float:
 
 
 class Collector:
-    """Follows one simulation.
+    """Follows one source.
 
     :param changed: called after each look that found something, on the collector's thread
     """
 
-    def __init__(self, simulation: Simulation, changed: Callable[[], object]) -> None:
-        self._simulation, self._changed = simulation, changed
-        self.runs, self.marks = Runs(), Marks()
-        self.console = Console(simulation.project.root)
-        self._output = simulation.output_cursor()
-        self._hal, self._network = simulation.change_cursor(), simulation.network_cursor()
-        self._project = simulation.project
-        self._rows = DeviceRows(simulation.project.sim_config)
+    def __init__(self, source: Source, changed: Callable[[], object]) -> None:
+        self._source, self._changed = source, changed
+        self.runs, self.marks = Runs(source.recorded), Marks()
+        self.console = Console(source.project.root)
+        self._output = source.output_cursor()
+        self._hal, self._network = source.change_cursor(), source.network_cursor()
+        self._project = source.project
+        self._rows = DeviceRows(source.project.sim_config)
         #: Whether the last look has left changes for the next one.
         self._has_more = False
         self._run = (0, 0.0)
@@ -80,19 +80,22 @@ class Collector:
         self._announced: list[str] = []
         #: The numbers of lines and marks at the last look.
         self._shown = (0, 0)
+        #: The number of the source's branches that are known.
+        self._branches = 0
         self._over = threading.Event()
         #: A mistake of pyfrc's own, after which the page would stand still without a word.
         self.mistake: Exception | None = None
         self._thread = threading.Thread(target=self._run_thread, name="pyfrc sim: web collector", daemon=True)
-        self.state = self._state_of(simulation.snapshot, simulation.status)
+        self._add_recorded()
+        self.state = self._state_of(source.snapshot, source.status)
 
     @property
     def root(self) -> Path:
         """The project's directory."""
-        return self._simulation.project.root
+        return self._source.project.root
 
     def start(self) -> None:
-        """Begin to follow the simulation."""
+        """Begin to follow it."""
         self._thread.start()
 
     def close(self) -> None:
@@ -112,7 +115,7 @@ class Collector:
             self.mistake = mistake
 
     def _follow(self) -> None:
-        reports = self._simulation.reports
+        reports = self._source.reports
         while not self._over.is_set():
             began, seen = time.monotonic(), reports.count
             if self.look():
@@ -125,9 +128,12 @@ class Collector:
     def look(self) -> bool:
         """Read what is new, and return whether there is anything."""
         before, shown = self.state, self._shown
-        simulation = self._simulation
+        source = self._source
+        for branch in source.branches[self._branches :]:
+            self._branches += 1
+            self.runs.add_branch(branch)
         # Before the changes are read, so that they are at least as new as what is shown beside them.
-        snapshot, status = simulation.snapshot, simulation.status
+        snapshot, status = source.snapshot, source.status
         now = _moment_of(before)
         if output := self._output.read():
             for line in self.console.add(output, now):
@@ -153,8 +159,8 @@ class Collector:
         return found
 
     def _state_of(self, snapshot: Snapshot | None, status: Status) -> State:
-        simulation = self._simulation
-        project = simulation.project
+        source = self._source
+        project = source.project
         if project is not self._project:
             self._project, self._rows = project, DeviceRows(project.sim_config)
         if snapshot is not None:
@@ -162,13 +168,25 @@ class Collector:
         return State(
             snapshot=snapshot,
             status=status,
-            field=simulation.field,
+            field=source.field,
             panels=self._rows.panels,
             branches=self.runs.branches,
-            wants_to_run=simulation.wants_to_run,
+            wants_to_run=source.wants_to_run,
             run=self._run,
             known_from=self.runs.known_from,
         )
+
+    def _add_recorded(self) -> None:
+        """Add what has happened in a run that is over."""
+        recorded = self._source.recorded
+        if recorded is None:
+            return
+        for at, level, text, is_mark in recorded.happened:
+            self.console.say(text, at, level)
+            if is_mark and level != "info":
+                self.marks.add(at, level, text.strip())
+        for at, mode in self.runs.modes():
+            self.marks.add(at, "mode", mode)
 
     # -- events ---------------------------------------------------------------------------------------------------
 

@@ -1,4 +1,4 @@
-"""The commands of a page: a table of their names, with what each does to the simulation."""
+"""The commands of a page: a table of their names, with what each does to the source, as far as that can be driven."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING, Any, get_args
 from ....errors import PyfrcError
 from ....runtime.scripts.script import trace_beside
 from ...engine.commands import ChosenMode
+from ...engine.controls import Driver
+from ...engine.simulation import Simulation
 from ..models.joysticks import FIRST_BUTTON, MOST_BUTTONS
 from ..models.time_controls import rewind, toggle
 from ..models.wording import STATIONS
 from .messages import CommandError, Message, read_value
 
 if TYPE_CHECKING:
-    from ...engine.controls import Driver
-    from ...engine.simulation import Simulation
+    from ...engine.source import Source, Writer
     from .collector import Collector
 
 #: The answer to a command, besides that it was carried out.
@@ -32,16 +33,28 @@ _FARTHEST = 1e6
 class PageCommands:
     """Carries out the commands of one page.
 
-    :param driver: the person at the page
-    :param close: ends the simulation
+    :param writer: the person at the page; None: there is nothing to do to the source
+    :param close: ends the source
     """
 
     def __init__(
-        self, simulation: Simulation, driver: Driver, collector: Collector, close: Callable[[], object]
+        self, source: Source, writer: Writer | None, collector: Collector, close: Callable[[], object]
     ) -> None:
-        self._simulation, self._driver, self._collector = simulation, driver, collector
-        s, d = simulation, driver
+        self._collector = collector
         self._table: dict[str, Callable[[Message], Any]] = {
+            "mark": lambda m: collector.marks.add(m.time("t"), "own", m.text("text")),
+            "name_branch": self._name_branch,
+            "move_branch": self._move_branch,
+            "quit": lambda m: close(),
+        }
+        if writer is not None:
+            self._table["write"] = lambda m: writer.write(_writes(m))
+        if isinstance(writer, Driver) and isinstance(source, Simulation):
+            self._table |= self._driving(source, writer)
+
+    def _driving(self, simulation: Simulation, driver: Driver) -> dict[str, Callable[[Message], Any]]:
+        s, d = simulation, driver
+        return {
             "enable": lambda m: d.enable(),
             "disable": lambda m: d.disable(),
             "e_stop": lambda m: d.emergency_stop(),
@@ -62,15 +75,11 @@ class PageCommands:
             "reload": lambda m: s.reload(),
             "place": lambda m: s.place(*(m.number(key, -_FARTHEST, _FARTHEST) for key in ("x", "y", "degrees"))),
             "reset_position": lambda m: s.reset_position(m.text("start") if "start" in m else None),
-            "write": self._write,
             "axis": lambda m: d.set_axis(_stick(m), m.integer("axis", 0, 11), m.number("value", -1, 1)),
             "button": lambda m: d.set_button(_stick(m), m.integer("button", *_BUTTONS), m.boolean("pressed")),
             "pov": lambda m: d.set_pov(_stick(m), m.integer("pov", 0, 11, 0), m.integer("angle", -1, 360)),
             "plug": lambda m: d.plug(_stick(m), m.boolean("plugged")),
-            "mark": lambda m: collector.marks.add(m.time("t"), "own", m.text("text")),
-            "name_branch": self._name_branch,
-            "save": self._save,
-            "quit": lambda m: close(),
+            "save": lambda m: _save(s, m),
         }
 
     def carry_out(self, message: Message) -> Answer:
@@ -80,7 +89,7 @@ class PageCommands:
         """
         act = self._table.get(message.text("name"))
         if act is None:
-            raise CommandError(f"There is no command {message.text('name')[:80]!r}. Reload the page.")
+            raise CommandError(f"There is no command {message.text('name')[:80]!r} here. Reload the page.")
         try:
             answer = act(message)
         except PyfrcError as wrong:
@@ -89,34 +98,41 @@ class PageCommands:
             raise CommandError(f"The file cannot be written: {wrong.strerror}") from None
         return answer if isinstance(answer, dict) else {}
 
-    def _write(self, message: Message) -> None:
-        values = message.raw("values")
-        if not isinstance(values, dict) or not values:
-            raise CommandError("values: an object with a value for each target is needed")
-        self._driver.write({target: read_value(value) for target, value in values.items()})
-
     def _name_branch(self, message: Message) -> None:
         number, name = message.branch(), message.text("text").strip()[:80]
         if number is None or not self._collector.runs.name(number, name):
             raise CommandError("This branch is no longer kept.")
 
-    def _save(self, message: Message) -> Answer:
-        root = self._simulation.project.root.resolve()
-        given = root / message.text("file").strip()
-        try:
-            file = (given if given.suffix == ".jsonl" else Path(f"{given}.jsonl")).resolve()
-        except (ValueError, RuntimeError):  # a null character; a symbolic link to itself
-            raise CommandError("This is no name of a file.") from None
-        if not file.is_relative_to(root):
-            raise CommandError("A recording is saved in the project's directory.")
-        name = file.relative_to(root).as_posix()
-        if not ("replace" in message and message.boolean("replace")):
-            for written in (file, trace_beside(file)):
-                if written.exists():
-                    return {"exists": written.relative_to(root).as_posix()}
-        file.parent.mkdir(parents=True, exist_ok=True)
-        self._simulation.save(file)
-        return {"file": name}
+    def _move_branch(self, message: Message) -> None:
+        number, offset = message.branch(), message.time("offset")
+        if number is None or not self._collector.runs.move(number, offset):
+            raise CommandError("This branch cannot be moved.")
+
+
+def _writes(message: Message) -> dict[str, Any]:
+    values = message.raw("values")
+    if not isinstance(values, dict) or not values:
+        raise CommandError("values: an object with a value for each target is needed")
+    return {target: read_value(value) for target, value in values.items()}
+
+
+def _save(simulation: Simulation, message: Message) -> Answer:
+    root = simulation.project.root.resolve()
+    given = root / message.text("file").strip()
+    try:
+        file = (given if given.suffix == ".jsonl" else Path(f"{given}.jsonl")).resolve()
+    except (ValueError, RuntimeError):  # a null character; a symbolic link to itself
+        raise CommandError("This is no name of a file.") from None
+    if not file.is_relative_to(root):
+        raise CommandError("A recording is saved in the project's directory.")
+    name = file.relative_to(root).as_posix()
+    if not ("replace" in message and message.boolean("replace")):
+        for written in (file, trace_beside(file)):
+            if written.exists():
+                return {"exists": written.relative_to(root).as_posix()}
+    file.parent.mkdir(parents=True, exist_ok=True)
+    simulation.save(file)
+    return {"file": name}
 
 
 def _stick(message: Message) -> int:

@@ -1,4 +1,4 @@
-"""The first message to a page: what stays the same in a simulation, and the layout that the page has saved."""
+"""The first message to a page: what stays the same, and the layout that the page has saved."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from ..models.time_controls import FASTEST, SLOWEST
 from ..models.wording import MODES, NO_OPMODE, STATIONS
 
 if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
+    from ...engine.source import Source
 
 #: The version of the messages; a page of another version asks to be reloaded.
 PROTOCOL = 1
 
 
-def greeting(simulation: Simulation, client: int, read_only: bool, watching: bool = False) -> dict[str, Any]:
+def greeting(source: Source, client: int, read_only: bool, watching: bool = False) -> dict[str, Any]:
     """Return the message without the state.
 
     :param client: the number of the page
     :param read_only: whether the page cannot drive
     :param watching: whether saved files bring new code
     """
-    project = simulation.project
+    project, abilities = source.project, source.abilities
     config, dashboards = project.sim_config, CURRENT.dashboards
     return {
         "type": "hello",
@@ -43,8 +43,16 @@ def greeting(simulation: Simulation, client: int, read_only: bool, watching: boo
             "root": str(project.root.resolve()),
             "main": project.main_file.name,
         },
+        "source": {
+            "kind": abilities.kind,
+            "title": source.title,
+            "when": None if source.when is None else source.when.isoformat(timespec="minutes"),
+            "drives": abilities.drives,
+            "rewinds": abilities.rewinds,
+            "writes": abilities.writes,
+            "over": abilities.over,
+        },
         "options": {
-            "recording": simulation.options.recording,
             "watch": watching,
             "alliances": STATIONS,
             "game_messages": list(project.game_specific_messages),

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from itertools import zip_longest
 from typing import Any
 
-from .history import MISSING, ValueHistory
+from ...engine.value_history import MISSING, ValueHistory
 
 _ELEMENT = re.compile(r"(?P<whole>.+)\[(?P<index>\d+)\]")
 #: The most points of a curve, whatever is asked for.

@@ -21,7 +21,7 @@ from .single_file import data_url, single_file
 from .updates import UpdateBuilder
 
 if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
+    from ...engine.source import Source
 
 #: What a person has arranged that is of use to others.
 _OF_USE = ("version", "plots", "pins", "fieldLayers", "coordinates")
@@ -41,10 +41,10 @@ class RunTitle:
     failure: Failure | None = None
 
 
-def recorded_page(simulation: Simulation, collector: Collector, title: RunTitle) -> str:
+def recorded_page(source: Source, collector: Collector, title: RunTitle) -> str:
     """Return the page of a run that is over.
 
-    :param collector: has followed the simulation, and has ended
+    :param collector: has followed the source, and has ended
     """
     while collector.look():  # what came after its last look
         pass
@@ -62,24 +62,31 @@ def recorded_page(simulation: Simulation, collector: Collector, title: RunTitle)
     collector.state = replace(collector.state, status=shown, branches=(), wants_to_run=False)
     clean = cleaner(collector.root)
     run: dict[str, Any] = {
-        "hello": _cleaned(_hello(simulation, collector, title), clean),
+        "hello": _cleaned(_hello(source, collector, title), clean),
         **collector.runs.packed(clean),
     }
     return single_file("A recorded run - pyfrc", gzip.compress(json_text(run).encode(), 9, mtime=0))
 
 
-def _hello(simulation: Simulation, collector: Collector, title: RunTitle) -> dict[str, Any]:
-    found = {**greeting(simulation, 1, True), **UpdateBuilder(collector, "").update(1)}
-    name = simulation.project.sim_config.field.image
-    image = None if name is None else field_picture(simulation.project.root, name)[0]
+def _hello(source: Source, collector: Collector, title: RunTitle) -> dict[str, Any]:
+    found = {**greeting(source, 1, True), **UpdateBuilder(collector, "").update(1)}
+    name = source.project.sim_config.field.image
+    image = None if name is None else field_picture(source.project.root, name)[0]
     try:
         found["field"] |= {"image": None if image is None else data_url(image)}
     except OSError:  # it is gone
         found["field"] |= {"image": None}
     found["project"] |= {"root": ""}
-    when = datetime.now().astimezone()
-    found["recorded"] = {"what": title.what, "when": when.isoformat(timespec="minutes")}
-    found["layout"] = _layout(load_layout(simulation.project.root), collector)
+    when = source.when or datetime.now().astimezone()
+    found["source"] |= {
+        "title": title.what,
+        "when": when.isoformat(timespec="minutes"),
+        "drives": False,
+        "rewinds": False,
+        "writes": False,
+        "over": True,
+    }
+    found["layout"] = _layout(load_layout(source.project.root), collector)
     return found
 
 

@@ -3,58 +3,70 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Any
 
 from ...engine.changes import Change, RunBegan
 from ...engine.messages import MODE, POSE, TYPE, VALUE
+from ...engine.past_run import PastRun, Stream
+from ...engine.value_history import MISSING, ValueHistory, packed
 from ..models.wording import clock
-from .history import MISSING, ValueHistory, packed
 from .plots import MOST_POINTS, FirstDifference, picked, resolve, series
-
-Source = Literal["hal", "network"]
 
 #: About how much memory the values of all runs may take together.
 MOST_BYTES = 256 << 20
 #: Times that are equal but for rounding.
 _ROUNDING = 1e-6
 #: The most former runs that are kept.
-_MOST_BRANCHES = 12
+_MOST_FORMER = 12
+#: The number of the first branch that is no former run.
+_FIRST_OTHER = 1 << 20
 
 
 @dataclass(frozen=True)
 class Branch:
-    """A former run.
+    """A former run, or another one that is shown beside the present one, such as a log.
 
-    :param number: the number of the run that replaced it
-    :param begin: where the present run left it, in seconds of robot time; `end` is where it ended
+    :param number: the number of the run that replaced it; of others, it is at least `_FIRST_OTHER`
+    :param begin: where the present run left it, in seconds of the present run; `end` is where it ended
     :param histories: its values
+    :param offset: what is added to its own times
     """
 
     number: int
     name: str
     begin: float
     end: float
-    histories: dict[Source, ValueHistory] = field(default_factory=dict)
+    histories: Mapping[Stream, ValueHistory] = field(default_factory=dict)
+    offset: float = 0.0
+
+    @property
+    def is_former(self) -> bool:
+        """Whether it is a former run, which has its times in common with the present one."""
+        return self.number < _FIRST_OTHER
 
     def plain(self) -> dict[str, object]:
         """Return it for a page."""
-        return {"id": self.number, "name": self.name, "from": self.begin, "to": self.end}
+        found: dict[str, object] = {"id": self.number, "name": self.name, "from": self.begin, "to": self.end}
+        return found if self.is_former else found | {"offset": self.offset}
 
 
 class Runs:
     """May be used from any thread.
 
-    :param most_bytes: about how much memory the values may take
+    :param recorded: the present run, if it is over
+    :param most_bytes: about how much memory the values may take; branches that are no former runs do not count
     """
 
-    def __init__(self, most_bytes: int = MOST_BYTES) -> None:
+    def __init__(self, recorded: PastRun | None = None, most_bytes: int = MOST_BYTES) -> None:
         self._lock = threading.Lock()
         self._most_bytes = most_bytes
-        self._histories: dict[Source, ValueHistory] = {"hal": ValueHistory(), "network": ValueHistory()}
+        self._histories: dict[Stream, ValueHistory] = {"hal": ValueHistory(), "network": ValueHistory()}
+        if recorded is not None:
+            self._histories |= recorded.histories
         #: The number of the run that each of the histories has.
-        self._numbers: dict[Source, int] = {"hal": 0, "network": 0}
+        self._numbers: dict[Stream, int] = {"hal": 0, "network": 0}
         self._packets = 0
         self.branches: tuple[Branch, ...] = ()
         #: The run that was left last.
@@ -63,7 +75,7 @@ class Runs:
     # -- what is added --------------------------------------------------------------------------------------------
 
     def take(
-        self, source: Source, events: Iterable[RunBegan | Change], look: Callable[[RunBegan | Change], object]
+        self, stream: Stream, events: Iterable[RunBegan | Change], look: Callable[[RunBegan | Change], object]
     ) -> None:
         """Add what a cursor has read.
 
@@ -72,45 +84,79 @@ class Runs:
         for event in events:
             with self._lock:
                 if isinstance(event, RunBegan):
-                    self._begin(source, event)
+                    self._begin(stream, event)
                 else:
-                    self._histories[source].add(event.time, event.values, event.gone)
+                    self._histories[stream].add(event.time, event.values, event.gone)
                     self._packets += 1
                     if self._packets % 512 == 0:
                         self._limit()
             look(event)
 
-    def _begin(self, source: Source, began: RunBegan) -> None:
-        former = self._histories[source]
-        self._keep(source, former, began)
+    def _begin(self, stream: Stream, began: RunBegan) -> None:
+        former = self._histories[stream]
+        self._keep(stream, former, began)
         if not began.values:  # from the start: its changes have everything
-            self._histories[source] = ValueHistory()
+            self._histories[stream] = ValueHistory()
         else:
             history = former.until(began.time + _ROUNDING)
             now = history.now
             changed = {path: value for path, value in began.values.items() if now.get(path, MISSING) != value}
             history.add(max(began.time, history.end), changed, [path for path in now if path not in began.values])
-            self._histories[source] = history
-        self._numbers[source] = began.number
+            self._histories[stream] = history
+        self._numbers[stream] = began.number
 
-    def _keep(self, source: Source, former: ValueHistory, began: RunBegan) -> None:
+    def _keep(self, stream: Stream, former: ValueHistory, began: RunBegan) -> None:
         """Keep the values of the run before, when those of both sources are there and the run went on further."""
         leaving = self._leaving
         if leaving is None or leaving.number != began.number:
             leaving = Branch(began.number, "", began.time, 0.0)
-        histories = {**leaving.histories, source: former}
+        histories = {**leaving.histories, stream: former}
         end = max(leaving.end, former.end)
         self._leaving = leaving = replace(leaving, name=_name_of(began, end), end=end, histories=histories)
         if len(histories) == len(self._histories) and leaving.end > leaving.begin + _ROUNDING:
-            self.branches = (*self.branches, leaving)[-_MOST_BRANCHES:]
+            self.branches = (*self.branches, leaving)
+            if len(kept := self._former()) > _MOST_FORMER:
+                self._forget(kept[0])
 
     def _limit(self) -> None:
         """Forget former runs, and then the oldest values, until the others fit into the memory that they may take."""
         while self.size > self._most_bytes:
-            if self.branches:
-                self.branches, self._leaving = self.branches[1:], None
+            if former := self._former():
+                self._forget(former[0])
+                self._leaving = None
             elif not max(self._histories.values(), key=lambda history: history.size).forget_oldest():
                 break
+
+    def _former(self) -> list[Branch]:
+        return [branch for branch in self.branches if branch.is_former]
+
+    def _forget(self, branch: Branch) -> None:
+        self.branches = tuple(each for each in self.branches if each is not branch)
+
+    def add_branch(self, run: PastRun) -> None:
+        """Show another run beside the present one."""
+        with self._lock:
+            number = max([_FIRST_OTHER - 1, *(branch.number for branch in self.branches)]) + 1
+            offset = run.offset
+            branch = Branch(number, run.name, max(offset, 0.0), run.end + offset, run.histories, offset)
+            self.branches = (*self.branches, branch)
+
+    def move(self, number: int, offset: float) -> bool:
+        """Change what is added to the times of a branch that is no former run; return whether there is one."""
+        with self._lock:
+            found = self._branch(number)
+            if found is None or found.is_former:
+                return False
+            by = offset - found.offset
+            moved = replace(found, begin=max(offset, 0.0), end=found.end + by, offset=offset)
+            self.branches = tuple(moved if each is found else each for each in self.branches)
+        return True
+
+    def modes(self) -> list[tuple[float, str]]:
+        """Return when the present run entered each of its modes."""
+        with self._lock:
+            times, values = self._histories["network"].changes(MODE)
+        return [(time, str(value)) for time, value in zip(times, values, strict=True) if value is not MISSING]
 
     @property
     def known_from(self) -> float:
@@ -120,7 +166,7 @@ class Runs:
     @property
     def size(self) -> int:
         """About how many bytes all values take."""
-        kept = [history for branch in self.branches for history in branch.histories.values()]
+        kept = [history for branch in self._former() for history in branch.histories.values()]
         return sum(history.size for history in (*self._histories.values(), *kept))
 
     def name(self, number: int, name: str) -> bool:
@@ -136,11 +182,11 @@ class Runs:
         """Return all values at a moment; None if there is no such branch."""
         with self._lock:
             found: dict[str, Any] = {}
-            for source in ("hal", "network"):
-                history = self._history(source, branch)
+            for stream in ("hal", "network"):
+                history, offset = self._history(stream, branch)
                 if history is None:
                     return None
-                found |= history.values_at(time + _ROUNDING)
+                found |= history.values_at(time - offset + _ROUNDING)
         return found
 
     def plots(
@@ -150,28 +196,29 @@ class Runs:
         found = {}
         for path in paths:
             with self._lock:  # for each path: a collector must not wait for all of them
-                history = self._history(source_of(path), branch)
+                history, offset = self._history(stream_of(path), branch)
                 if history is None:
                     return None
-                found[path] = series(history, path, begin, end + _ROUNDING, points)
+                curve = series(history, path, begin - offset, end - offset + _ROUNDING, points)
+                found[path] = curve | {"t": [time + offset for time in curve["t"]]} if offset else curve
         return found
 
     def first_difference(self, number: int, paths: Iterable[str] | None) -> FirstDifference | None:
-        """Return where a former run and the present one first differ; None if there is no such branch.
+        """Return where a former run and the present one first differ; None if there is no such former run.
 
         :param paths: the values to compare; None: all
         """
         with self._lock:
             branch = self._branch(number)
-            if branch is None:
+            if branch is None or not branch.is_former:
                 return None
             end = max(history.end for history in self._histories.values())
             compared: list[tuple[ValueHistory, ValueHistory, str]] = []
             found = FirstDifference(branch.begin, min(end, branch.end) + _ROUNDING)
-            for source, history in self._histories.items():
-                former = branch.histories[source]
+            for stream, history in self._histories.items():
+                former = branch.histories[stream]
                 known = history.now.keys() | former.now.keys() if paths is None else paths
-                chosen = sorted(path for path in known if source_of(path) == source and not path.startswith(TYPE))
+                chosen = sorted(path for path in known if stream_of(path) == stream and not path.startswith(TYPE))
                 compared += ((history, former, path) for path in chosen)
         for history, former, path in compared:
             with self._lock:  # for each value: a collector must not wait for all of them
@@ -184,9 +231,9 @@ class Runs:
         with self._lock:
             positions = self._position()
             for path in paths:
-                source = source_of(path)
-                history = self._histories[source]
-                begin = after.packets[source] if after.numbers == positions.numbers else positions.packets[source]
+                stream = stream_of(path)
+                history = self._histories[stream]
+                begin = after.packets[stream] if after.numbers == positions.numbers else positions.packets[stream]
                 whole, index = resolve(history, path)
                 flat: list[Any] = []
                 for time, value in history.since(begin, whole):
@@ -199,7 +246,7 @@ class Runs:
     def change_counts(self, paths: Iterable[str]) -> dict[str, int]:
         """Return how often each of some values has changed in the present run."""
         with self._lock:
-            return {path: len(self._histories[source_of(path)].changes(path)[0]) for path in paths}
+            return {path: len(self._histories[stream_of(path)].changes(path)[0]) for path in paths}
 
     def packed(self, clean: Callable[[str], str]) -> dict[str, Any]:
         """Return the values of the present run for a page without a server.
@@ -207,7 +254,7 @@ class Runs:
         :param clean: changes each text
         """
         with self._lock:
-            return {source: packed(history, clean) for source, history in self._histories.items()}
+            return {stream: packed(history, clean) for stream, history in self._histories.items()}
 
     def position(self) -> Position:
         """Return the present end of the values, for `samples`."""
@@ -225,25 +272,26 @@ class Runs:
             is_all = after is None or after.numbers != position.numbers
             if after == position:
                 return changed, position, is_all
-            for source, history in self._histories.items():
-                changed |= history.changed_since(0 if is_all or after is None else after.packets[source])
+            for stream, history in self._histories.items():
+                changed |= history.changed_since(0 if is_all or after is None else after.packets[stream])
         return changed, position, is_all
 
     def present_values(self, paths: Iterable[str]) -> dict[str, Any]:
         """Return the present values of those of some paths that have one."""
         with self._lock:
-            now = {path: self._histories[source_of(path)].now.get(path, MISSING) for path in paths}
+            now = {path: self._histories[stream_of(path)].now.get(path, MISSING) for path in paths}
         return {path: value for path, value in now.items() if value is not MISSING}
 
     def _position(self) -> Position:
-        packets: dict[Source, int] = {source: history.packets for source, history in self._histories.items()}
+        packets: dict[Stream, int] = {stream: history.packets for stream, history in self._histories.items()}
         return Position(dict(self._numbers), packets)
 
-    def _history(self, source: Source, branch: int | None) -> ValueHistory | None:
+    def _history(self, stream: Stream, branch: int | None) -> tuple[ValueHistory | None, float]:
+        """Return the values of the present run or a branch, and what is added to their times."""
         if branch is None:
-            return self._histories[source]
+            return self._histories[stream], 0.0
         found = self._branch(branch)
-        return None if found is None else found.histories[source]
+        return (None, 0.0) if found is None else (found.histories[stream], found.offset)
 
     def _branch(self, number: int) -> Branch | None:
         return next((each for each in self.branches if each.number == number), None)
@@ -263,10 +311,10 @@ def _name_of(began: RunBegan, end: float) -> str:
 class Position:
     """A place among the changes: the numbers of the runs, and of the packets in them."""
 
-    numbers: dict[Source, int]
-    packets: dict[Source, int]
+    numbers: dict[Stream, int]
+    packets: dict[Stream, int]
 
 
-def source_of(path: str) -> Source:
+def stream_of(path: str) -> Stream:
     """Return which history has a path."""
     return "network" if path.startswith((VALUE, TYPE, MODE, POSE)) else "hal"

@@ -14,11 +14,11 @@ from typing import Any
 from ...engine.messages import MODE, POSE, TYPE, VALUE
 from ...engine.scene import Field, Line, Point, Text
 from ...engine.snapshot import Snapshot, Status
+from ...engine.value_history import MISSING
 from ..models.devices import SETTABLE, Panel
 from ..models.wording import STATIONS, mode_text, station_name
 from .collector import Collector, State
 from .console import plain_lines
-from .history import MISSING
 from .runs import Position
 
 #: The attributes of `Status` that pages get as they are, and those in seconds, which are rounded.

@@ -8,11 +8,21 @@ const POINTS = 4000;
 class Compared {
   id = null;
   pose = { t: [], v: [] };
+  offset; // of the branch that was asked for
   difference; // the first moment at which the branch differs from the present run; null: none, undefined: not known
+
+  get branch() {
+    return model.branches.find((each) => each.id === this.id);
+  }
+
+  // What tells apart the curves of branches, also before and after one was moved in time; null without a branch.
+  get key() {
+    return this.id === null ? null : `${this.id} ${this.branch?.offset}`;
+  }
 
   // Where the branch ends, which may be later than the present; 0 without a branch.
   get end() {
-    return model.branches.find((each) => each.id === this.id)?.to ?? 0;
+    return this.branch?.to ?? 0;
   }
 
   // The robot's place in the branch at a moment; null where the branch knows none.
@@ -24,23 +34,27 @@ class Compared {
 
   async choose(id) {
     this.id = id;
+    this.offset = this.branch?.offset;
     this.pose = { t: [], v: [] };
     this.difference = undefined;
     if (id === null) return;
     try {
       const answer = await ask("plot", { paths: ["sim.pose"], from: 0, to: this.end, points: POINTS, branch: id });
       if (this.id === id) this.pose = answer.series["sim.pose"] ?? this.pose;
+      if (this.branch?.offset !== undefined) return; // times of another clock never agree exactly
       const first = await ask("first_difference", { branch: id, paths: null });
       if (this.id === id) this.difference = first.t;
     } catch {
       // It may be gone: then there is nothing to show.
+    } finally {
+      model.announce("compared-series", "robot");
     }
-    model.announce("compared-series", "robot");
   }
 }
 
 export const compared = new Compared();
 
 model.listen((changed) => {
-  if (changed.has("compared")) compared.choose(model.compared);
+  const moved = changed.has("branches") && compared.id !== null && compared.branch?.offset !== compared.offset;
+  if (changed.has("compared") || moved) compared.choose(model.compared);
 });

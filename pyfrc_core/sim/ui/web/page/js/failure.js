@@ -3,7 +3,6 @@ import { command } from "#js/connection.js";
 import { clock } from "#js/format.js";
 import { model } from "#js/model.js";
 import { live, look } from "#js/past.js";
-import { isRecorded } from "#js/recorded.js";
 import { SourceLink } from "#js/source.js";
 import { Icon, Live, html } from "#js/view.js";
 
@@ -18,7 +17,7 @@ export class FailureBar extends Live {
     const failure = model.status.state === "failed" ? model.status.failure : null;
     if (!failure) return null;
     const goesBack = failure.t > 0 && !UNREADABLE.test(failure.headline);
-    const watch = model.hello.options.watch && !isRecorded;
+    const watch = model.hello.options.watch && model.isDriven;
     return html`<section class="failure" role="alert" aria-label="The robot program has failed">
       <div class="failure-head">
         <${Icon} name="warning" />
@@ -28,11 +27,11 @@ export class FailureBar extends Live {
             ${watch && " Save the corrected file, and the simulation goes on."}</span>
         </div>
         <div class="failure-actions">
-          ${isRecorded && failure.t > 0 && html`<button onClick=${() => look(failure.t - BACK)}>2 s before</button>`}
-          ${goesBack && !isRecorded && html`<button class="primary" onClick=${() => goBack(failure.t)} disabled=${model.readonly}>Go back 2 s and drive on</button>`}
+          ${model.isOver && failure.t > 0 && html`<button onClick=${() => look(failure.t - BACK)}>2 s before</button>`}
+          ${goesBack && model.isDriven && html`<button class="primary" onClick=${() => goBack(failure.t)} disabled=${!model.mayDrive}>Go back 2 s and drive on</button>`}
           ${failure.t > 0 && html`<button onClick=${() => look(failure.t)}>Values of that moment</button>`}
-          ${!watch && !isRecorded && html`<button onClick=${reload} disabled=${model.readonly} title="After you have corrected it: run it with the same inputs until this moment">Load the code again</button>`}
-          ${!isRecorded && html`<button onClick=${restart} disabled=${model.readonly}><${Icon} name="restart" />Restart</button>`}
+          ${!watch && model.isDriven && html`<button onClick=${reload} disabled=${!model.mayDrive} title="After you have corrected it: run it with the same inputs until this moment">Load the code again</button>`}
+          ${model.isDriven && html`<button onClick=${restart} disabled=${!model.mayDrive}><${Icon} name="restart" />Restart</button>`}
         </div>
       </div>
       ${failure.details && html`<details><summary>Traceback</summary><pre>${failure.details}</pre></details>`}

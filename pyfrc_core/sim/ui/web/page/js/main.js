@@ -6,7 +6,6 @@ import { startKeys } from "#js/input/keys.js";
 import { Dock } from "#js/layout/dock.js";
 import { model } from "#js/model.js";
 import { Notice } from "#js/notice.js";
-import { isRecorded } from "#js/recorded.js";
 import { RecordedTimeBar, startPlaybackKeys } from "#js/recorded_bar.js";
 import { applyTheme, settings } from "#js/settings.js";
 import { StationBar } from "#js/station.js";
@@ -23,7 +22,7 @@ class App extends Live {
       <${Notice} />
       <${FailureBar} />
       <${Dock} />
-      <${isRecorded ? RecordedTimeBar : TimeBar} />`;
+      <${model.isOver ? RecordedTimeBar : TimeBar} />`;
   }
 }
 
@@ -40,7 +39,7 @@ function receive(message) {
   if (message.type === "hello" && !model.hello) {
     settings.load(message.layout);
     applyTheme();
-    document.title = `${message.project.name} – ${isRecorded ? message.recorded.what : "pyfrc sim"}`;
+    document.title = `${message.project.name} – ${message.source.title}`;
   }
   model.take(message);
 }
@@ -61,9 +60,7 @@ applyTheme();
 const root = document.getElementById("app");
 root.replaceChildren();
 render(html`<${App} />`, root);
-if (isRecorded) startPlaybackKeys();
-else {
-  startKeys();
-  startGamepads();
-}
+startPlaybackKeys();
+startKeys();
+startGamepads();
 connect(receive, (state) => model.set("connection", state));

@@ -10,7 +10,7 @@ const MOST_MARKS = 2000; // and no limit for the person's own
 class Model {
   connection = "connecting";
   hello = null;
-  readonly = false;
+  readonly = false; // whether the address of this page only shows
   t = 0;
   status = {};
   station = {};
@@ -46,6 +46,25 @@ class Model {
 
   get shown() {
     return this.past ?? this;
+  }
+
+  // Whether the page shows what can be driven, such as a simulation; otherwise it is a log, or a robot elsewhere.
+  get isDriven() {
+    return Boolean(this.hello?.source?.drives);
+  }
+
+  // Whether it shows what is over: a log, or a recorded run.
+  get isOver() {
+    return Boolean(this.hello?.source?.over);
+  }
+
+  // What this page may do to it: drive, set values of NetworkTables.
+  get mayDrive() {
+    return this.isDriven && !this.readonly;
+  }
+
+  get mayWrite() {
+    return Boolean(this.hello?.source?.writes) && !this.readonly;
   }
 
   // Call a function with the set of changed parts, at most once per frame. Returns a function that ends it.

@@ -1,20 +1,26 @@
-// The controls of a recorded run: what it is, and its time.
+// The controls of what is over, a recorded run or a log: what it is, and its time.
+import { BranchesMenu } from "#js/branches.js";
 import { clock, speedText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { live, look, lookByPackets } from "#js/past.js";
 import { playback } from "#js/playback.js";
+import { isRecorded } from "#js/recorded.js";
 import { Timeline } from "#js/timeline.js";
 import { Icon, Live, html } from "#js/view.js";
 
-export function RecordedLabel() {
-  const { recorded, version } = model.hello;
-  const when = new Date(recorded.when).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
-  return html`<div class="recorded" title=${`${recorded.what}, ${recorded.when}, pyfrc ${version}`}>
-    <span class="chip">Recorded run</span><code>${recorded.what}</code><span>${when}</span><span>pyfrc ${version}</span></div>`;
+const KINDS = { simulation: "Recorded run", log: "Log", robot: "Robot" };
+
+// Where there is nothing to drive: what it is.
+export function SourceLabel() {
+  const { source, version } = model.hello;
+  const when = source.when ? new Date(source.when).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" }) : "";
+  return html`<div class="recorded" title=${[source.title, source.when, `pyfrc ${version}`].filter(Boolean).join(", ")}>
+    <span class="chip">${KINDS[source.kind]}</span><code>${source.title}</code>${when && html`<span>${when}</span>`}
+    ${isRecorded && html`<span>pyfrc ${version}</span>`}</div>`;
 }
 
 export class RecordedTimeBar extends Live {
-  parts = ["status", "shown", "hello", "playback"];
+  parts = ["status", "shown", "hello", "playback", "branches", "compared", "compared-series"];
 
   render() {
     const { past, status } = model;
@@ -38,6 +44,7 @@ export class RecordedTimeBar extends Live {
             onInput=${(event) => { playback.position = Number(event.target.value); }} />
           <b>${speedText(speed)}</b></label>
         <div class="spacer"></div>
+        <${BranchesMenu} />
         <dl class="figures">
           <div title="The length of the run, in robot time"><dt>Length</dt><dd>${clock(status.length)}</dd></div>
           <div class=${status.overruns ? "warn" : ""} title="Turns of the robot's loop that took longer than its period">
@@ -57,7 +64,7 @@ function toEnd() {
 // The space bar plays and pauses, except where it means something else.
 export function startPlaybackKeys() {
   document.addEventListener("keydown", (/** @type {any} */ event) => {
-    if (event.key !== " " || event.repeat || event.target.closest?.("input, select, textarea, button, summary, a")) return;
+    if (!model.isOver || event.key !== " " || event.repeat || event.target.closest?.("input, select, textarea, button, summary, a")) return;
     event.preventDefault();
     playback.toggle();
   });

@@ -6,8 +6,7 @@ import { Menu } from "#js/menu.js";
 import { model } from "#js/model.js";
 import { PANELS, panelTitle } from "#js/panels/all.js";
 import { live } from "#js/past.js";
-import { isRecorded } from "#js/recorded.js";
-import { RecordedLabel } from "#js/recorded_bar.js";
+import { SourceLabel } from "#js/recorded_bar.js";
 import { applyTheme, isDark, settings } from "#js/settings.js";
 import { Icon, Live, classes, html } from "#js/view.js";
 
@@ -19,34 +18,34 @@ export class StationBar extends Live {
 
   render() {
     const { station } = model.shown;
-    const left = model.past || isRecorded ? "" : matchLeft(model.station);
+    const left = model.past || !model.isDriven ? "" : matchLeft(model.station);
     return html`<header class="station">
       <div class="brand" title=${model.hello.project.root || model.hello.project.name}><img src=${ICON} alt="" /><span>${model.hello.project.name}</span></div>
-      ${isRecorded ? html`<${RecordedLabel} />` : this.driving()}
+      ${model.isDriven ? this.driving() : html`<${SourceLabel} />`}
       <div class=${`state ${station.kind}`} role="status" aria-live="polite">
         <i class="lamp"></i><b>${shortText(station.text)}</b>
-        ${model.past && !isRecorded && html`<em>past</em>`}
+        ${model.past && !model.isOver && html`<em>past</em>`}
         ${left && html`<span class="countdown">${left}</span>`}
       </div>
       ${model.hint && this.ready && !model.station.enabled && html`<span class="hint" role="status">${model.hint}</span>`}
       <div class="spacer"></div>
-      ${model.readonly && !isRecorded && html`<span class="chip" title="This address only shows the simulation">Read only</span>`}
+      ${model.readonly && !model.isOver && html`<span class="chip" title="This address only shows the simulation">Read only</span>`}
       ${model.clients > 1 && html`<span class="chip" title="Windows that show this simulation">${model.clients} windows</span>`}
       <${LayoutMenu} />
       <${PanelsMenu} />
       <button class="quiet" onClick=${switchTheme} title=${isDark() ? "Light colours" : "Dark colours"}
         aria-label=${isDark() ? "Light colours" : "Dark colours"}><${Icon} name=${isDark() ? "sun" : "moon"} /></button>
-      ${!isRecorded && this.emergencyStop()}
+      ${model.isDriven && this.emergencyStop()}
     </header>`;
   }
 
   get ready() {
-    return model.connection === "open" && ["disabled", "enabled"].includes(model.station.kind) && !model.readonly;
+    return model.connection === "open" && ["disabled", "enabled"].includes(model.station.kind) && model.mayDrive;
   }
 
   // The robot's code does not respond: a stop is carried out as soon as it does.
   get stuck() {
-    return model.connection === "open" && !model.status.responding && !model.readonly;
+    return model.connection === "open" && !model.status.responding && model.mayDrive;
   }
 
   driving() {
@@ -55,10 +54,10 @@ export class StationBar extends Live {
     return html`
       <div class="segments" role="radiogroup" aria-label="Mode">
         ${Object.entries(model.hello.options.modes).map(([mode, text]) => html`<button key=${mode} role="radio" aria-checked=${present.chosen_mode === mode}
-          class=${classes({ chosen: present.chosen_mode === mode })} disabled=${model.readonly || !connected}
+          class=${classes({ chosen: present.chosen_mode === mode })} disabled=${!model.mayDrive || !connected}
           onClick=${() => command("choose_mode", { mode })}>${SHORT[mode] ?? text}</button>`)}
       </div>
-      ${model.opmodes.length > 0 && html`<${OpmodeChooser} disabled=${model.readonly || !connected} />`}
+      ${model.opmodes.length > 0 && html`<${OpmodeChooser} disabled=${!model.mayDrive || !connected} />`}
       <div class="pair">
         <button class="go" disabled=${!this.ready || present.enabled} title="Enable the robot: Ctrl+E, or [ ] \\ together"
           onClick=${() => command("enable")}>Enable</button>
@@ -129,7 +128,7 @@ function LayoutMenu() {
 
 function PanelsMenu() {
   const open = new Set(panelsOf(settings.tree));
-  const ids = Object.keys(PANELS).filter((kind) => !(isRecorded && PANELS[kind].drives)).flatMap((kind) => (kind === "plot" ? plotIds(open) : [kind]));
+  const ids = Object.keys(PANELS).filter((kind) => (model.isDriven || !PANELS[kind].drives)).flatMap((kind) => (kind === "plot" ? plotIds(open) : [kind]));
   const items = ids.map((id) => ({ text: panelTitle(id), checked: open.has(id), act: () => toggle(id) }));
   return html`<${Menu} label="Panels" icon="panels" title="Open and close panels" items=${items} />`;
 }

@@ -1,11 +1,11 @@
 // Robot time, along the bottom: pause, step, speed, the timeline, and the way back from the past.
 import { command } from "#js/connection.js";
-import { compared } from "#js/compare.js";
 import { askText, askWhether } from "#js/dialog.js";
+import { BranchesMenu } from "#js/branches.js";
 import { clock, speedText } from "#js/format.js";
 import { Menu } from "#js/menu.js";
 import { model } from "#js/model.js";
-import { driveOn, live, look, lookByPackets } from "#js/past.js";
+import { driveOn, live, lookByPackets } from "#js/past.js";
 import { positionOf, speedAt } from "#js/speeds.js";
 import { Timeline } from "#js/timeline.js";
 import { Icon, Live, html } from "#js/view.js";
@@ -18,31 +18,32 @@ export class TimeBar extends Live {
   parts = ["t", "status", "shown", "hello", "branches", "compared", "compared-series", "connection"];
 
   render() {
-    const { status, past, readonly } = model;
+    const { status, past } = model;
+    const locked = !model.mayDrive;
     this.interval = past ? 0 : LIVE_INTERVAL;
     const running = status.wants_to_run;
     return html`<footer class=${past ? "timebar past" : "timebar"}>
       <div class="transport">
         <button class="quiet" title="Look at the packet before" aria-label="Look at the packet before" onClick=${() => lookByPackets(-1)}><${Icon} name="stepBack" /></button>
-        <button class="play" disabled=${readonly} title=${running ? "Pause: F5" : "Run: F5"} aria-label=${running ? "Pause" : "Run"}
-          onClick=${() => command("toggle")}><${Icon} name=${running ? "pause" : "play"} /></button>
-        <button class="quiet" title=${past ? "Look at the packet after" : "Step by one packet: F6"} aria-label="Step"
-          disabled=${readonly && !past} onClick=${() => (past ? lookByPackets(1) : command("step", { packets: 1 }))}><${Icon} name="step" /></button>
+        ${model.isDriven && html`<button class="play" disabled=${locked} title=${running ? "Pause: F5" : "Run: F5"} aria-label=${running ? "Pause" : "Run"}
+          onClick=${() => command("toggle")}><${Icon} name=${running ? "pause" : "play"} /></button>`}
+        <button class="quiet" title=${past || !model.isDriven ? "Look at the packet after" : "Step by one packet: F6"} aria-label="Step"
+          disabled=${locked && !past} onClick=${() => (past ? lookByPackets(1) : command("step", { packets: 1 }))}><${Icon} name="step" /></button>
         <time class="clock" title="Robot time">${clock(past ? past.t : model.t)}</time>
         ${past
           ? html`<span class="past-actions">
-              <button class="primary" disabled=${readonly} onClick=${driveOn} title="Go back to this moment. What came later is kept as a branch.">Drive on from here</button>
+              ${model.hello.source.rewinds && html`<button class="primary" disabled=${locked} onClick=${driveOn} title="Go back to this moment. What came later is kept as a branch.">Drive on from here</button>`}
               <button class="live" onClick=${live}><i class="lamp"></i>Live</button></span>`
           : html`<${Present} />`}
-        <label class="speed" title="Robot seconds per second">Speed
-          <input type="range" min="0" max="1" step="0.005" value=${sliderOf(status.speed ?? 1)} disabled=${readonly}
+        ${model.isDriven && html`<label class="speed" title="Robot seconds per second">Speed
+          <input type="range" min="0" max="1" step="0.005" value=${sliderOf(status.speed ?? 1)} disabled=${locked}
             aria-label="Speed" aria-valuetext=${speedText(status.speed ?? 1)} onInput=${(event) => setSpeed(event.target)} />
-          <b>${speedText(status.speed ?? 1)}</b></label>
-        ${status.speed !== 1 && html`<button class="quiet" disabled=${readonly} onClick=${() => command("speed", { factor: 1 })}>Real time</button>`}
+          <b>${speedText(status.speed ?? 1)}</b></label>`}
+        ${model.isDriven && status.speed !== 1 && html`<button class="quiet" disabled=${locked} onClick=${() => command("speed", { factor: 1 })}>Real time</button>`}
         <div class="spacer"></div>
-        <${Figures} />
+        ${model.isDriven && html`<${Figures} />`}
         <${BranchesMenu} />
-        <button class="quiet" disabled=${readonly} title="Set a mark at this moment" onClick=${mark}><${Icon} name="flag" /><span>Mark</span></button>
+        <button class="quiet" disabled=${model.readonly} title="Set a mark at this moment" onClick=${mark}><${Icon} name="flag" /><span>Mark</span></button>
         <${RunMenu} />
       </div>
       <${Timeline} />
@@ -76,35 +77,13 @@ function Figures() {
   </dl>`;
 }
 
-function BranchesMenu() {
-  if (!model.branches.length) return null;
-  /** @type {any[]} */
-  const items = model.branches.map((branch) => ({
-    text: branch.name,
-    note: `${clock(branch.from)} – ${clock(branch.to)}`,
-    checked: model.compared === branch.id,
-    act: () => model.set("compared", model.compared === branch.id ? null : branch.id),
-  }));
-  const chosen = model.branches.find((branch) => branch.id === model.compared);
-  if (chosen) {
-    items.push({ separator: true }, { text: `Name “${chosen.name}”…`, act: () => nameBranch(chosen), disabled: model.readonly });
-  }
-  const { difference } = compared;
-  return html`${chosen && difference !== undefined && html`<button class="quiet" disabled=${difference === null} onClick=${() => look(difference)}
-      title="The first moment at which the branch differs from this run">${difference === null ? "No difference" : `Differs at ${clock(difference)}`}</button>`}
-    <${Menu} label=${`Branches ${model.branches.length}`} icon="branch" title="Compare with an earlier run" items=${items} />`;
-}
-
-async function nameBranch(branch) {
-  const name = await askText("The name of the branch", branch.name);
-  if (name) command("name_branch", { branch: branch.id, text: name });
-}
-
 function RunMenu() {
   const act = (name) => () => {
     live();
     command(name);
   };
+  const end = { text: model.isDriven ? "End the simulation" : "End this command", act: () => command("quit"), disabled: model.readonly };
+  if (!model.isDriven) return html`<${Menu} label="Run" title="End" items=${[end]} />`;
   const items = [
     { text: "Restart the robot", note: "F9", act: act("restart"), disabled: model.readonly },
     { text: "Load the code again", act: act("reload"), disabled: model.readonly },
@@ -112,7 +91,7 @@ function RunMenu() {
       act: () => command("attach", { attached: model.station.attached === false }), disabled: model.readonly },
     { separator: true },
     { text: "Save the recording…", act: save, disabled: model.readonly },
-    { text: "End the simulation", act: () => command("quit"), disabled: model.readonly },
+    end,
   ];
   return html`<${Menu} label="Run" title="Restart, save, end" items=${items} />`;
 }

@@ -4,7 +4,6 @@ import { compared } from "#js/compare.js";
 import { clock } from "#js/format.js";
 import { model } from "#js/model.js";
 import { isForgotten, length, live, look, lookBy, lookByPackets } from "#js/past.js";
-import { isRecorded } from "#js/recorded.js";
 import { watch, unwatch } from "#js/series.js";
 import { color } from "#js/settings.js";
 import { Live, createRef, html } from "#js/view.js";
@@ -16,7 +15,7 @@ const MOST_NAMED = 5; // marks beside the pointer
 const HEIGHT = 46;
 const EDGE = 8; // pixels at both ends
 const LIVE_INTERVAL = 100; // milliseconds: the present moves slowly
-const SHORTEST = isRecorded ? 0.1 : 10; // seconds on the timeline at least
+const SHORTEST = 10; // seconds on the timeline at least, until it is over
 
 export class Timeline extends Live {
   parts = ["t", "status", "shown", "series", "marks", "settings", "window", "branches", "compared", "known_from"];
@@ -69,7 +68,7 @@ export class Timeline extends Live {
   }
 
   get whole() {
-    return Math.max(length(), compared.end, SHORTEST);
+    return Math.max(length(), compared.end, model.isOver ? 0.1 : SHORTEST);
   }
 
   x(t) {

@@ -42,7 +42,7 @@ export class ValueBox extends Component {
   }
 
   render({ path: _, label, ...attributes }) {
-    return html`<input type="text" ref=${this.element} aria-label=${label} spellcheck="false" disabled=${model.readonly}
+    return html`<input type="text" ref=${this.element} aria-label=${label} spellcheck="false" disabled=${!model.mayWrite}
       onFocus=${this.begin} onKeyDown=${this.key} onBlur=${this.leave} ...${attributes} />`;
   }
 

@@ -74,7 +74,7 @@ function targetsOf(stick, reading) {
 function poll() {
   polling = gamepads().length > 0 || Object.keys(passedOn).length > 0;
   if (polling) requestAnimationFrame(poll);
-  if (!model.hello || model.readonly || model.connection !== "open") return;
+  if (!model.hello || !model.mayDrive || model.connection !== "open") return;
   // A robot that was restarted, and a server that has lost this page, know nothing of what was passed on.
   if (model.hello !== hello || (model.status.starts !== starts && model.status.state !== "starting")) {
     hello = model.hello;

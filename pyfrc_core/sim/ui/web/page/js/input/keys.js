@@ -98,7 +98,7 @@ function controls() {
 }
 
 function move() {
-  if (!model.hello || model.readonly) return;
+  if (!model.hello || !model.mayDrive) return;
   const wanted = controls();
   const changed = {};
   for (const target of new Set([...Object.keys(wanted), ...Object.keys(sent)])) {
@@ -127,7 +127,7 @@ function isControl(target) {
 }
 
 function down(event) {
-  if (isTyping(event.target) || event.altKey || event.metaKey || !model.hello) return;
+  if (isTyping(event.target) || event.altKey || event.metaKey || !model.isDriven) return;
   const name = keyName(event);
   if (event.ctrlKey) {
     if (name === "e") {

@@ -155,13 +155,13 @@ class Switch extends Painted {
   }
 
   render({ row, label }) {
-    return html`<label class="switch"><input type="checkbox" role="switch" ref=${this.element} aria-label=${label} disabled=${model.readonly}
+    return html`<label class="switch"><input type="checkbox" role="switch" ref=${this.element} aria-label=${label} disabled=${!model.mayDrive}
       onChange=${(event) => write({ [row.paths[0]]: event.target.checked })} /><i></i></label>`;
   }
 }
 
 function NumberBox({ row, label }) {
-  return html`<span class="number-box"><${ValueBox} class="number" inputmode="decimal" path=${row.paths[0]} label=${label} /><span class="unit">${row.unit}</span></span>`;
+  return html`<span class="number-box"><${ValueBox} class="number" inputmode="decimal" path=${row.paths[0]} label=${label} disabled=${!model.mayDrive} /><span class="unit">${row.unit}</span></span>`;
 }
 
 class Slider extends Painted {
@@ -174,9 +174,9 @@ class Slider extends Painted {
 
   render({ row, label }) {
     return html`<span class="slider" ref=${this.element}>
-      <input type="range" min=${row.low} max=${row.high} step="any" aria-label=${label} disabled=${model.readonly}
+      <input type="range" min=${row.low} max=${row.high} step="any" aria-label=${label} disabled=${!model.mayDrive}
         onPointerDown=${() => (this.dragging = true)} onPointerUp=${() => (this.dragging = false)} onInput=${this.slide} />
-      <${ValueBox} class="number" inputmode="decimal" path=${row.paths[0]} label=${`${label}, as a number`} />
+      <${ValueBox} class="number" inputmode="decimal" path=${row.paths[0]} label=${`${label}, as a number`} disabled=${!model.mayDrive} />
       <span class="unit">${row.unit}</span></span>`;
   }
 

@@ -190,7 +190,7 @@ export class FieldPanel extends Live {
 
   onRobot(place) {
     const { robot, field } = { robot: model.robot, field: model.hello.field };
-    if (!robot || model.past || model.readonly) return false;
+    if (!robot || model.past || !model.mayDrive) return false;
     return Math.hypot(place[0] - robot[0], place[1] - robot[1]) < Math.max(field.robot_length, field.robot_width) / 2;
   }
 
@@ -248,7 +248,7 @@ export class FieldPanel extends Live {
   key = (event) => {
     const way = { ArrowLeft: [-0.25, 0], ArrowRight: [0.25, 0], ArrowUp: [0, -0.25], ArrowDown: [0, 0.25] }[event.key];
     const { robot } = model;
-    if (!way || !robot || model.past || model.readonly) return;
+    if (!way || !robot || model.past || !model.mayDrive) return;
     event.preventDefault();
     event.stopPropagation();
     const degrees = robot[2] * DEGREES;

@@ -3,7 +3,6 @@ import { command, write } from "#js/connection.js";
 import { numberText, plain } from "#js/format.js";
 import { assignedTo, gamepads, labelOf, nameOf } from "#js/input/gamepads.js";
 import { model } from "#js/model.js";
-import { isRecorded } from "#js/recorded.js";
 import { settings } from "#js/settings.js";
 import { Component, Live, classes, createRef, html } from "#js/view.js";
 import { StickPad, axisTarget } from "#js/panels/stick_pad.js";
@@ -28,7 +27,7 @@ export class JoysticksPanel extends Live {
           class=${classes({ chosen: number === stick, has: assignedTo(number) !== null })} onClick=${() => this.setState({ stick: number })}>${number}</button>`)}
       </div>
       <div class="scroll" key=${stick}>
-        ${!isRecorded && html`<${GamepadChoice} stick=${stick} plugged=${plugged} />`}
+        ${model.isDriven && html`<${GamepadChoice} stick=${stick} plugged=${plugged} />`}
         <div class="stick-row">
           <${StickPad} stick=${stick} x=${0} y=${1} label="Axes 0 and 1" />
           <${Pov} stick=${stick} />
@@ -51,9 +50,9 @@ function GamepadChoice({ stick, plugged }) {
   };
   const chosen = settings.get("gamepads")[stick] ?? "auto";
   return html`<div class="gamepad">
-    <label class="check"><input type="checkbox" checked=${plugged} disabled=${model.readonly}
+    <label class="check"><input type="checkbox" checked=${plugged} disabled=${!model.mayDrive}
       onChange=${(event) => command("plug", { stick, plugged: event.target.checked })} />Plugged in</label>
-    <select aria-label=${`Gamepad of joystick ${stick}`} value=${chosen} onChange=${choose} disabled=${model.readonly}>
+    <select aria-label=${`Gamepad of joystick ${stick}`} value=${chosen} onChange=${choose} disabled=${!model.mayDrive}>
       <option value="auto" selected=${chosen === "auto"}>${assigned && chosen === "auto" ? nameOf(assigned) : "Automatic: no gamepad"}</option>
       <option value="none" selected=${chosen === "none"}>Keyboard and mouse only</option>
       ${pads.map((pad) => html`<option key=${labelOf(pad, pads)} value=${labelOf(pad, pads)} selected=${chosen === labelOf(pad, pads)}>${nameOf(pad)}</option>`)}
@@ -80,7 +79,7 @@ class Axis extends Component {
 
   render({ stick, axis, label }) {
     return html`<label class="axis" ref=${this.element}><span class="row-label">${label}</span><span class="slider">
-      <input type="range" min="-1" max="1" step="0.01" aria-label=${`Axis ${label}`} disabled=${model.readonly}
+      <input type="range" min="-1" max="1" step="0.01" aria-label=${`Axis ${label}`} disabled=${!model.mayDrive}
         onInput=${(event) => write({ [axisTarget(stick, axis)]: Number(event.target.value) })}
         onDblClick=${() => write({ [axisTarget(stick, axis)]: 0 })} />
       <span class="number"></span></span></label>`;
@@ -113,7 +112,7 @@ export class Button extends Component {
   render({ button, label, touch }) {
     const title = touch ? `Button ${button}` : `${label || `Button ${button}`}: the right mouse button keeps it pressed`;
     return html`<button ref=${this.element} class="stick-button" title=${title}
-      disabled=${model.readonly} onPointerDown=${this.down} onPointerUp=${this.up} onPointerCancel=${this.up}
+      disabled=${!model.mayDrive} onPointerDown=${this.down} onPointerUp=${this.up} onPointerCancel=${this.up}
       onContextMenu=${this.keep} onKeyDown=${this.key} onKeyUp=${this.keyUp} onBlur=${this.up}><b>${button}</b><small>${label}</small></button>`;
   }
 
@@ -182,7 +181,7 @@ class Pov extends Component {
     return html`<div class="pov" role="group" aria-label="POV" ref=${this.element}>
       ${POVS.map((angle) => angle === -1
         ? html`<i key=${angle}>POV</i>`
-        : html`<button key=${angle} aria-label=${`POV ${angle}°`} disabled=${model.readonly}
+        : html`<button key=${angle} aria-label=${`POV ${angle}°`} disabled=${!model.mayDrive}
           onPointerDown=${(event) => event.button === 0 && (event.currentTarget.setPointerCapture(event.pointerId), this.hold(angle))}
           onPointerUp=${this.letGo} onPointerCancel=${this.letGo} onBlur=${this.letGo}
           onContextMenu=${(event) => (event.preventDefault(), this.turn(this.angle === angle ? -1 : angle))}

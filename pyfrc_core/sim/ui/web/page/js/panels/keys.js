@@ -39,7 +39,7 @@ export class KeysPanel extends Live {
           <td>${(buttons[key] ?? []).map(([stick, button]) => `joystick ${stick} button ${button}`).join(", ")}</td>
           <td><${Remove} name=${key} /></td></tr>`)}
       </tbody></table>
-      <fieldset ref=${this.fields} disabled=${model.readonly}><legend>Add a key</legend>
+      <fieldset ref=${this.fields} disabled=${!model.mayDrive}><legend>Add a key</legend>
         <div class="binding">
           <input type="text" readonly value=${state.key ? (NAMES[state.key] ?? state.key.toUpperCase()) : ""} placeholder="Press a key" aria-label="Key" onKeyDown=${this.takeKey} />
           <select aria-label="Kind" value=${state.kind} onChange=${(event) => this.setState({ kind: event.target.value, control: event.target.value === "button" ? first : 0 })}>

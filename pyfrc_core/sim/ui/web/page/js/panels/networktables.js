@@ -135,7 +135,7 @@ class Leaf extends Component {
         ? html`<button class=${classes({ fold: true, "row-label": true, closed: !open })} title="The elements of this list" onClick=${toggle}><${Icon} name="chevron" /><span>${name}</span></button>`
         : html`<span class="row-label">${name}</span>`}
       ${kind === "switch"
-        ? html`<label class="switch"><input type="checkbox" role="switch" class="nt-value" aria-label=${name} disabled=${model.readonly}
+        ? html`<label class="switch"><input type="checkbox" role="switch" class="nt-value" aria-label=${name} disabled=${!model.mayWrite}
             onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label>`
         : kind === "none"
           ? html`<span class="nt-value faint"></span>`

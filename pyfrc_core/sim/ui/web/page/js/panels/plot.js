@@ -153,7 +153,7 @@ export class PlotPanel extends Live {
   update() {
     if (!this.area.current) return;
     this.watchCurves();
-    if (compared.id !== this.otherId || [...this.watched.keys()].some((path) => !this.others.has(path))) this.loadOthers();
+    if (compared.key !== this.otherKey || [...this.watched.keys()].some((path) => !this.others.has(path))) this.loadOthers();
     const shape = JSON.stringify([this.config.curves, this.config.curves.map(({ path }) => this.isNumber(path)), document.documentElement.dataset.theme, compared.id, this.xCurve]);
     if (shape !== this.shape) {
       this.shape = shape;
@@ -206,12 +206,12 @@ export class PlotPanel extends Live {
   }
 
   async loadOthers() {
-    this.otherId = compared.id;
+    this.otherKey = compared.key;
     this.others = new Map([...this.watched.keys()].map((path) => [path, { t: [], v: [] }]));
     if (compared.id === null || !this.watched.size) return;
     const until = compared.end;
     const answer = await ask("plot", { paths: [...this.watched.keys()], from: 0, to: until, points: 4000, branch: compared.id }).catch(() => null);
-    if (!answer || this.otherId !== compared.id) return;
+    if (!answer || this.otherKey !== compared.key) return;
     this.others = new Map(Object.entries(answer.series).map(([path, one]) => [path, { ...one, until }]));
     model.announce("series");
   }

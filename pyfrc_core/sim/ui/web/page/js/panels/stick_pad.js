@@ -51,7 +51,7 @@ export class StickPad extends Component {
   }
 
   begin = (event) => {
-    if (model.readonly) return;
+    if (!model.mayDrive) return;
     event.preventDefault();
     event.currentTarget.setPointerCapture(event.pointerId);
     this.dragging = true;
@@ -80,7 +80,7 @@ export class StickPad extends Component {
 
   key = (event) => {
     const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-    if (!way || event.repeat || model.readonly) return;
+    if (!way || event.repeat || !model.mayDrive) return;
     event.preventDefault();
     event.stopPropagation();
     this.pushed = true;

@@ -54,7 +54,7 @@ function Alerts({ folder, values }) {
 function CommandCard({ folder, values }) {
   const running = Boolean(values.get(`${folder.path}/running`));
   return html`<div class="card command"><h4>${folder.name}</h4>
-    <button class=${running ? "stop" : "go"} disabled=${model.readonly} onClick=${() => write({ [`${folder.path}/running`]: !running })}>${running ? "Cancel" : "Run"}</button></div>`;
+    <button class=${running ? "stop" : "go"} disabled=${!model.mayWrite} onClick=${() => write({ [`${folder.path}/running`]: !running })}>${running ? "Cancel" : "Run"}</button></div>`;
 }
 
 function ValuesCard({ folder, values }) {
@@ -69,11 +69,11 @@ function ValueRow({ path, name, value }) {
   const step = number && value ? 10 ** Math.floor(Math.log10(Math.abs(value)) - 0.3) / (Math.abs(value) >= 1 ? 10 : 1) : 0.1;
   return html`<div class="row"><span class="row-label">${name}</span>
     ${typeof value === "boolean"
-      ? html`<label class="switch"><input type="checkbox" role="switch" aria-label=${name} checked=${value} disabled=${model.readonly} onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label>`
+      ? html`<label class="switch"><input type="checkbox" role="switch" aria-label=${name} checked=${value} disabled=${!model.mayWrite} onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label>`
       : number || typeof value === "string"
-        ? html`<span class="number-box">${number && html`<button class="tool always" aria-label=${`Less ${name}`} disabled=${model.readonly} onClick=${() => nudge(-step)}>−</button>`}
+        ? html`<span class="number-box">${number && html`<button class="tool always" aria-label=${`Less ${name}`} disabled=${!model.mayWrite} onClick=${() => nudge(-step)}>−</button>`}
             <${ValueBox} class=${number ? "number" : ""} path=${path} label=${name} />
-            ${number && html`<button class="tool always" aria-label=${`More ${name}`} disabled=${model.readonly} onClick=${() => nudge(step)}>+</button>`}</span>`
+            ${number && html`<button class="tool always" aria-label=${`More ${name}`} disabled=${!model.mayWrite} onClick=${() => nudge(step)}>+</button>`}</span>`
         : html`<span class="faint">${valueText(value)}</span>`}
     <span class="row-tools"><button class="tool" aria-label=${`Plot ${name}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button></span></div>`;
 }

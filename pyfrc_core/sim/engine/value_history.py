@@ -1,6 +1,7 @@
 """Every changed value of every packet of a run, in memory, so that any moment and any plot is there at once.
 
-Memory is limited: `Runs` forgets former runs and then the oldest packets, and pages say from when on values are known.
+Memory is limited: `sim.ui.web.runs` forgets former runs and then the oldest packets, and pages say from when on values
+are known.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
 
-from ...engine.messages import TYPE
+from .messages import TYPE
 
 #: A value that a path does not have, or no longer has.
 MISSING: Any = object()

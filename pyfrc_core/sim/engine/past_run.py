@@ -1,0 +1,43 @@
+"""A run that is over, such as a log: all its values, and what happened in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+from .value_history import ValueHistory
+
+#: The two kinds of values: those of `hal_data`, and those of NetworkTables with the mode and the robot's place.
+Stream = Literal["hal", "network"]
+
+
+class Happened(NamedTuple):
+    """Something that happened.
+
+    :param time: in seconds of the run
+    :param level: of the console's line: ``info``, ``warning`` or ``error``
+    :param is_mark: whether the timeline shows it, too
+    """
+
+    time: float
+    level: Literal["info", "warning", "error"]
+    text: str
+    is_mark: bool = False
+
+
+@dataclass(frozen=True)
+class PastRun:
+    """Its times are in seconds, from 0.
+
+    :param name: for people, such as the name of a file
+    :param end: the end of its time
+    :param happened: what it printed, and what went wrong, in the order of time
+    :param offset: what is added to its times where it is a branch of another run
+    """
+
+    name: str
+    end: float
+    histories: Mapping[Stream, ValueHistory]
+    happened: tuple[Happened, ...] = ()
+    offset: float = 0.0

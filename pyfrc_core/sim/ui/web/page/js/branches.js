@@ -1,0 +1,44 @@
+// The menu of the branches: former runs, and logs that are shown beside the present one.
+import { command } from "#js/connection.js";
+import { compared } from "#js/compare.js";
+import { askText } from "#js/dialog.js";
+import { clock, typedNumber } from "#js/format.js";
+import { Menu } from "#js/menu.js";
+import { model } from "#js/model.js";
+import { look } from "#js/past.js";
+import { html } from "#js/view.js";
+
+export function BranchesMenu() {
+  if (!model.branches.length) return null;
+  /** @type {any[]} */
+  const items = model.branches.map((branch) => ({
+    text: branch.name,
+    note: `${clock(branch.from)} – ${clock(branch.to)}`,
+    checked: model.compared === branch.id,
+    act: () => model.set("compared", model.compared === branch.id ? null : branch.id),
+  }));
+  const chosen = model.branches.find((branch) => branch.id === model.compared);
+  if (chosen) {
+    items.push({ separator: true }, { text: `Name “${chosen.name}”…`, act: () => nameBranch(chosen), disabled: model.readonly });
+    if (chosen.offset !== undefined) items.push({ text: "Move it in time…", act: () => moveBranch(chosen), disabled: model.readonly });
+  }
+  const { difference } = compared;
+  return html`${chosen && difference !== undefined && html`<button class="quiet" disabled=${difference === null} onClick=${() => look(difference)}
+      title="The first moment at which the branch differs from this run">${difference === null ? "No difference" : `Differs at ${clock(difference)}`}</button>`}
+    <${Menu} label=${`Branches ${model.branches.length}`} icon="branch" title="Compare with an earlier run" items=${items} />`;
+}
+
+async function nameBranch(branch) {
+  const name = await askText("The name of the branch", branch.name);
+  if (name) command("name_branch", { branch: branch.id, text: name });
+}
+
+async function moveBranch(branch) {
+  const text = await askText(`How many seconds later “${branch.name}” is shown; a negative number shows it earlier`, String(branch.offset));
+  if (!text) return;
+  try {
+    command("move_branch", { branch: branch.id, offset: typedNumber(text) });
+  } catch (error) {
+    model.set("problem", error.message);
+  }
+}
