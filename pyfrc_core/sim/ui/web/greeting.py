@@ -15,6 +15,7 @@ from ..models.joysticks import FIRST_BUTTON, JOYSTICKS, MOST_BUTTONS, axis_label
 from ..models.keyboard import BUTTON_KEYS, BUTTON_KEYS_TEXT, ENABLE_CHORD, GENTLE, LAYOUTS, layout_for
 from ..models.time_controls import FASTEST, SLOWEST
 from ..models.wording import MODES, NO_OPMODE, STATIONS
+from .dashboards import Dashboards
 
 if TYPE_CHECKING:
     from ...engine.source import Source
@@ -89,6 +90,7 @@ def greeting(source: Source, client: int, read_only: bool, watching: bool = Fals
             },
         },
         "layout": load_layout(project.root),
+        "dashboards": Dashboards(project.root).found(),
     }
 
 

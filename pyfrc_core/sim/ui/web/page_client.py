@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...engine.messages import TYPE
 from .commands import PageCommands
+from .dashboards import Dashboards
 from .greeting import save_layout
 from .messages import CommandError, Message, json_text, read_message
 from .updates import UpdateBuilder
@@ -50,6 +51,7 @@ class PageClient:
         self._socket = socket
         self._collector, self._commands, self._builder = collector, commands, builder
         self._hello, self._clients, self._executor = hello, clients, executor
+        self._dashboards = Dashboards(collector.root)
         #: Set when there may be something new.
         self.news = asyncio.Event()
         #: Messages are sent one at a time.
@@ -99,6 +101,11 @@ class PageClient:
                 return await self._in_order(lambda commands: commands.carry_out(message))
             case "layout":
                 return await self._in_order(lambda commands: self._save_layout(message.raw("layout")))
+            case "dashboards":
+                known = message.text("stamp") if "stamp" in message else ""
+                return await asyncio.to_thread(self._dashboards.found, known)
+            case "save_dashboard":
+                return await self._in_order(lambda commands: self._dashboards.save(message))
             case "values":
                 return await asyncio.to_thread(self._values, message)
             case "plot":

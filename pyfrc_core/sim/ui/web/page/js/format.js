@@ -8,6 +8,12 @@ export function clock(seconds) {
   return `${minutes}:${rest.toFixed(2).padStart(5, "0")}`;
 }
 
+// Seconds that are left, as 1:02.
+export function countdown(seconds) {
+  const left = Math.max(Math.ceil(seconds), 0);
+  return `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}`;
+}
+
 // A moment on an axis: as `clock`, with no more decimals than it needs.
 export function clockTick(seconds) {
   return clock(seconds).replace(/\.?0+$/, "");

@@ -1,4 +1,4 @@
-// "Add a value": a search through everything that can be plotted, also the elements of lists.
+// "Add a value": a search through everything that can be plotted, also the elements of lists; and what else is offered.
 import { valueText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { nameOf } from "#js/names.js";
@@ -32,24 +32,31 @@ export class PlotPicker extends Component {
     if (this.state.open && !this.element.current.contains(event.target)) this.setState({ open: false });
   };
 
-  render(_, { open, search }) {
+  // more: [{ key, name, note, add() }], above the values
+  render({ label = "Add value", more = [] }, { open, search }) {
     const found = open ? searched(search) : [];
+    const others = open ? more.filter(({ name, note }) => matches(`${name} ${note}`, search)) : [];
     return html`<div class="menu picker" ref=${this.element} onKeyDown=${this.key}>
-      <button class="quiet" aria-expanded=${open} onClick=${() => this.setState({ open: !open, search: "" })}><${Icon} name="plus" />Add value</button>
+      <button class="quiet" aria-expanded=${open} onClick=${() => this.setState({ open: !open, search: "" })}><${Icon} name="plus" />${label}</button>
       ${open && html`<div class="menu-list" popover="manual">
         <label class="search"><${Icon} name="search" /><input type="search" value=${search} placeholder="Search all values"
           aria-label="Search all values" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
-        <ul>${found.map((path) => html`<li key=${path}><button title=${path} onClick=${() => this.add(path)}>
+        <ul>${others.map(({ key, name, note, add }) => html`<li key=${key}><button title=${key} onClick=${() => this.choose(add)}><b>${name}</b><small>${note}</small></button></li>`)}
+          ${found.map((path) => html`<li key=${path}><button title=${path} onClick=${() => this.add(path)}>
           <span>${nameOf(path)}</span><small>${valueText(valueIn(model.values, path)).slice(0, 24)}</small></button></li>`)}</ul>
         ${found.length === MOST && html`<p class="faint">Only ${MOST} values are listed: search for others.</p>`}
-        ${!found.length && html`<p class="faint">No value is called that.</p>`}
+        ${!found.length && !others.length && html`<p class="faint">No value is called that.</p>`}
       </div>`}
     </div>`;
   }
 
   add(path) {
+    this.choose(() => this.props.add(path));
+  }
+
+  choose(act) {
     this.setState({ open: false });
-    this.props.add(path);
+    act();
   }
 
   key = (event) => {
@@ -65,12 +72,14 @@ export class PlotPicker extends Component {
   };
 }
 
+function matches(whole, text) {
+  return text.toLowerCase().split(/\s+/).every((word) => whole.toLowerCase().includes(word));
+}
+
 function searched(text) {
-  const words = text.toLowerCase().split(/\s+/).filter(Boolean);
   const found = [];
   for (const path of allPaths()) {
-    const whole = `${nameOf(path)} ${path}`.toLowerCase();
-    if (words.every((word) => whole.includes(word))) found.push(path);
+    if (matches(`${nameOf(path)} ${path}`, text)) found.push(path);
     if (found.length >= MOST) break;
   }
   return found;
@@ -80,7 +89,7 @@ function searched(text) {
 function* allPaths() {
   const late = [];
   for (const [path, value] of model.values) {
-    const isLate = path.startsWith("nt:/LiveWindow") || path.startsWith("event.") || /\/\.\w+$/.test(path);
+    const isLate = path.startsWith("nt:/LiveWindow") || path.startsWith("nt:/.schema") || path.startsWith("event.") || /\/\.\w+$/.test(path);
     for (const each of Array.isArray(value) ? elementsOf(path, value) : [path]) {
       if (isLate) late.push(each);
       else yield each;

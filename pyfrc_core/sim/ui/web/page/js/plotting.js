@@ -6,6 +6,7 @@ import { model } from "#js/model.js";
 import { settings } from "#js/settings.js";
 
 const PATH_TYPE = "application/x-pyfrc-path";
+const TABLE_TYPE = "application/x-pyfrc-table";
 const MOST_CURVES = CURVE_COLORS * LINES.length; // each of which looks different
 
 // Begin to drag a value.
@@ -14,6 +15,22 @@ export function carryPath(event, path) {
   event.dataTransfer.setData(PATH_TYPE, path);
   event.dataTransfer.setData("text/plain", path);
   event.dataTransfer.effectAllowed = "copy";
+}
+
+// Begin to drag a table, which dashboards take.
+export function carryTable(event, path) {
+  event.stopPropagation();
+  event.dataTransfer.setData(TABLE_TYPE, path);
+  event.dataTransfer.effectAllowed = "copy";
+}
+
+// Whether a value or a table is dragged, and which.
+export function hasTopic(event) {
+  return hasPath(event) || event.dataTransfer.types.includes(TABLE_TYPE);
+}
+
+export function carriedTopic(event) {
+  return carriedPath(event) || event.dataTransfer.getData(TABLE_TYPE);
 }
 
 export function hasPath(event) {

@@ -16,6 +16,7 @@ const DEFAULTS = {
   plots: {},
   pins: [],
   fieldLayers: {},
+  dashboard: "", // the name of the one that is shown
   coordinates: "", // how places on the field are written; as the project says unless chosen
   keyboard: { chosen: null, own: [] },
   gamepads: {},

@@ -1,5 +1,6 @@
 // The driver station, along the top: modes, enabling, match, emergency stop; and the page's own menus.
 import { command } from "#js/connection.js";
+import { countdown } from "#js/format.js";
 import { toggle } from "#js/layout/open.js";
 import { PRESETS, panelsOf } from "#js/layout/presets.js";
 import { Menu } from "#js/menu.js";
@@ -104,8 +105,7 @@ function shortText(text) {
 
 function matchLeft(station) {
   if (station.practice_since === null || station.practice_since === undefined) return "";
-  const seconds = Math.max(Math.ceil(station.match_left), 0);
-  return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
+  return countdown(station.match_left);
 }
 
 function switchTheme() {

@@ -61,27 +61,45 @@ function physicsRobot(values) {
   return values.has(other) ? other : robot;
 }
 
-// The folders of every Field2d, each with a slash at its end.
-function fieldFolders(values) {
+// The tables of a type.
+function tablesOf(values, type) {
   const found = [];
   for (const [path, value] of values) {
-    if (value === "Field2d" && path.startsWith("nt:/") && path.endsWith("/.type")) found.push(path.slice(0, -".type".length));
+    if (value === type && path.startsWith("nt:/") && path.endsWith("/.type")) found.push(path.slice(0, -"/.type".length));
   }
   return found;
 }
 
+// The folders of every Field2d, each with a slash at its end.
+function fieldFolders(values) {
+  return tablesOf(values, "Field2d").map((path) => `${path}/`);
+}
+
+export function swerveTables() {
+  return tablesOf(model.values, "SwerveDrive");
+}
+
+const CORNERS = ["Front Left", "Front Right", "Back Left", "Back Right"];
+
+// The states in a table of the type "SwerveDrive", whose angles are in radians; null while some are missing.
+function statesIn(values, table) {
+  const states = CORNERS.map((corner) => ({ speed: plain(values.get(`${table}/${corner} Velocity`)), angle: plain(values.get(`${table}/${corner} Angle`)) }));
+  return states.every(({ speed, angle }) => typeof speed === "number" && typeof angle === "number") ? states : null;
+}
+
 const POSES = /^struct:Pose[23]d/;
-const MODULES = /^struct:SwerveModule(State|Velocity)\[\]$/;
+export const MODULES = /^struct:SwerveModule(State|Velocity)\[\]$/;
+export const WANTED = /target|desired|setpoint|wanted/i; // in the name of a topic
 const MODULES_AS_NUMBERS = /swerve.*state|module.*state/i;
 
-function topicsOf(types) {
+export function topicsOf(types) {
   return Object.keys(model.types).filter((path) => path.startsWith("nt:/") && types.test(model.types[path]));
 }
 
 // The beginnings of the paths of all values that a field may show.
 export function fieldNeeds() {
   const structs = [...topicsOf(POSES), ...topicsOf(MODULES)].map((path) => `${path}/`);
-  return [...fieldFolders(model.values), ...structs, ...topicsOf(/^double\[\]$/).filter((path) => MODULES_AS_NUMBERS.test(path))];
+  return [...fieldFolders(model.values), ...swerveTables().map((path) => `${path}/`), ...structs, ...topicsOf(/^double\[\]$/).filter((path) => MODULES_AS_NUMBERS.test(path))];
 }
 
 // The objects of every Field2d: { name, path, poses, isPath }.
@@ -107,13 +125,17 @@ export function fieldObjects(values, field) {
 // The four states of swerve modules, front left first: { path, wanted, states: [{ speed in m/s, angle in radians }] }.
 export function swerveStates(values) {
   const found = [];
-  const add = (path, states) => found.push({ path, wanted: /target|desired|setpoint|wanted/i.test(path), states });
+  const add = (path, states) => found.push({ path, wanted: WANTED.test(path), states });
   for (const path of topicsOf(MODULES)) {
     const states = [];
     for (let speed; (speed = speedAt(values, `${path}/${states.length}`)) !== undefined; ) {
       states.push({ speed, angle: angleAt(values, `${path}/${states.length}/angle`) ?? 0 });
     }
     if (states.length >= 3) add(path, states);
+  }
+  for (const table of swerveTables()) {
+    const states = statesIn(values, table);
+    if (states) add(table, states);
   }
   for (const path of topicsOf(/^double\[\]$/)) {
     const value = MODULES_AS_NUMBERS.test(path) ? values.get(path) : undefined;

@@ -49,6 +49,10 @@ export const PRESETS = {
       column([58, 42], tabs("plot:1", "plot:2"), tabs("joysticks", "match", "widgets")),
     ),
   },
+  dashboard: {
+    title: "Dashboard",
+    tree: row([22, 78], tabs("networktables", "widgets", "match"), tabs("dashboard")),
+  },
   presentation: {
     title: "Presentation",
     tree: row([68, 32], tabs("field"), column([50, 50], tabs("plot:1"), tabs("mechanism", "console"))),
@@ -58,10 +62,10 @@ export const PRESETS = {
 // On a narrow screen: the field and plots above, everything else in tabs below.
 export function stacked(tree) {
   const panels = panelsOf(tree);
-  const above = panels.filter((id) => id === "field" || id === "mechanism" || id.startsWith("plot:"));
+  const above = panels.filter((id) => ["field", "mechanism", "dashboard"].includes(id) || id.startsWith("plot:"));
   const below = panels.filter((id) => !above.includes(id));
   if (!above.length || !below.length) return tabs(...panels);
-  return column([52, 48], tabs(...above), tabs(...below));
+  return column(above.includes("dashboard") ? [66, 34] : [52, 48], tabs(...above), tabs(...below));
 }
 
 export function panelsOf(tree) {

@@ -1,5 +1,6 @@
 // Every panel that can be opened, by the part of its name before a colon. Those that only drive are of no use for a recorded run.
 import { ConsolePanel } from "#js/panels/console.js";
+import { DashboardPanel } from "#js/panels/dashboard.js";
 import { DevicesPanel } from "#js/panels/devices.js";
 import { FieldPanel } from "#js/panels/field.js";
 import { JoysticksPanel } from "#js/panels/joysticks.js";
@@ -8,6 +9,7 @@ import { MatchPanel } from "#js/panels/match.js";
 import { MechanismPanel } from "#js/panels/mechanism.js";
 import { NetworkTablesPanel } from "#js/panels/networktables.js";
 import { PlotPanel } from "#js/panels/plot.js";
+import { SwervePanel } from "#js/panels/swerve.js";
 import { TouchPanel } from "#js/panels/touch.js";
 import { WidgetsPanel } from "#js/panels/widgets.js";
 
@@ -16,8 +18,10 @@ export const PANELS = {
   devices: { title: "Devices", component: DevicesPanel },
   plot: { title: "Plot", component: PlotPanel },
   networktables: { title: "NetworkTables", component: NetworkTablesPanel },
-  widgets: { title: "Dashboard", component: WidgetsPanel },
+  widgets: { title: "Published", component: WidgetsPanel },
+  dashboard: { title: "Dashboard", component: DashboardPanel },
   mechanism: { title: "Mechanism", component: MechanismPanel },
+  swerve: { title: "Swerve", component: SwervePanel },
   console: { title: "Console", component: ConsolePanel },
   match: { title: "Match", component: MatchPanel },
   joysticks: { title: "Joysticks", component: JoysticksPanel },

@@ -67,7 +67,8 @@ export class FieldPanel extends Live {
     return { text, checked: shown, act: () => settings.set("fieldLayers", { ...settings.get("fieldLayers"), [name]: !shown }) };
   }
 
-  render() {
+  // bare: without the line below; only: the beginning of the paths of the only objects to show
+  render({ bare, only }) {
     const { robot, values, station } = model.shown;
     this.robots = {
       robot,
@@ -79,7 +80,7 @@ export class FieldPanel extends Live {
     this.swerve = robot ? swerveStates(values) : [];
     /** @type {any[]} */
     const layers = LAYERS.map(([layer, text]) => this.layer(layer, text));
-    this.objects = fieldObjects(values, model.hello.field);
+    this.objects = fieldObjects(values, model.hello.field).filter(({ path }) => !only || path === only || path.startsWith(`${only}/`));
     if (this.objects.length) layers.push({ separator: true }, ...this.objects.map(({ path, name }) => this.layer(path, name)));
     const { coordinates } = this;
     const pose = robot && written(robot, model.hello.field, coordinates, this.robots.alliance);
@@ -92,11 +93,11 @@ export class FieldPanel extends Live {
         onDblClick=${this.whole} onContextMenu=${(event) => event.preventDefault()} onKeyDown=${this.key}>
         <canvas ref=${this.canvas}></canvas>
       </div>
-      <div class="field-line">
+      ${!bare && html`<div class="field-line">
         <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose.x)} ${pose.unit}</b><i>y</i><b>${numberText(pose.y)} ${pose.unit}</b><i class="long">heading</i><b>${numberText(pose.degrees, 1)}°</b>` : "No physics.py: pyfrc create-physics writes one"}</span>
         <button class="quiet" title="Show the whole field: double click" aria-label="Show the whole field" onClick=${this.whole}><${Icon} name="fit" /></button>
         <${Menu} label="Show" title="What is drawn" items=${layers} />
-      </div>
+      </div>`}
     </div>`;
   }
 

@@ -24,8 +24,9 @@ export class MechanismPanel extends Live {
     if (this.picture.changes(JSON.stringify(this.found))) this.draw();
   }
 
-  render() {
-    this.found = mechanisms(model.shown.values);
+  // only: the table of the only one to show
+  render({ only }) {
+    this.found = mechanisms(model.shown.values).filter(({ folder }) => !only || folder === only);
     model.need(this, this.found.map(({ folder }) => `${folder}/`));
     return html`<div class="mechanism"><canvas ref=${this.canvas} role="img" aria-label=${this.found.map((each) => each.name).join(", ")}></canvas>
       ${!this.found.length && html`<p class="empty">A Mechanism2d that the robot publishes with ${model.hello.options.dashboard.publishing} appears here.</p>`}</div>`;

@@ -4,7 +4,7 @@ import { write } from "#js/connection.js";
 import { plain, valueText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { elementsOf } from "#js/parts.js";
-import { addToPlot, carryPath } from "#js/plotting.js";
+import { addToPlot, carryPath, carryTable } from "#js/plotting.js";
 import { ValueBox } from "#js/value_box.js";
 import { Component, Icon, Live, classes, createRef, html } from "#js/view.js";
 
@@ -73,7 +73,7 @@ function treeOf(paths) {
 
 function Folder({ node, depth, open, toggle }) {
   const type = model.shown.values.get(`${node.path}/.type`) ?? model.types[node.path]?.replace("struct:", "");
-  return html`<div class="nt-row folder" role="treeitem" aria-expanded=${open} style=${{ paddingLeft: `${depth * 14}px` }}>
+  return html`<div class="nt-row folder" role="treeitem" aria-expanded=${open} draggable="true" onDragStart=${(event) => carryTable(event, node.path)} style=${{ paddingLeft: `${depth * 14}px` }}>
     <button class=${classes({ fold: true, closed: !open })} onClick=${toggle}><${Icon} name="chevron" /><span>${node.name}</span></button>
     ${typeof type === "string" && html`<span class="chip">${type}</span>`}</div>`;
 }

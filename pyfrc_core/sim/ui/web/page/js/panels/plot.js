@@ -52,8 +52,13 @@ export class PlotPanel extends Live {
     this.update();
   }
 
+  // As the person has arranged it; or, in a widget, what its dashboard says.
   get config() {
-    return plotOf(this.props.id);
+    return this.props.plot ?? plotOf(this.props.id);
+  }
+
+  set(change) {
+    if (!this.props.plot) changePlot(this.props.id, change);
   }
 
   get ranges() {
@@ -66,14 +71,14 @@ export class PlotPanel extends Live {
     return x && curves.find((curve) => keyOf(curve) === x && this.isNumber(curve.path));
   }
 
-  render({ id }, { over, at }) {
+  render({ id, plot: widget }, { over, at }) {
     const { curves, seconds, table: isTable } = this.config;
     this.interval = isTable ? TABLE_INTERVAL : 0;
     const moment = at ?? model.past?.t ?? model.t;
     const isNumber = ({ path }) => this.isNumber(path);
     const plot = { curves, x: this.config.x, isNumber, change: this.change, remove: this.remove, setX: this.setX, copy: (curve) => addCurve(id, { ...curve, hidden: undefined }) };
     return html`<div class=${classes({ plot: true, over })} onDragOver=${this.over} onDragLeave=${() => this.setState({ over: false })} onDrop=${this.drop}>
-      <div class="panel-tools">
+      ${!widget && html`<div class="panel-tools">
         <div class="segments small" role="group" aria-label="Time that is shown">
           ${SPANS.map(([span, text]) => html`<button key=${span} class=${classes({ chosen: !this.zoom && seconds === span })} aria-pressed=${!this.zoom && seconds === span}
             onClick=${() => this.follow(span)}>${text}</button>`)}
@@ -83,11 +88,11 @@ export class PlotPanel extends Live {
         <${PlotPicker} add=${(path) => addToPlot(path, id)} />
         ${curves.length > 0 && html`<${PlotAxes} axes=${this.axes()} ranges=${this.ranges} limits=${this.limits} setRange=${this.setRange}
           hold=${Boolean(this.zoom)} setHold=${(hold) => (hold ? this.zoomTo(...this.range()) : this.follow(seconds))} />
-        <button class=${classes({ quiet: true, chosen: isTable })} aria-pressed=${Boolean(isTable)} title="Minimum, mean, maximum and percentiles of what is in view" onClick=${() => changePlot(id, { table: !isTable })}>Table</button>`}
+        <button class=${classes({ quiet: true, chosen: isTable })} aria-pressed=${Boolean(isTable)} title="Minimum, mean, maximum and percentiles of what is in view" onClick=${() => this.set({ table: !isTable })}>Table</button>`}
         <button class="quiet" title="Save the values as CSV" aria-label="Save the values as CSV" disabled=${!curves.length} onClick=${this.save}><${Icon} name="download" />CSV</button>
-        <button class="quiet" title="Remove all curves" disabled=${!curves.length} onClick=${() => changePlot(id, { curves: [], ranges: {}, x: null })}>Clear</button>
-      </div>
-      <${PlotLegend} plot=${plot} isTable=${isTable && curves.length > 0} hasBranch=${compared.id !== null} isNumber=${isNumber}
+        <button class="quiet" title="Remove all curves" disabled=${!curves.length} onClick=${() => this.set({ curves: [], ranges: {}, x: null })}>Clear</button>
+      </div>`}
+      <${PlotLegend} plot=${plot} bare=${Boolean(widget)} isTable=${isTable && curves.length > 0} hasBranch=${compared.id !== null} isNumber=${isNumber}
         shownOf=${(curve) => this.valueOf(curve, moment)} statisticsOf=${(curve) => this.statisticsOf(curve)} />
       <div class="plot-area" ref=${this.area}>
         ${!curves.length && html`<p class="empty">Drag a value here, choose <b class="plus">+</b> beside it, or search with “Add value”.</p>`}
@@ -98,19 +103,19 @@ export class PlotPanel extends Live {
 
   change = (curve, changes) => {
     const changed = (each) => ({ ...each, ...(typeof changes === "function" ? changes(each) : changes) });
-    changePlot(this.props.id, { curves: this.config.curves.map((each) => (keyOf(each) === keyOf(curve) ? changed(each) : each)) });
+    this.set({ curves: this.config.curves.map((each) => (keyOf(each) === keyOf(curve) ? changed(each) : each)) });
   };
 
   remove = (curve) => {
-    changePlot(this.props.id, { curves: this.config.curves.filter((each) => keyOf(each) !== keyOf(curve)) });
+    this.set({ curves: this.config.curves.filter((each) => keyOf(each) !== keyOf(curve)) });
   };
 
   // Draw over a curve, or over time (null): the limits were those of other axes.
-  setX = (x) => changePlot(this.props.id, { x, ranges: {} });
+  setX = (x) => this.set({ x, ranges: {} });
 
   setRange = (axis, limits) => {
     const { [axis]: _, ...others } = this.ranges;
-    changePlot(this.props.id, { ranges: limits ? { ...others, [axis]: limits } : others });
+    this.set({ ranges: limits ? { ...others, [axis]: limits } : others });
   };
 
   // The axes whose limits can be set, and what they show.
@@ -261,7 +266,7 @@ export class PlotPanel extends Live {
     if (width < 4 || (this.xCurve && height < 4)) return;
     if (this.xCurve) {
       const ranges = Object.fromEntries(this.axes().map((axis) => [axis, [plot.posToVal(top + height, axis), plot.posToVal(top, axis)]]));
-      changePlot(this.props.id, { ranges: { ...ranges, x: [plot.posToVal(left, "x"), plot.posToVal(left + width, "x")] } });
+      this.set({ ranges: { ...ranges, x: [plot.posToVal(left, "x"), plot.posToVal(left + width, "x")] } });
     } else this.zoomTo(plot.posToVal(left, "x"), plot.posToVal(left + width, "x"));
     plot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
   }
@@ -300,7 +305,7 @@ export class PlotPanel extends Live {
   follow(seconds) {
     this.zoom = null;
     this.detail = new Map();
-    changePlot(this.props.id, { seconds });
+    this.set({ seconds });
     this.setState({});
   }
 
@@ -356,7 +361,7 @@ export class PlotPanel extends Live {
   };
 
   over = (event) => {
-    if (!hasPath(event)) return;
+    if (!hasPath(event) || this.props.plot) return;
     event.preventDefault();
     if (!this.state.over) this.setState({ over: true });
   };
@@ -364,7 +369,7 @@ export class PlotPanel extends Live {
   drop = (event) => {
     this.setState({ over: false });
     const path = carriedPath(event);
-    if (!path) return;
+    if (!path || this.props.plot) return;
     event.preventDefault();
     addToPlot(path, this.props.id);
   };

@@ -6,10 +6,17 @@ import { CurveSettings } from "#js/panels/curve_settings.js";
 
 const COLUMNS = ["Minimum", "Mean", "Maximum", "5 %", "Median", "95 %"];
 
+// bare: names and values alone, as in a widget
 // plot: { curves, x, change(curve, changes), remove(curve), … } as `CurveSettings` needs it
 // isNumber(curve), shownOf(curve), statisticsOf(curve): of the run, and of the branch for a curve with `other: true`
-export function PlotLegend({ plot, isTable, hasBranch, isNumber, shownOf, statisticsOf }) {
+export function PlotLegend({ plot, bare, isTable, hasBranch, isNumber, shownOf, statisticsOf }) {
   const curves = plot.curves;
+  if (bare) {
+    return html`<ul class="legend" aria-label="Curves">
+      ${curves.map((curve) => html`<li key=${keyOf(curve)}><i class="swatch" style=${swatchOf(curve)}></i><span class="curve-name" title=${curve.path}>${titleOf(curve)}</span>
+        <${Value} curve=${curve} value=${shownOf(curve)} /></li>`)}
+    </ul>`;
+  }
   if (!isTable) {
     return html`<ul class="legend" aria-label="Curves">
       ${curves.map((curve) => html`<li key=${keyOf(curve)} class=${classes({ off: curve.hidden })}>

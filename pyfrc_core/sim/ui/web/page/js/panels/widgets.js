@@ -34,7 +34,7 @@ export class WidgetsPanel extends Live {
 }
 
 // Folders with a ".type": { path, name, type }.
-function sendables(values) {
+export function sendables(values) {
   const found = [];
   for (const [path, type] of values) {
     if (!path.startsWith("nt:/") || !path.endsWith("/.type") || typeof type !== "string") continue;
@@ -45,20 +45,23 @@ function sendables(values) {
   return found;
 }
 
-function Alerts({ folder, values }) {
+export function Alerts({ folder, values }) {
   const lines = ALERTS.flatMap(([kind, name]) => (plain(values.get(`${folder.path}/${kind}`)) ?? []).map((text) => ({ name, text })));
   return html`<div class="card"><h4>${folder.name}</h4>${lines.map(({ name, text }, index) => html`<p key=${index} class=${`alert ${name}`}><${Icon} name="warning" />${text}</p>`)}
     ${!lines.length && html`<p class="faint">No alerts.</p>`}</div>`;
 }
 
-function CommandCard({ folder, values }) {
+export function CommandCard({ folder, values }) {
   const running = Boolean(values.get(`${folder.path}/running`));
   return html`<div class="card command"><h4>${folder.name}</h4>
     <button class=${running ? "stop" : "go"} disabled=${!model.mayWrite} onClick=${() => write({ [`${folder.path}/running`]: !running })}>${running ? "Cancel" : "Run"}</button></div>`;
 }
 
-function ValuesCard({ folder, values }) {
-  const rows = [...values].filter(([path]) => path.startsWith(`${folder.path}/`) && !path.slice(folder.path.length).includes("/."));
+// only: the names of the values to show, in this order; all without it
+export function ValuesCard({ folder, values, only = null }) {
+  const rows = only
+    ? only.map((name) => [`${folder.path}/${name}`, values.get(`${folder.path}/${name}`)]).filter(([, value]) => value !== undefined)
+    : [...values].filter(([path]) => path.startsWith(`${folder.path}/`) && !path.slice(folder.path.length).includes("/."));
   return html`<div class="card"><h4>${folder.name}<span class="chip">${folder.type}</span></h4>
     ${rows.map(([path, value]) => html`<${ValueRow} key=${path} path=${path} name=${path.slice(folder.path.length + 1)} value=${plain(value)} />`)}</div>`;
 }

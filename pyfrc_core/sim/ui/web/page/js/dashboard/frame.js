@@ -1,0 +1,104 @@
+// A widget in its place on the grid: its title, what it shows or that nothing is published; and, while a person arranges
+// the dashboard, the ways to move it, to change its size and its settings, and to remove it.
+import { dashboards } from "#js/dashboard/dashboards.js";
+import { KINDS } from "#js/dashboard/kinds.js";
+import { isFree, movedBy } from "#js/dashboard/grid.js";
+import { isPublished, pathOf } from "#js/dashboard/topics.js";
+import { WidgetSettings } from "#js/dashboard/widget_settings.js";
+import { Dropdown } from "#js/dropdown.js";
+import { Component, Icon, classes, createRef, html } from "#js/view.js";
+
+const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+export function titleOf(widget) {
+  if (widget.title) return widget.title;
+  return widget.topic ? widget.topic.split("/").pop() : (KINDS[widget.kind]?.title ?? widget.kind);
+}
+
+// board: { arranging, cell() → [width, height] in pixels, change(index, changes), remove(index) }
+export class WidgetFrame extends Component {
+  state = { blocked: false };
+  element = createRef();
+
+  // As it is in the draft, which may be newer than what is drawn.
+  get widget() {
+    return dashboards.shown.widgets[this.props.index];
+  }
+
+  render({ widget, index, board }, { blocked }) {
+    const title = titleOf(widget);
+    const style = { gridColumn: `${widget.x + 1} / span ${widget.w}`, gridRow: `${widget.y + 1} / span ${widget.h}` };
+    const { arranging } = board;
+    const edit = arranging && { tabindex: "0", onPointerDown: this.begin("move"), onPointerMove: this.drag, onPointerUp: this.end, onPointerCancel: this.end, onKeyDown: this.key };
+    const help = arranging ? `${title}. Arrow keys move this widget, with Shift they change its size, Delete removes it` : title;
+    return html`<section class=${classes({ widget: true, [`widget-${widget.kind}`]: true, arranging, blocked })} style=${style} ref=${this.element}
+        aria-label=${help} data-topic=${widget.topic} data-kind=${widget.kind} ...${edit || {}}>
+      <header><span class="widget-title" title=${widget.topic}>${title}</span>
+        ${arranging && html`<span class="widget-tools" onPointerDown=${(event) => event.stopPropagation()} onKeyDown=${(event) => event.key !== "Escape" && event.stopPropagation()}>
+          <${Dropdown} label=${html`<${Icon} name="gear" />`} name=${`Settings of ${title}`} title="Settings" className="tool always"
+            content=${() => html`<${WidgetSettings} widget=${widget} change=${(changes) => board.change(index, changes)} />`} />
+          <button class="tool always" aria-label=${`Remove ${title}`} title="Remove" onClick=${() => board.remove(index)}><${Icon} name="close" /></button></span>`}
+      </header>
+      <div class="widget-body" inert=${arranging}>${this.content(widget, index, title)}</div>
+      ${arranging && html`<i class="widget-corner" onPointerDown=${this.begin("size")}></i>`}
+    </section>`;
+  }
+
+  content(widget, index, title) {
+    const kind = KINDS[widget.kind];
+    if (!kind) return html`<p class="missing"><span>This page cannot show “${widget.kind}”.</span></p>`;
+    const path = pathOf(widget.topic ?? "");
+    if (!widget.topic && !kind.alone) return html`<p class="missing"><span>No topic is chosen: “Arrange”, then the settings of this widget.</span></p>`;
+    if (widget.topic && !isPublished(path)) return html`<p class="missing"><span>Not published: <code>${widget.topic}</code></span></p>`;
+    return html`<${kind.component} key=${widget.kind} id=${`widget ${index}`} widget=${widget} path=${path} title=${title} />`;
+  }
+
+  // -- the pointer and the keys
+
+  begin = (what) => (event) => {
+    if (event.button !== 0) return;
+    event.stopPropagation();
+    this.element.current.setPointerCapture(event.pointerId);
+    const { x, y, w, h } = this.widget;
+    this.held = { what, x, y, w, h, from: [event.clientX, event.clientY], cell: this.props.board.cell() };
+  };
+
+  drag = (event) => {
+    if (!this.held) return;
+    const { what, x, y, w, h, from, cell } = this.held;
+    const columns = Math.round((event.clientX - from[0]) / cell[0]);
+    const rows = Math.round((event.clientY - from[1]) / cell[1]);
+    this.put(what === "move" ? { x: x + columns, y: y + rows, w, h } : { x, y, w: Math.max(w + columns, 1), h: Math.max(h + rows, 1) });
+  };
+
+  end = () => {
+    this.held = null;
+    if (this.state.blocked) this.setState({ blocked: false });
+  };
+
+  // Have the widget here, if no other one is in the way: otherwise it stays where it fitted last.
+  put(place) {
+    const { index, board } = this.props;
+    const { widget } = this;
+    const free = isFree(dashboards.shown, place, index);
+    if (free === this.state.blocked) this.setState({ blocked: !free });
+    if (free && ["x", "y", "w", "h"].some((each) => place[each] !== widget[each])) board.change(index, place);
+  }
+
+  key = (event) => {
+    const { index, board } = this.props;
+    const { widget } = this;
+    const way = WAYS[event.key];
+    if (event.key === "Delete") board.remove(index);
+    else if (!way) return;
+    else if (event.shiftKey) {
+      const place = { x: widget.x, y: widget.y, w: widget.w + way[0], h: widget.h + way[1] };
+      if (isFree(dashboards.shown, place, index)) board.change(index, place);
+    } else {
+      const place = movedBy(dashboards.shown, index, way);
+      if (place) board.change(index, place);
+    }
+    event.preventDefault();
+    event.stopPropagation();
+  };
+}

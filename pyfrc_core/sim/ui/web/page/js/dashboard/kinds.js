@@ -1,0 +1,78 @@
+// What a widget may be: its title, its first size in cells, the settings that it has, and what draws it. What is
+// published decides which kinds are suggested.
+import { ChooserWidget, CommandWidget, AlertsWidget, PidWidget, ValuesWidget } from "#js/dashboard/published_widgets.js";
+import { FieldWidget, GraphWidget, MechanismWidget, SwerveWidget } from "#js/dashboard/panel_widgets.js";
+import { Gauge, InputBox, Lamp, NumberText, Switch, Text } from "#js/dashboard/value_widgets.js";
+import { MatchTime, RobotState } from "#js/dashboard/match_widgets.js";
+import { typeOf } from "#js/dashboard/topics.js";
+import { plain } from "#js/format.js";
+import { model } from "#js/model.js";
+import { valueIn } from "#js/parts.js";
+
+/** @type {Record<string, { title: string, size: [number, number], component: any, settings?: string[], alone?: boolean }>} */
+export const KINDS = {
+  number: { title: "Number", size: [2, 1], component: NumberText, settings: ["unit", "decimals"] },
+  text: { title: "Text", size: [3, 1], component: Text },
+  input: { title: "Box to type into", size: [3, 1], component: InputBox },
+  lamp: { title: "Lamp", size: [1, 1], component: Lamp },
+  switch: { title: "Switch", size: [2, 1], component: Switch },
+  gauge: { title: "Gauge", size: [2, 2], component: Gauge, settings: ["min", "max", "unit", "decimals"] },
+  graph: { title: "Graph", size: [4, 3], component: GraphWidget, settings: ["more", "seconds", "min", "max"] },
+  chooser: { title: "Chooser", size: [3, 1], component: ChooserWidget },
+  pid: { title: "PID controller", size: [3, 3], component: PidWidget },
+  values: { title: "Table of values", size: [3, 3], component: ValuesWidget },
+  field: { title: "Field", size: [6, 4], component: FieldWidget, alone: true },
+  mechanism: { title: "Mechanism", size: [3, 3], component: MechanismWidget, alone: true },
+  swerve: { title: "Swerve drive", size: [3, 4], component: SwerveWidget, settings: ["more", "max"], alone: true },
+  time: { title: "Match time", size: [2, 1], component: MatchTime, alone: true },
+  state: { title: "Robot's mode", size: [3, 1], component: RobotState, alone: true },
+  alerts: { title: "Alerts", size: [3, 2], component: AlertsWidget },
+  command: { title: "Command", size: [2, 1], component: CommandWidget },
+};
+
+const BY_TYPE = {
+  "String Chooser": ["chooser"],
+  Selectable: ["chooser"],
+  PIDController: ["pid"],
+  ProfiledPIDController: ["pid"],
+  Field2d: ["field"],
+  Mechanism2d: ["mechanism"],
+  SwerveDrive: ["swerve", "values"],
+  Alerts: ["alerts"],
+  Command: ["command"],
+};
+/** @type {[RegExp, string[]][]} */
+const BY_STRUCT = [
+  [/^struct:SwerveModule(State|Velocity)\[\]/, ["swerve", "values"]],
+  [/^struct:Chassis(Speeds|Velocities)/, ["swerve", "values"]],
+  [/^struct:Pose[23]d/, ["field", "values"]],
+];
+
+// The structs that widgets show, such as an array of module states: { path, name, type }.
+export function drawnStructs() {
+  const paths = Object.keys(model.types).filter((path) => path.startsWith("nt:/") && BY_STRUCT.some(([pattern]) => pattern.test(model.types[path])));
+  return paths.map((path) => ({ path, name: path.split("/").pop(), type: model.types[path].replace("struct:", "") }));
+}
+
+// The kinds that suit what is published at a path, the best first; all while that is not known.
+export function kindsFor(path) {
+  const value = plain(valueIn(model.shown.values, path));
+  const type = typeOf(path);
+  if (typeof value === "boolean") return ["lamp", "switch", "graph", "text"];
+  if (typeof value === "number") return /match ?_?time/i.test(path) ? ["time", "number", "gauge"] : ["number", "gauge", "graph", "input", "time"];
+  if (typeof value === "string") return ["text", "input", "graph"];
+  if (value !== undefined) return ["text", "input"];
+  const struct = BY_STRUCT.find(([pattern]) => pattern.test(type));
+  if (struct) return struct[1];
+  if (type) return BY_TYPE[type] ?? ["values"];
+  return Object.keys(KINDS);
+}
+
+// The settings of a new gauge: limits of which its value is inside.
+export function firstSettings(kind, path) {
+  if (kind !== "gauge") return {};
+  const value = plain(valueIn(model.shown.values, path));
+  const size = Math.abs(typeof value === "number" && Number.isFinite(value) ? value : 0);
+  const max = size <= 1 ? 1 : 10 ** Math.ceil(Math.log10(size + 1e-9));
+  return { min: value < 0 ? -max : 0, max };
+}

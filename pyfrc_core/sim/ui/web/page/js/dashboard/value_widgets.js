@@ -1,0 +1,136 @@
+// Widgets of a single value: number, text, box, lamp, switch, gauge.
+import { write } from "#js/connection.js";
+import { numberText, plain, valueText } from "#js/format.js";
+import { model } from "#js/model.js";
+import { unitOfPath } from "#js/names.js";
+import { valueIn } from "#js/parts.js";
+import { boundPath } from "#js/dashboard/topics.js";
+import { ValueBox } from "#js/value_box.js";
+import { Component, html } from "#js/view.js";
+
+// Renders again whenever its value changes.
+class ValueWidget extends Component {
+  componentDidMount() {
+    this.follow();
+  }
+
+  componentDidUpdate(before) {
+    if (before.path !== this.props.path) this.follow();
+  }
+
+  componentWillUnmount() {
+    this.unbind();
+  }
+
+  follow() {
+    this.unbind?.();
+    this.unbind = model.bind(boundPath(this.props.path), () => this.setState({}));
+  }
+
+  get value() {
+    return plain(valueIn(model.shown.values, this.props.path));
+  }
+
+  get unit() {
+    return this.props.widget.unit || unitOfPath(this.props.path);
+  }
+}
+
+const NARROW = 0.48; // of a digit's width: a point or a sign
+const UNIT_SIZE = 0.6; // of a digit's width: a letter of the unit
+
+// The text of a number whose digits stay where they are: with as many decimals as its values so far need.
+class SteadyNumber {
+  #decimals = 0;
+  #width = 1;
+
+  text(value, decimals) {
+    if (typeof value !== "number") return valueText(value);
+    if (!Number.isInteger(value)) this.#decimals = Math.max(this.#decimals, Math.abs(value) < 0.1 ? 3 : 2);
+    const text = numberText(value, decimals ?? this.#decimals);
+    const digits = text.replace(/\D/g, "").length;
+    this.#width = Math.max(this.#width, digits + NARROW * (text.length - digits));
+    return text;
+  }
+
+  // The space that the number keeps: that of its longest text until now, in digits.
+  get width() {
+    return this.#width;
+  }
+}
+
+export class NumberText extends ValueWidget {
+  steady = new SteadyNumber();
+
+  render({ widget }) {
+    const text = this.steady.text(this.value, widget.decimals);
+    const { unit } = this;
+    const { width } = this.steady;
+    const whole = Math.max(width, typeof this.value === "number" ? 0 : text.length) + unit.length * UNIT_SIZE;
+    return html`<div class="big-number" style=${{ "--width": whole, "--digits": width }}><b>${text}</b>${unit && html`<small>${unit}</small>`}</div>`;
+  }
+}
+
+export class Text extends ValueWidget {
+  render() {
+    const text = valueText(this.value);
+    return html`<div class="big-text" style=${{ "--letters": Math.min(Math.max(text.length, 6), 24) }}>${text}</div>`;
+  }
+}
+
+export class InputBox extends ValueWidget {
+  render({ path, title }) {
+    const { value } = this;
+    if (typeof value === "boolean") return html`<${Switch} ...${this.props} />`;
+    return html`<div class="input-widget"><${ValueBox} class=${typeof value === "number" ? "number" : ""} path=${path} label=${title} /></div>`;
+  }
+}
+
+export class Lamp extends ValueWidget {
+  render({ title }) {
+    const on = Boolean(this.value);
+    return html`<div class=${on ? "lamp-widget on" : "lamp-widget"} role="img" aria-label=${`${title}: ${on}`}>${String(on)}</div>`;
+  }
+}
+
+export class Switch extends ValueWidget {
+  render({ path, title }) {
+    return html`<div class="switch-widget"><label class="switch"><input type="checkbox" role="switch" aria-label=${title} checked=${Boolean(this.value)}
+      disabled=${model.readonly} onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label></div>`;
+  }
+}
+
+const TURN = Math.PI; // from the left end over the top to the right end
+
+export class Gauge extends ValueWidget {
+  steady = new SteadyNumber();
+
+  render({ widget, title }) {
+    const { min = 0, max = 1 } = widget;
+    const value = typeof this.value === "number" ? this.value : NaN;
+    const share = Math.min(Math.max((value - min) / (max - min || 1), 0), 1);
+    const zero = Math.min(Math.max(-min / (max - min || 1), 0), 1);
+    const text = this.steady.text(this.value, widget.decimals);
+    const isOutside = value < min || value > max;
+    return html`<svg class="gauge" viewBox="0 0 120 76" role="img" aria-label=${`${title}: ${text} ${this.unit}`}>
+      <path class="gauge-track" d=${arcOf(0, 1)} />
+      ${Number.isFinite(share) && html`<path class=${isOutside ? "gauge-value outside" : "gauge-value"} d=${arcOf(Math.min(zero, share), Math.max(zero, share))} />`}
+      <text class="gauge-number" x="60" y="58" text-anchor="middle">${text}</text>
+      <text class="gauge-unit" x="60" y="70" text-anchor="middle">${this.unit}</text>
+      <text class="gauge-limit" x="14" y="74" text-anchor="middle">${valueText(min)}</text>
+      <text class="gauge-limit" x="106" y="74" text-anchor="middle">${valueText(max)}</text>
+    </svg>`;
+  }
+}
+
+// The part of the gauge's arc between two shares of it.
+function arcOf(from, to) {
+  const [x1, y1] = onArc(from);
+  const [x2, y2] = onArc(to);
+  return `M${x1} ${y1}A46 46 0 0 1 ${x2} ${y2}`;
+}
+
+function onArc(share) {
+  const angle = TURN * (1 - share);
+  return [60 + 46 * Math.cos(angle), 62 - 46 * Math.sin(angle)].map((each) => each.toFixed(2));
+}

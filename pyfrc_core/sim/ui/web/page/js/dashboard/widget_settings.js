@@ -1,0 +1,49 @@
+// The settings of a widget: what it shows, and how.
+import { KINDS, kindsFor } from "#js/dashboard/kinds.js";
+import { pathOf, topicOf } from "#js/dashboard/topics.js";
+import { typedNumber } from "#js/format.js";
+import { model } from "#js/model.js";
+import { html } from "#js/view.js";
+
+const MOST_OFFERED = 500;
+const NUMBERS = { min: "Minimum", max: "Maximum", decimals: "Decimals", seconds: "Seconds" };
+
+export function WidgetSettings({ widget, change }) {
+  const kinds = [...new Set([widget.kind, ...kindsFor(pathOf(widget.topic ?? ""))])].filter((kind) => KINDS[kind]);
+  const settings = KINDS[widget.kind]?.settings ?? [];
+  return html`<div class="form widget-settings">
+    <label>Show as <select value=${widget.kind} onChange=${(event) => change({ kind: event.target.value })}>
+      ${kinds.map((kind) => html`<option key=${kind} value=${kind} selected=${kind === widget.kind}>${KINDS[kind].title}</option>`)}</select></label>
+    <${TextSetting} label="Title" text=${widget.title} set=${(title) => change({ title })} />
+    <${TextSetting} label="Topic" text=${widget.topic} list="topics" set=${(topic) => change({ topic })} />
+    ${settings.includes("more") && html`<${TextSetting} label=${widget.kind === "graph" ? "Further curves" : "Further topics"} text=${(widget.more ?? []).join(", ")}
+      set=${(text) => change({ more: text.split(",").map((each) => each.trim()).filter(Boolean) })} />`}
+    ${settings.includes("unit") && html`<${TextSetting} label="Unit" text=${widget.unit} set=${(unit) => change({ unit: unit.slice(0, 20) })} />`}
+    ${Object.keys(NUMBERS).filter((name) => settings.includes(name)).map((name) => html`<${NumberSetting} key=${name} name=${name} value=${widget[name]} change=${change} />`)}
+    <datalist id="topics">${offered().map((topic) => html`<option key=${topic} value=${topic}></option>`)}</datalist>
+  </div>`;
+}
+
+function TextSetting({ label, text, set, list = undefined }) {
+  return html`<label>${label} <input type="text" value=${text ?? ""} list=${list} spellcheck="false" onKeyDown=${commit} onChange=${(event) => set(event.target.value.trim())} /></label>`;
+}
+
+function NumberSetting({ name, value, change }) {
+  const set = (event) => {
+    try {
+      const number = event.target.value.trim() ? typedNumber(event.target.value) : undefined;
+      change({ [name]: name === "decimals" && number !== undefined ? Math.min(Math.max(Math.round(number), 0), 8) : number });
+    } catch (error) {
+      model.set("problem", `${NUMBERS[name]}: ${error.message}.`);
+    }
+  };
+  return html`<label>${NUMBERS[name]} <input type="text" class="number" inputmode="decimal" value=${value ?? ""} onKeyDown=${commit} onChange=${set} /></label>`;
+}
+
+function commit(event) {
+  if (event.key === "Enter") event.target.blur();
+}
+
+function offered() {
+  return [...model.values.keys()].filter((path) => path.startsWith("nt:") && !path.includes("/.")).slice(0, MOST_OFFERED).map(topicOf);
+}

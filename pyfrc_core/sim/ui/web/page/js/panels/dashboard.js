@@ -1,0 +1,214 @@
+// A dashboard that the team has made: widgets on a grid, arranged here, and full screen for the drivers.
+import { dashboards } from "#js/dashboard/dashboards.js";
+import { WidgetFrame } from "#js/dashboard/frame.js";
+import { firstFree, nearestFree } from "#js/dashboard/grid.js";
+import { KINDS, drawnStructs, firstSettings, kindsFor } from "#js/dashboard/kinds.js";
+import { topicOf } from "#js/dashboard/topics.js";
+import { askText, askWhether } from "#js/dialog.js";
+import { Dropdown } from "#js/dropdown.js";
+import { Menu } from "#js/menu.js";
+import { model } from "#js/model.js";
+import { sendables } from "#js/panels/widgets.js";
+import { PlotPicker } from "#js/plot_picker.js";
+import { carriedTopic, hasTopic } from "#js/plotting.js";
+import { Icon, Live, classes, createRef, html } from "#js/view.js";
+
+const QUIET_INTERVAL = 50; // milliseconds between two renderings, while nothing is arranged
+const MOST_CELLS = 48; // columns or rows, as in config/dashboards.py
+
+export class DashboardPanel extends Live {
+  parts = ["dashboards", "settings", "hello", "paths", "types", "shown"];
+  state = { full: false };
+  element = createRef();
+  grid = createRef();
+
+  componentDidMount() {
+    super.componentDidMount();
+    this.unfollow = dashboards.follow();
+    document.addEventListener("fullscreenchange", this.left);
+    document.addEventListener("keydown", this.escape, true);
+  }
+
+  componentWillUnmount() {
+    super.componentWillUnmount();
+    this.unfollow();
+    document.removeEventListener("fullscreenchange", this.left);
+    document.removeEventListener("keydown", this.escape, true);
+  }
+
+  get arranging() {
+    return Boolean(dashboards.draft) && !this.state.full;
+  }
+
+  render(_, { full }) {
+    const { shown, problem } = dashboards;
+    this.interval = dashboards.draft ? 0 : QUIET_INTERVAL;
+    return html`<div class=${classes({ dashboard: true, full })} ref=${this.element}>
+      ${full ? html`<button class="leave-full quiet" title="Leave the full screen: Escape" aria-label="Leave the full screen" onClick=${this.leaveFull}><${Icon} name="close" /></button>` : this.tools(shown)}
+      ${problem && html`<p class="dashboard-problem" role="alert"><${Icon} name="warning" /><span>${problem}</span></p>`}
+      ${shown ? this.board(shown) : !problem && this.nothing()}
+    </div>`;
+  }
+
+  tools(shown) {
+    const { arranging } = this;
+    const { readonly } = model;
+    return html`<div class="panel-tools">
+      ${arranging ? html`<b class="dashboard-name">${dashboards.name}</b>` : html`<${Menu} label=${dashboards.name || "Dashboards"} title="Dashboards of this project" items=${this.items()} />`}
+      <div class="spacer"></div>
+      ${arranging
+        ? html`<${PlotPicker} label="Add widget" more=${this.offered()} add=${this.add} />
+          <${Dropdown} label="Grid" title="Columns and rows of the grid" content=${() => this.gridSettings(shown)} />
+          <button class="quiet" onClick=${this.discard}>${dashboards.isChanged ? "Discard" : "Cancel"}</button>
+          <button class="primary" title="Write it into sim/dashboards.json" disabled=${Boolean(dashboards.problem)} onClick=${() => dashboards.save()}>Save</button>`
+        : html`${shown && !readonly && html`<button class="quiet" title="Add, move and remove widgets" onClick=${() => dashboards.arrange()}>Arrange</button>`}
+          ${shown && html`<button class="quiet" title="Full screen, for the drivers" onClick=${this.enterFull}><${Icon} name="fit" /><span>Full screen</span></button>`}`}
+    </div>`;
+  }
+
+  items() {
+    const { name, names, problem } = dashboards;
+    const disabled = model.readonly || Boolean(problem);
+    /** @type {any[]} */
+    const items = names.map((each) => ({ text: each, checked: each === name, act: () => dashboards.choose(each) }));
+    if (items.length) items.push({ separator: true });
+    items.push({ text: "New dashboard…", act: create, disabled });
+    if (!name) return items;
+    const copy = async () => {
+      const given = await newName(`A copy of “${name}” is called`, `${name} 2`);
+      if (!given) return;
+      const { columns, rows, widgets } = dashboards.shown;
+      dashboards.arrange(given);
+      dashboards.change({ columns, rows, widgets });
+    };
+    const rename = async () => {
+      const given = await newName(`The new name of “${name}”`, name);
+      if (!given) return;
+      dashboards.arrange();
+      dashboards.change({ name: given });
+      await dashboards.save();
+    };
+    const remove = async () => (await askWhether(`Remove the dashboard “${name}” from sim/dashboards.json?`, "Remove")) && dashboards.remove(name);
+    return [...items, { text: "Copy…", act: copy, disabled }, { text: "Rename…", act: rename, disabled }, { text: "Remove…", act: remove, disabled }];
+  }
+
+  nothing() {
+    if (model.readonly) return html`<p class="empty">This project has no dashboards. Who can drive the robot can make one.</p>`;
+    return html`<div class="empty"><p>A dashboard has widgets, arranged as your team wants them. It is kept in <code>sim/dashboards.json</code>, beside the code.</p>
+      <p><button class="primary" onClick=${create}>New dashboard…</button></p></div>`;
+  }
+
+  board(shown) {
+    const { arranging } = this;
+    const board = { arranging, cell: this.cell, change: this.change, remove: this.remove };
+    const style = { "--columns": shown.columns, "--rows": shown.rows };
+    return html`<div class=${classes({ grid: true, arranging })} ref=${this.grid} style=${style} onDragOver=${this.over} onDrop=${this.drop}>
+      ${shown.widgets.map((widget, index) => html`<${WidgetFrame} key=${index} widget=${widget} index=${index} board=${board} />`)}
+      ${!shown.widgets.length && html`<p class="empty grid-empty">${arranging ? "Drag a value here from NetworkTables, or choose “Add widget”." : "This dashboard has no widgets. Choose “Arrange”."}</p>`}
+    </div>`;
+  }
+
+  gridSettings({ columns, rows }) {
+    const box = (name, value) => html`<label>${name === "columns" ? "Columns" : "Rows"}
+      <input type="number" min="1" max=${MOST_CELLS} value=${value} onKeyDown=${(event) => event.stopPropagation()}
+        onChange=${(event) => dashboards.change({ [name]: Math.min(Math.max(Math.round(Number(event.target.value)) || 1, 1), MOST_CELLS) })} /></label>`;
+    return html`<div class="form">${box("columns", columns)}${box("rows", rows)}</div>`;
+  }
+
+  // -- widgets
+
+  // What "Add widget" offers besides values: tables of the robot, and what needs no topic.
+  offered() {
+    const tables = [...sendables(model.values), ...drawnStructs()].filter(({ path }) => KINDS[kindsFor(path)[0]]);
+    const alone = Object.entries(KINDS).filter(([, kind]) => kind.alone);
+    return [
+      ...tables.map(({ path, name, type }) => ({ key: path, name, note: type, add: () => this.add(path) })),
+      ...alone.map(([kind, { title }]) => ({ key: `kind ${kind}`, name: title, note: "", add: () => this.addKind(kind, "") })),
+    ];
+  }
+
+  add = (path, cell = null) => {
+    const kind = kindsFor(path)[0];
+    this.addKind(kind, topicOf(path), firstSettings(kind, path), cell);
+  };
+
+  addKind(kind, topic, settings = {}, cell = null) {
+    const { draft } = dashboards;
+    const [w, h] = KINDS[kind].size;
+    const place = cell ? nearestFree(draft, { w, h }, cell) : firstFree(draft, { w, h });
+    if (!place) return model.set("problem", "The grid is full. Remove a widget or make one smaller, or choose more columns and rows under “Grid”.");
+    dashboards.change({ widgets: [...draft.widgets, { kind, topic, ...place, ...settings }] });
+  }
+
+  change = (index, changes) => {
+    const widgets = dashboards.draft.widgets.map((widget, other) => (other === index ? { ...widget, ...changes } : widget));
+    dashboards.change({ widgets });
+  };
+
+  remove = (index) => dashboards.change({ widgets: dashboards.draft.widgets.filter((_, other) => other !== index) });
+
+  discard = async () => {
+    if (!dashboards.isChanged || (await askWhether("Discard what you have changed?", "Discard"))) dashboards.discard();
+  };
+
+  cell = () => {
+    const { columns, rows } = dashboards.shown;
+    const box = this.grid.current.getBoundingClientRect();
+    return [box.width / columns, this.grid.current.scrollHeight / rows];
+  };
+
+  over = (event) => {
+    if (!hasTopic(event) || model.readonly) return;
+    event.preventDefault();
+    event.dataTransfer.dropEffect = "copy";
+  };
+
+  // A value on a graph becomes one of its curves, elsewhere a widget.
+  drop = (event) => {
+    const path = carriedTopic(event);
+    if (!path || model.readonly) return;
+    event.preventDefault();
+    if (!dashboards.draft) dashboards.arrange();
+    const over = event.target.closest?.(".widget-graph");
+    const index = over ? [...this.grid.current.querySelectorAll(".widget")].indexOf(over) : -1;
+    const graph = dashboards.draft.widgets[index];
+    if (graph) return this.change(index, graph.topic ? { more: [...new Set([...(graph.more ?? []), topicOf(path)])] } : { topic: topicOf(path) });
+    const box = this.grid.current.getBoundingClientRect();
+    const [width, height] = this.cell();
+    this.add(path, { x: Math.floor((event.clientX - box.left) / width), y: Math.floor((event.clientY - box.top + this.grid.current.scrollTop) / height) });
+  };
+
+  // -- full screen
+
+  enterFull = () => {
+    this.setState({ full: true });
+    this.element.current.requestFullscreen?.().catch(() => {}); // where the browser has none, it fills the page
+  };
+
+  leaveFull = () => {
+    this.setState({ full: false });
+    if (document.fullscreenElement) document.exitFullscreen();
+  };
+
+  left = () => {
+    if (!document.fullscreenElement && this.state.full) this.setState({ full: false });
+  };
+
+  escape = (event) => {
+    if (event.key === "Escape" && this.state.full) this.leaveFull();
+  };
+}
+
+async function newName(question, text) {
+  const name = (await askText(question, text))?.slice(0, 60);
+  if (name && dashboards.names.includes(name)) {
+    model.set("problem", `There is a dashboard “${name}” already.`);
+    return null;
+  }
+  return name;
+}
+
+async function create() {
+  const name = await newName("The name of the new dashboard", dashboards.names.includes("Drive") ? "" : "Drive");
+  if (name) dashboards.arrange(name);
+}

@@ -1,0 +1,80 @@
+"""``sim/dashboards.json``: read with a line for each mistake, and written so that Git can compare and merge it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pyfrc_core.config.dashboards import DASHBOARDS, load_dashboards, save_dashboard
+from pyfrc_core.errors import SettingsError
+
+WIDGET = {"kind": "number", "topic": "/SmartDashboard/kP", "x": 0, "y": 0, "w": 2, "h": 1}
+GAUGE = {"kind": "gauge", "topic": "/SmartDashboard/speed", "x": 2, "y": 0, "w": 2, "h": 2, "min": -12.0, "max": 12.0}
+
+
+@pytest.fixture(name="root")
+def project_root(tmp_path: Path) -> Path:
+    save_dashboard(tmp_path, "Drive", {"columns": 12, "rows": 8, "widgets": [WIDGET, GAUGE]})
+    save_dashboard(tmp_path, "Pit", {"widgets": []})
+    return tmp_path
+
+
+def test_a_line_for_each_widget(root: Path) -> None:
+    text = (root / DASHBOARDS).read_text("utf-8")
+    assert json.dumps(WIDGET) + ",\n" in text
+    assert json.dumps(GAUGE) + "\n" in text
+    assert json.loads(text)["dashboards"]["Drive"] == {"columns": 12, "rows": 8, "widgets": [WIDGET, GAUGE]}
+
+
+def test_a_dashboard_is_renamed_and_removed_in_its_place(root: Path) -> None:
+    save_dashboard(root, "Drivers", {"widgets": [GAUGE]}, former_name="Drive")
+    assert list(load_dashboards(root)) == ["Drivers", "Pit"]
+    assert [widget.max for widget in load_dashboards(root)["Drivers"].widgets] == [12.0]
+    save_dashboard(root, "Drivers", None)
+    assert list(load_dashboards(root)) == ["Pit"]
+
+
+def test_no_file_no_dashboards(tmp_path: Path) -> None:
+    assert load_dashboards(tmp_path) == {}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"kind": "guage"}, ".kind = 'guage': input should be 'number'"),
+        ({"x": -1}, ".x = -1: input should be greater than or equal to 0"),
+        ({"w": "2"}, ".w = '2': input should be a valid integer"),
+        ({"colour": "red"}, "unknown key 'dashboards.Drive.widgets[1].colour'"),
+        ({"h": None}, ".h = None"),
+    ],
+)
+def test_a_wrong_dashboard_changes_nothing(root: Path, wrong: dict[str, Any], message: str) -> None:
+    before = (root / DASHBOARDS).read_text("utf-8")
+    with pytest.raises(SettingsError) as error:
+        save_dashboard(root, "Drive", {"widgets": [WIDGET, {**WIDGET, **wrong}]})
+    assert message in str(error.value)
+    assert (root / DASHBOARDS).read_text("utf-8") == before
+
+
+@pytest.mark.parametrize(
+    ("now", "then", "message"),
+    [
+        ('"gauge"', '"guage"', 'sim/dashboards.json:8: dashboards.Drive.widgets[1].kind = "guage": input should be'),
+        ('"topic"', '"topik"', "sim/dashboards.json:7: unknown key 'dashboards.Drive.widgets[0].topik'"),
+        (', "w": 2', "", "sim/dashboards.json:7: dashboards.Drive.widgets[0]: the key 'w' is missing"),
+        ('"Pit"', '"Drive"', "sim/dashboards.json:11: dashboards.Drive stands here again, after line 3"),
+        ("{\n", "<<<<<<< HEAD\n{\n", "sim/dashboards.json:1: not valid JSON: expected a value"),
+    ],
+)
+def test_a_mistake_in_the_file_has_its_line(root: Path, now: str, then: str, message: str) -> None:
+    text = (root / DASHBOARDS).read_text("utf-8").replace(now, then, 1)
+    (root / DASHBOARDS).write_text(text, "utf-8")
+    with pytest.raises(SettingsError) as error:
+        load_dashboards(root)
+    assert str(error.value).startswith(message)
+    with pytest.raises(SettingsError):  # nor is it overwritten
+        save_dashboard(root, "Other", {"widgets": []})
+    assert (root / DASHBOARDS).read_text("utf-8") == text
