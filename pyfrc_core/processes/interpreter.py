@@ -23,6 +23,7 @@ from itertools import count
 from pathlib import Path
 from typing import IO, NoReturn, Protocol
 
+from ..collector import collector_paused
 from ..text_files import write_whole
 from . import spawn
 from .crash_report import CrashLog
@@ -171,6 +172,7 @@ class SpawnedWorker(Worker):
         self.goes_on = False
         self._files, self._owns = files, owns
         self._printed_before = list(map(len, interpreter.printed()))
+        self._printed: str | None = None
 
     def poll(self) -> None:
         if self.finished:
@@ -212,12 +214,15 @@ class SpawnedWorker(Worker):
 
     def printed(self) -> str:
         """Return what was printed to the files of the interpreter during this work."""
+        if self._printed is not None:
+            return self._printed
         texts = zip(self.interpreter.printed(), self._printed_before, strict=True)
         return "".join(text[before:].decode(errors="replace") for text, before in texts)
 
     def _end(self, status: int) -> None:
         self.status = status
         self._received = _contents(self._files.messages)
+        self._printed = self.printed()  # the interpreter may do other work before this is asked for
         self.finished = True
 
     def _crash_report(self) -> bytes:
@@ -265,7 +270,8 @@ def _serve(prepare: Prepare | None, directory: Path) -> NoReturn:
             kept.close()  # until now, a fault would have been written into the log before
             kept.callback(crash_log.close)
             if prepare is not None and state is None:
-                state = do_work(prepare, log)
+                with collector_paused():
+                    state = do_work(prepare, log)
                 if state is None:
                     exit_now(1)
             work: Work = read_frame(requests)

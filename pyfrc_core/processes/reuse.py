@@ -38,7 +38,8 @@ class Interpreters:
         #: Those that were started ahead, and those that have done their work, which may have left something.
         self._unused: list[Interpreter] = []
         self._used: list[Interpreter] = []
-        self._working: list[Interpreter] = []
+        self._working: dict[SpawnedWorker, Interpreter] = {}
+        self._rehearsal: SpawnedWorker | None = None
         #: Files of their work that could not be removed: `close` does it.
         self.left: list[Path] = []
         self._start_ahead(ahead)
@@ -48,21 +49,20 @@ class Interpreters:
 
         :param more: how many are known to follow
         """
-        interpreter = self._take()
-        self._working.append(interpreter)
-        worker = interpreter.begin(work)
+        worker = self._begin(work)
         if self._reason or self._prepare is None:
             self._start_ahead(min(more, usable_processors()))
         return worker
 
+    def rehearse(self, work: Work) -> None:
+        """Do work before all other, whose result is not needed: the libraries that it imports stay."""
+        self._rehearsal = self._begin(work)
+
     def end(self, worker: SpawnedWorker) -> None:
         """Take back the interpreter of a worker, whose result is not needed any more."""
         worker.close()
-        interpreter = worker.interpreter
-        self._working.remove(interpreter)
-        if worker.goes_on:
-            self._used.append(interpreter)
-        else:
+        self._take_back()
+        if (interpreter := self._working.pop(worker, None)) is not None:
             interpreter.close()
 
     def why_not_again(self) -> str:
@@ -74,15 +74,32 @@ class Interpreters:
 
     def close(self) -> None:
         """End all interpreters."""
-        for interpreter in (*self._unused, *self._used, *self._working):
+        for interpreter in (*self._unused, *self._used, *self._working.values()):
             interpreter.close()
-        self._unused, self._used, self._working = [], [], []
+        self._unused, self._used, self._working = [], [], {}
         for file in self.left:
             with suppress(OSError):
                 file.unlink()
 
+    def _begin(self, work: Work) -> SpawnedWorker:
+        interpreter = self._take()
+        worker = interpreter.begin(work)
+        self._working[worker] = interpreter
+        return worker
+
+    def _take_back(self) -> None:
+        """Take back interpreters that have done their work, although its result may not have been needed yet."""
+        for worker in [worker for worker in self._working if worker.goes_on]:
+            self._used.append(self._working.pop(worker))
+
     def _take(self) -> Interpreter:
         """Return an interpreter that is as good as new, started now if there is none."""
+        if self._rehearsal is not None:
+            self._rehearsal.interpreter.left_over()  # waits until it is over
+            self._rehearsal.poll()
+            self.end(self._rehearsal)
+            self._rehearsal = None
+        self._take_back()
         self._used.sort(key=lambda each: not each.is_restored)
         while self._used and (self._used[0].is_restored or not self._unused):
             interpreter = self._used.pop(0)

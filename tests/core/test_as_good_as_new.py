@@ -200,3 +200,29 @@ def test_what_is_printed_belongs_to_its_work(tmp_path: Path) -> None:
             worker = finished(interpreters.begin(partial(do, f"print('{text}')", tmp_path)))
             assert worker.printed() == f"{text}\n"
             interpreters.end(worker)
+
+
+def test_one_that_is_done_is_used_again_before_its_result_is_needed(tmp_path: Path) -> None:
+    with closing(Interpreters(partial(prepare, tmp_path), keeps_output=True)) as interpreters:
+        code = "import os; print('{}'); found = os.getpid()"
+        workers = []
+        for text in ("first", "second", "third"):
+            workers.append(finished(interpreters.begin(partial(do, code.format(text), tmp_path))))
+        assert len({next(iter(worker.messages())) for worker in workers}) == 1
+        for worker, text in zip(workers, ("first", "second", "third"), strict=True):
+            assert worker.printed() == f"{text}\n"
+            interpreters.end(worker)
+        assert result_of(interpreters, "import os; found = os.getpid()", tmp_path) == next(iter(workers[0].messages()))
+
+
+def test_libraries_of_a_rehearsal_stay_and_nothing_else(interpreters: Interpreters, tmp_path: Path) -> None:
+    interpreters.rehearse(partial(do, "import os, wave; os.environ['PLANTED'] = ''", tmp_path))
+    look = "import os, sys; found = 'wave' in sys.modules, 'PLANTED' in os.environ"
+    assert result_of(interpreters, look, tmp_path) == (True, False)
+    assert interpreters.why_not_again() == ""
+
+
+@pytest.mark.parametrize("code", ["import os; os._exit(5)", "raise SystemExit", "raise ValueError"])
+def test_a_rehearsal_that_fails_changes_nothing(code: str, interpreters: Interpreters, tmp_path: Path) -> None:
+    interpreters.rehearse(partial(do, code, tmp_path))
+    assert result_of(interpreters, "found = 1", tmp_path) == 1

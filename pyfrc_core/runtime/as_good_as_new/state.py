@@ -48,9 +48,7 @@ class ProcessState:
             ProjectObjects(modules),
             Devices(),
         ]
-        # A collection then looks only at what a run has made.
-        gc.collect()
-        gc.freeze()
+        gc.freeze()  # a collection then looks only at what a run has made
 
     def restore(self) -> Sequence[str]:
         """Put the process back into this state; return what is left that could not be put back."""

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...collector import collector_paused
+from ...errors import PyfrcError
 from ...processes.fork import FORK_IS_SAFE
 from ...processes.reuse import Interpreters
 from ...processors import usable_processors
 from ..options import TestOptions
 
 if TYPE_CHECKING:
+    from ...processes.crash_report import CrashLog
     from ...processes.interpreter import InitialState
+    from ...processes.worker import Send
     from ...project import Project
 
 
@@ -33,7 +38,9 @@ def start_interpreters(project: Project, options: TestOptions) -> Interpreters:
     if options.isolation == "spawn":
         jobs = usable_processors() if options.jobs == "auto" else min(options.jobs, usable_processors())
         return Interpreters(None, jobs, keeps_output=True)
-    return Interpreters(partial(_prepare, project.main_file), 1, keeps_output=True)
+    interpreters = Interpreters(partial(_prepare, project.main_file), 1, keeps_output=True)
+    interpreters.rehearse(partial(_import_robot, replace(project)))
+    return interpreters
 
 
 # -- on the other side -----------------------------------------------------------------------------------------------
@@ -44,8 +51,23 @@ def _prepare(main_file: Path) -> InitialState:
     from ...project import Project
     from ...runtime.as_good_as_new.state import ProcessState
     from ...runtime.patches.install import patches
+    from .. import pytest_plugin  # noqa: F401
     from . import messages, spawned  # noqa: F401
 
     project = Project(main_file)
     patches.install(project.files)
     return ProcessState(project.files)
+
+
+def _import_robot(project: Project, send: Send, log: CrashLog) -> None:
+    """Import the robot's code as each test does, for the libraries that it imports: the main process does it meanwhile.
+
+    An error is reported there, and by each test.
+    """
+    from ...physics.engine import load_physics
+    from ...runtime.loading import load_robot
+
+    with suppress(PyfrcError), collector_paused():
+        load_robot(project)
+        if project.physics_file.is_file():
+            load_physics(project)

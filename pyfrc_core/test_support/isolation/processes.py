@@ -84,7 +84,7 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin, interpreters: Interpret
 
     :param more: how many tests are known to follow
     """
-    from .spawned import OUTPUT, TestJob, run_in_interpreter
+    from .spawned import AUTOLOADED, OUTPUT, TestJob, run_in_interpreter
 
     job = TestJob(
         [str(argument) for argument in item.config.invocation_params.args],
@@ -94,6 +94,7 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin, interpreters: Interpret
         plugin.options,
         agreed(),
         plugin.published,
+        all(each.__name__ == AUTOLOADED for each, _ in item.config.pluginmanager.list_plugin_distinfo()),
     )
     worker = interpreters.begin(partial(run_in_interpreter, job), more)
 

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 #: The kind of the message with the files of standard output and standard error that pytest captures into.
 OUTPUT = "output"
 
+#: The plugin that pytest finds if pyfrc is installed. It does nothing where pyfrc runs the tests.
+AUTOLOADED = "pyfrc_core.test_support.autoload"
+
 
 @dataclass(frozen=True)
 class TestJob:
@@ -35,6 +38,7 @@ class TestJob:
     :param turns: see `turns.agreed`
     :param project: without what the other process has read of it
     :param published: see `PyFrcPlugin`
+    :param no_plugins: whether no plugin is installed but pyfrc's own
     """
 
     __test__ = False  # pytest: not a test class, for all its name
@@ -46,6 +50,7 @@ class TestJob:
     options: TestOptions
     turns: str | None
     published: tuple[Opmode, ...] | RobotCodeError | None
+    no_plugins: bool = False
 
 
 class OnlyOneTest:
@@ -90,6 +95,8 @@ def _capture_into_files(config: pytest.Config) -> list[Path]:
 def run_in_interpreter(job: TestJob, send: Send, log: CrashLog) -> int:
     """Run the test, and return pytest's exit code."""
     os.chdir(job.directory)
+    if job.no_plugins:  # to look for some takes as long as many tests
+        os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     from ..pytest_plugin import PyFrcPlugin
 
     project = job.project
