@@ -94,7 +94,9 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin, interpreters: Interpret
         plugin.options,
         agreed(),
         plugin.published,
-        all(each.__name__ == AUTOLOADED for each, _ in item.config.pluginmanager.list_plugin_distinfo()),
+        all(
+            getattr(each, "__name__", "") == AUTOLOADED for each, _ in item.config.pluginmanager.list_plugin_distinfo()
+        ),
     )
     worker = interpreters.begin(partial(run_in_interpreter, job), more)
 
