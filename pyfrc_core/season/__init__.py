@@ -14,12 +14,13 @@ from .choice import (
     year_of,
 )
 from .earlier_fields import EARLIER_FIELDS
-from .record import Season, SeasonField
+from .record import FieldPart, Season, SeasonField
 
 __all__ = [
     "CURRENT",
     "FIELDS",
     "SEASONS",
+    "FieldPart",
     "Season",
     "SeasonField",
     "SeasonSetting",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Literal
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,25 @@ class MatchLengths:
     teleop: float
 
 
+#: What a part of the field is to a robot: it stops it, is driven over, is driven under, is flat; or it is only a line.
+PartKind = Literal["solid", "ramp", "arch", "floor", "line"]
+
+
+@dataclass(frozen=True)
+class FieldPart:
+    """A part of a season's field, seen from above.
+
+    :param name:     what the game manual calls it; empty for a part of another one
+    :param alliance: ``blue`` or ``red``; empty: neither
+    :param points:   its corners in feet, with x to the right and y downwards
+    """
+
+    name: str
+    kind: PartKind
+    alliance: str
+    points: tuple[tuple[float, float], ...]
+
+
 @dataclass(frozen=True)
 class SeasonField:
     """A season's field, drawn with x to the right and y downwards, and its rules for robots.
@@ -29,6 +49,7 @@ class SeasonField:
     :param px_per_ft:      scale of the drawing, in pixels per foot
     :param messages:       the game data that the field may send before autonomous
     :param auto_joysticks: whether the robot gets joystick data in autonomous
+    :param parts:          its structures and lines, as far as they are known
     """
 
     w: float
@@ -36,6 +57,7 @@ class SeasonField:
     px_per_ft: float = 15.0
     messages: tuple[str, ...] = ()
     auto_joysticks: bool = False
+    parts: tuple[FieldPart, ...] = ()
 
 
 @dataclass(frozen=True)

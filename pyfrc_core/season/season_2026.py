@@ -14,12 +14,14 @@ from .record import (
     Season,
     SeasonField,
 )
+from .structures_2026 import structures
 
 SEASON_2026 = Season(
     year=2026,
     kickoff=datetime(2026, 1, 10, 17, tzinfo=timezone.utc),  # noon, Eastern time
     match=MatchLengths(autonomous=15.0, pause=3.0, teleop=135.0),
-    field=SeasonField(54.25, 26 + 5 / 12),  # the game manual: 54 ft 3 in by 26 ft 5 in
+    # The game manual: 54 ft 3 in by 26 ft 5 in.
+    field=SeasonField(54.25, 26 + 5 / 12, parts=structures(12 * 54 + 3, 12 * 26 + 5)),
     controller=ControllerSoftware(
         name="roboRIO",
         images=("2026_v1.2",),

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 from ...config.pictures import field_picture
 from ...errors import UsageError, nearest
 from ...physics.pose import METRES_PER_FOOT
-from ...season import CURRENT
+from ...season import CURRENT, FIELDS
 from .commands import ROBOT_ON_FIELD
 from .scene import Field, Pose, Shape
 
 if TYPE_CHECKING:
-    from ...config.sim import FieldObject
+    from ...config.sim import FieldConfig, FieldObject
     from ...project import Project
+    from ...season import FieldPart
 
 
 def field_of(project: Project) -> Field:
@@ -37,7 +38,16 @@ def field_of(project: Project) -> Field:
         image=None if config.field.image is None else field_picture(project.root, config.field.image)[0],
         objects=tuple(_shape(each) for each in config.field.objects),
         coordinates=config.field.coordinates,
+        parts=_season_parts(config.field),
     )
+
+
+def _season_parts(config: FieldConfig) -> tuple[FieldPart, ...]:
+    """Return the structures of the season's field; none of another field, or under a picture, which shows them."""
+    season = FIELDS.get(config.season) if config.season else CURRENT.field
+    if season is None or config.image is not None or (config.w, config.h) != (season.w, season.h):
+        return ()
+    return season.parts
 
 
 def _shape(given: FieldObject) -> Shape:

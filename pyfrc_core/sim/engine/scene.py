@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...physics.pose import Pose as Pose
+from ...season import FieldPart
 
 Point = tuple[float, float]
 
@@ -50,6 +51,7 @@ class Field:
     :param robot_width: feet from the robot's left to its right
     :param robot_length: feet from its back to its front
     :param starts: the places where the robot may start, by name; the first is the default
+    :param parts: the season's structures and lines, where no picture shows them
     :param coordinates: how the page writes places, as ``sim/config.json`` says
     """
 
@@ -63,6 +65,7 @@ class Field:
     objects: tuple[Shape, ...] = ()
     tags: tuple[Tag, ...] = ()
     coordinates: str = "pyfrc"
+    parts: tuple[FieldPart, ...] = ()
 
 
 @dataclass(frozen=True)

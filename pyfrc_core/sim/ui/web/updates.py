@@ -274,6 +274,7 @@ def plain_field(field: Field, image: str) -> dict[str, Any]:
         "robot_length": field.robot_length,
         "starts": {name: [pose.x, pose.y, pose.angle] for name, pose in field.starts.items()},
         "objects": [{"color": shape.color, "points": shape.points} for shape in field.objects],
+        "parts": [asdict(part) for part in field.parts],
         "tags": [{"number": tag.number, "x": tag.x, "y": tag.y, "angle": tag.angle} for tag in field.tags],
     }
 

@@ -5,7 +5,7 @@ import { color } from "#js/settings.js";
 const GRID = { ft: 5, m: 1 }; // between two lines
 const FASTEST = 4.5; // metres per second: the longest arrow of a swerve module
 
-function path(context, view, points, close = false) {
+export function tracePath(context, view, points, close = false) {
   context.beginPath();
   points.forEach((point, index) => {
     const [x, y] = view.toScreen(point);
@@ -25,7 +25,7 @@ export function beside([x, y, angle], forwards, right) {
 export function drawCarpet(context, view, field, image, { feet, unit }, origin) {
   const corners = [[0, 0], [field.width, 0], [field.width, field.height], [0, field.height]];
   context.fillStyle = color("carpet");
-  path(context, view, corners, true);
+  tracePath(context, view, corners, true);
   context.fill();
   if (image) {
     const [left, top] = view.toScreen([0, 0]);
@@ -33,7 +33,7 @@ export function drawCarpet(context, view, field, image, { feet, unit }, origin) 
     context.drawImage(image, left, top, field.width * size, field.height * size);
   } else drawGrid(context, view, field, GRID[unit] * feet, origin);
   for (const shape of field.objects) {
-    path(context, view, shape.points, true);
+    tracePath(context, view, shape.points, true);
     context.fillStyle = shape.color;
     context.globalAlpha = 0.85;
     context.fill();
@@ -41,7 +41,7 @@ export function drawCarpet(context, view, field, image, { feet, unit }, origin) 
   }
   context.strokeStyle = color("edge");
   context.lineWidth = 1.5;
-  path(context, view, corners, true);
+  tracePath(context, view, corners, true);
   context.stroke();
   drawWalls(context, view, field);
 }
@@ -67,7 +67,7 @@ function drawWalls(context, view, field) {
   context.lineWidth = 4;
   for (const [x, name] of [[0, "blue"], [field.width, "alliance-red"]]) {
     context.strokeStyle = color(name);
-    path(context, view, [[x, 0], [x, field.height]]);
+    tracePath(context, view, [[x, 0], [x, field.height]]);
     context.stroke();
   }
 }
@@ -109,7 +109,7 @@ export function drawTags(context, view, tags) {
   for (const tag of tags) {
     /** @type {[number, number, number]} */
     const pose = [tag.x, tag.y, tag.angle];
-    path(context, view, [beside(pose, 0, -0.35), beside(pose, 0, 0.35)]);
+    tracePath(context, view, [beside(pose, 0, -0.35), beside(pose, 0, 0.35)]);
     context.stroke();
     if (view.scale > 9) context.fillText(String(tag.number), ...view.toScreen(beside(pose, 0.9, 0)));
   }
@@ -123,7 +123,7 @@ export function drawTrail(context, view, points, name, width, dash = []) {
   context.lineJoin = "round";
   context.lineCap = "round";
   context.setLineDash(dash);
-  path(context, view, points);
+  tracePath(context, view, points);
   context.stroke();
   context.restore();
 }
@@ -136,7 +136,7 @@ export function drawRobot(context, view, field, pose, { body = "accent", alpha =
   context.save();
   context.globalAlpha = alpha;
   context.lineJoin = "round";
-  path(context, view, box(0), true);
+  tracePath(context, view, box(0), true);
   if (outline) {
     context.strokeStyle = color(body);
     context.lineWidth = 2;
@@ -146,10 +146,10 @@ export function drawRobot(context, view, field, pose, { body = "accent", alpha =
     context.fillStyle = color(body);
     context.fill();
     context.fillStyle = color("robot");
-    path(context, view, box(bumper), true);
+    tracePath(context, view, box(bumper), true);
     context.fill();
   }
-  path(context, view, [beside(pose, length - bumper * 1.7, 0), beside(pose, length * 0.15, width * 0.42), beside(pose, length * 0.15, -width * 0.42)], true);
+  tracePath(context, view, [beside(pose, length - bumper * 1.7, 0), beside(pose, length * 0.15, width * 0.42), beside(pose, length * 0.15, -width * 0.42)], true);
   context.fillStyle = color(outline ? body : "robot-front");
   context.fill();
   context.restore();
@@ -158,7 +158,7 @@ export function drawRobot(context, view, field, pose, { body = "accent", alpha =
 // A small arrowhead, for one of many poses.
 export function drawPlace(context, view, pose, name) {
   context.fillStyle = color(name);
-  path(context, view, [beside(pose, 0.7, 0), beside(pose, -0.35, 0.45), beside(pose, -0.35, -0.45)], true);
+  tracePath(context, view, [beside(pose, 0.7, 0), beside(pose, -0.35, 0.45), beside(pose, -0.35, -0.45)], true);
   context.fill();
 }
 

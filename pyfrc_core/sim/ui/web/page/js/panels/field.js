@@ -4,6 +4,7 @@ import { command } from "#js/connection.js";
 import { numberText } from "#js/format.js";
 import { COORDINATES, originOf, unitOf, written } from "#js/field/coordinates.js";
 import * as draw from "#js/field/draw.js";
+import { drawParts } from "#js/field/draw_parts.js";
 import { placeLabel } from "#js/field/labels.js";
 import { fieldNeeds, fieldObjects, swerveStates } from "#js/field/published.js";
 import { Viewport } from "#js/field/viewport.js";
@@ -20,6 +21,7 @@ const LAYERS = [
   ["objects", "Field2d objects"],
   ["swerve", "Swerve arrows"],
   ["tags", "AprilTags"],
+  ["structures", "Structures of the season's field"],
 ];
 const DEGREES = 180 / Math.PI;
 const MOST_ROBOTS = 3; // of more poses, each is a small arrowhead
@@ -129,6 +131,7 @@ export class FieldPanel extends Live {
     const { coordinates } = this;
     const origin = originOf(field, coordinates, this.robots.alliance);
     draw.drawCarpet(context, view, field, this.image, unitOf(coordinates), origin);
+    if (this.shows("structures")) drawParts(context, view, field);
     if (coordinates !== "pyfrc") draw.drawOrigin(context, view, field, origin);
     if (this.shows("tags")) draw.drawTags(context, view, field.tags);
     if (this.shows("former")) draw.drawTrail(context, view, model.formerTrail, "former", 2, [7, 5]);
