@@ -93,10 +93,9 @@ LIBRARY = """
 """
 
 NO_FORK = """
-    from pyfrc_core.test_support import run_tests
-    from pyfrc_core.test_support.isolation import loop
+    from pyfrc_core.processes import fork
 
-    run_tests.FORK_IS_SAFE = loop.FORK_IS_SAFE = False
+    fork.FORK_IS_SAFE = False
 """
 
 
@@ -172,3 +171,8 @@ def test_what_a_test_has_left_is_the_reason_for_a_new_interpreter(make_project: 
     (explained,), outcomes = run(project, "-p", "no_fork")
     assert "A new interpreter for each test, because a test has left an object of the class robot." in explained
     assert outcomes == {"test_forked": "PASSED", "test_another": "PASSED"}
+    doctor = project.run("doctor", "--no-robot")
+    assert "each test took a new interpreter, because one had left an object of the class robot" in doctor.stdout
+
+    project.run("test")
+    assert "new interpreter" not in project.run("doctor", "--no-robot").stdout

@@ -11,6 +11,7 @@ from ..compat.unrepeatable import real_time_libraries
 from ..config.packages import quoted_requirement
 from ..config.robotpy import load_robot_packages, unknown_components
 from ..errors import ProjectError, PyfrcError, SettingsError
+from ..passes.memory import left_over
 from ..processes.call import run_in_subprocess
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_libraries
@@ -49,6 +50,9 @@ def check_project(
     tests = project.find_tests()
     if tests is not None:
         yield ok("tests", str(tests))
+        if left := left_over(project):
+            text = f"in the last run, each test took a new interpreter, because one had left {left}"
+            yield hint("tests", text, "The tests only take longer. pyfrc test -v says the same.")
     else:
         yield hint("tests", "the project has none", "pyfrc add-tests; or run the ready-made ones: pyfrc test --builtin")
 

@@ -11,7 +11,7 @@ import platform
 import sys
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from datetime import datetime
 from functools import cache
 from hashlib import sha256
@@ -158,6 +158,7 @@ class _Kept:
     :param tests: for each test that has passed, the hash of its file
     :param green: a hash of all that the last run of all tests read, if all passed
     :param green_at: when that was, in ISO 8601
+    :param left_over: what a test of the last run has left, so that the next ones needed new interpreters
     """
 
     basis: str = ""
@@ -165,6 +166,7 @@ class _Kept:
     tests: dict[str, str] = field(default_factory=dict)
     green: str = ""
     green_at: str = ""
+    left_over: str = ""
     format: int = _FORMAT
 
 
@@ -187,7 +189,7 @@ class Passes:
         conditions = [seed, builtin, project.main_file.name, project.class_name]
         self._basis = _basis_of(self._begin, conditions, rules)
         self._version_elsewhere = cache(lambda file: version_of_file(Path(file)))
-        self._kept = _load(self._file)
+        self._kept = replace(_load(self._file), left_over="")
         # Files from elsewhere are known only after a run has imported them.
         if self._kept.basis != self._basis or any(
             self._version_elsewhere(file) != known for file, known in self._kept.elsewhere.items()
@@ -211,6 +213,10 @@ class Passes:
     def _hash_of(self, file: Path) -> str:
         path = Path(self._project.files.relative(str(file))).as_posix()
         return self._begin.sources.get(path) or self._version_elsewhere(str(file))
+
+    def set_left_over(self, reason: str) -> None:
+        """Keep what a test has left, for which the next one needed a new interpreter."""
+        self._kept.left_over = reason
 
     # -- the whole run ---------------------------------------------------------------------------------------------
 
@@ -237,11 +243,16 @@ class Passes:
         self._kept.elsewhere |= {file: self._version_elsewhere(file) for file in sorted(elsewhere)}
         changed = self._begin.differences(read_contents(self._project, self._written))
         if changed:
-            self._kept = _Kept()
+            self._kept = _Kept(left_over=self._kept.left_over)
         with suppress(OSError):  # the next run runs everything
             write_whole(self._file, [json.dumps(asdict(self._kept))])
             keep_out_of_version_control(self._file.parent)
         return changed
+
+
+def left_over(project: Project) -> str:
+    """Return what a test of the last run had left, for which the next ones needed new interpreters."""
+    return str(_load(project.root / _FILE).left_over)
 
 
 def _basis_of(contents: Contents, conditions: list[object], rules: set[str]) -> str:

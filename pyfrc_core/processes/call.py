@@ -12,10 +12,10 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from ..errors import PyfrcError, RobotCodeError, UsageError, text_of
+from ..errors import PyfrcError, RobotCodeError, text_of
 from .crash_report import CrashLog
 from .exit import flush_output
-from .fork import FORK_IS_SAFE, wait_for_any
+from .fork import wait_for_any
 from .interpreter import spawn_worker
 from .reuse import Interpreters
 from .standstill import StandstillNotice
@@ -33,16 +33,6 @@ class _FailedThere(Exception):
 
     def __str__(self) -> str:
         return f"\n{self.args[0]}"
-
-
-def can_fork(project: Project) -> bool:
-    """Return whether robot code may run in forks of this process: where that is safe, and the user allows it.
-
-    :raises UsageError: when the user asks for forks where they are not safe
-    """
-    if project.isolation == "fork" and not FORK_IS_SAFE:
-        raise UsageError("this system cannot fork a process safely", remedy="Leave out --isolation fork.")
-    return FORK_IS_SAFE and project.isolation not in ("reuse", "spawn")
 
 
 def run_in_subprocess(

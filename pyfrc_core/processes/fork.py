@@ -13,12 +13,25 @@ import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 
+from ..errors import UsageError
 from .crash_report import write_all
 from .exit import disown_child_processes, exit_now, flush_output
 from .owner import end_with, prepare_end_with
 
 #: macOS has fork, but its system libraries do not survive it; Windows has none.
 FORK_IS_SAFE = hasattr(os, "fork") and sys.platform not in ("win32", "darwin")
+
+
+def is_forked(isolation: str) -> bool:
+    """Return whether robot code runs in forks of this process.
+
+    :param isolation: where the user wants it to run, outside this process
+    :raises UsageError: when that is in forks, and they are not safe
+    """
+    if isolation == "fork" and not FORK_IS_SAFE:
+        raise UsageError("this system cannot fork a process safely", remedy="Leave out --isolation fork.")
+    return FORK_IS_SAFE and isolation not in ("reuse", "spawn")
+
 
 # Seconds between two looks at whether a process has ended while another one holds its pipe open. Decides nothing else.
 _LOOK_SECONDS = 0.05

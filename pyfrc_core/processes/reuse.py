@@ -34,7 +34,8 @@ class Interpreters:
         environment: Mapping[str, str] | None = None,
     ) -> None:
         self._prepare, self._keeps_output, self._environment = prepare, keeps_output, environment
-        self._reason = ""
+        #: What the first piece of work has left after which an interpreter was not used again, as far as it is known.
+        self.reason = ""
         #: Those that were started ahead, and those that have done their work, which may have left something.
         self._unused: list[Interpreter] = []
         self._used: list[Interpreter] = []
@@ -50,7 +51,7 @@ class Interpreters:
         :param more: how many are known to follow
         """
         worker = self._begin(work)
-        if self._reason or self._prepare is None:
+        if self.reason or self._prepare is None:
             self._start_ahead(min(more, usable_processors()))
         return worker
 
@@ -68,9 +69,9 @@ class Interpreters:
     def why_not_again(self) -> str:
         """Return what the first piece of work has left of which that is true; empty if each left nothing."""
         for interpreter in self._used:
-            if not self._reason:
+            if not self.reason:
                 self._note(interpreter.left_over())
-        return self._reason
+        return self.reason
 
     def close(self) -> None:
         """End all interpreters."""
@@ -111,7 +112,7 @@ class Interpreters:
         return self._unused.pop(0) if self._unused else self._start()
 
     def _note(self, left: Sequence[str] | None) -> None:
-        self._reason = self._reason or "; ".join(left or ())
+        self.reason = self.reason or "; ".join(left or ())
 
     def _start_ahead(self, number: int) -> None:
         while len(self._unused) < number:

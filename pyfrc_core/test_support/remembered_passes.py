@@ -48,6 +48,10 @@ class RememberedPasses:
         """Note that a test's process has libraries that simulate devices in real time: its pass may be chance."""
         self._why_not = f"{libraries[0]} simulates devices in real time, so this robot does not repeat exactly"
 
+    def record_left_over(self, reason: str) -> None:
+        """Note what a test has left, for which the next one needed a new interpreter."""
+        self._passes.set_left_over(reason)
+
     def pytest_configure(self, config: pytest.Config) -> None:
         if self._only_changed and getattr(config.option, "dist", "no") != "no":
             raise pytest.UsageError("--changed and pytest-xdist's -n are mutually exclusive: pyfrc has -j of its own.")

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from ..errors import PyfrcError, UsageError
-from ..processes.fork import FORK_IS_SAFE
+from ..processes.fork import is_forked
 from ..processes.prefork import PreforkedProcess
 from ..processes.reuse import Interpreters
 from ..project import Project
@@ -89,7 +89,7 @@ def run_tests(
         return int(pytest.main(args, plugins=plugins))
 
     preforked: PreforkedProcess | None = None
-    if FORK_IS_SAFE and options.isolation in ("auto", "fork"):
+    if options.isolation != "none" and is_forked(options.isolation):
         preforked = PreforkedProcess(session)
     # SIGTERM, from an IDE or a CI system, ends a run like Ctrl-C: with the processes it has started.
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)

@@ -15,8 +15,9 @@ from itertools import count, islice
 from multiprocessing.connection import Pipe
 from pathlib import Path
 
-from ...processes.call import ForkedCall, can_fork, run_in_subprocess
+from ...processes.call import ForkedCall, run_in_subprocess
 from ...processes.crash_report import CrashLog
+from ...processes.fork import is_forked
 from ...project import Project
 from ...runtime.clock import PACKET_US, to_us
 from ...runtime.scripts.script import InputScript
@@ -191,7 +192,7 @@ def open_other_commit(project: Project, jobs: int) -> Iterator[tuple[Play, bool]
     :param project: the project as it was
     :param jobs: how many matches to run at a time
     """
-    if not can_fork(project):
+    if not is_forked(project.isolation):
         yield lambda tasks: run_in_subprocess(partial(_play_all, tasks=tasks, jobs=jobs), project, _MEANWHILE), False
         return
     with closing(_ForkedCommit(project, jobs)) as other:

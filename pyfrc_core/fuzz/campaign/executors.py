@@ -17,8 +17,9 @@ from typing import Any
 
 from ...errors import PyfrcError, RobotCodeError
 from ...interruption import calling_when_ended
-from ...processes.call import Call, ForkedCall, begin_call, can_fork, run_in_subprocess, wait_for_calls
+from ...processes.call import Call, ForkedCall, begin_call, run_in_subprocess, wait_for_calls
 from ...processes.crash_report import CrashLog
+from ...processes.fork import is_forked
 from ...processes.reuse import Interpreters
 from ...project import Project
 from ...runtime.checks.hang_detector import not_watched
@@ -145,7 +146,7 @@ def open_match_executor(project: Project, jobs: int) -> Iterator[WorkExecutor]:
     :raises RobotCodeError: when the robot's code cannot be imported
     """
     with tempfile.TemporaryDirectory(prefix="pyfrc-fuzz-") as temporary, taking_turns():
-        kind = ForkedMatchExecutor if can_fork(project) else SpawnedMatchExecutor
+        kind = ForkedMatchExecutor if is_forked(project.isolation) else SpawnedMatchExecutor
         with closing(kind(project, jobs, Path(temporary))) as executor:
             yield executor
 

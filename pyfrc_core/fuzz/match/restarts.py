@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol, TypeVar
 
-from ...processes.call import ForkedCall, can_fork, run_in_subprocess
+from ...processes.call import ForkedCall, run_in_subprocess
 from ...processes.crash_report import CrashLog
+from ...processes.fork import is_forked
 from ...project import Project
 from ...runtime.scripts.boots import PersistentEntry, persistent_entries
 
@@ -73,7 +74,7 @@ def play_parts(project: Project, play_part: PlayPart[Part], quietly: bool = True
 
 
 def _call(project: Project, work: Callable[[Project, CrashLog], Part], quietly: bool) -> Part:
-    if not can_fork(project):
+    if not is_forked(project.isolation):
         return run_in_subprocess(work, project, MEANWHILE, quietly)
     call: ForkedCall[Part] = ForkedCall(partial(work, project), quietly)
     with closing(call):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ...collector import collector_paused
 from ...errors import PyfrcError
-from ...processes.fork import FORK_IS_SAFE
+from ...processes.fork import is_forked
 from ...processes.reuse import Interpreters
 from ...processors import usable_processors
 from ..options import TestOptions
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 @contextmanager
 def opened_interpreters(project: Project, options: TestOptions) -> Iterator[Interpreters | None]:
     """Start the interpreters for tests that are not forked; None if tests are forked, or run in this process."""
-    if options.isolation in ("none", "fork") or (options.isolation == "auto" and FORK_IS_SAFE):
+    if options.isolation == "none" or is_forked(options.isolation):
         yield None
         return
     with closing(start_interpreters(project, options)) as interpreters:

@@ -24,7 +24,8 @@ import pytest
 from ...compat import pytest_private
 from ...compat.unrepeatable import real_time_libraries
 from ...display import has_terminal
-from ...processes.fork import FORK_IS_SAFE
+from ...errors import UsageError
+from ...processes.fork import is_forked
 from ...processes.reuse import Interpreters
 from ...processes.worker import wait_for_any
 from ...processors import usable_processors
@@ -36,6 +37,7 @@ from ...runtime.turns import taking_turns
 from ..hangs import ROBOT_FIXTURES
 from ..options import Jobs
 from ..pytest_plugin import PyFrcPlugin, seed_section
+from ..remembered_passes import PASSES
 from ..reporting import BUG, bug_of
 from .durations import Durations, longest_first
 from .interpreters import start_interpreters
@@ -167,6 +169,8 @@ class IsolatedTests:
             return
         if config.get_verbosity() > 0 and (reason := self._interpreters.why_not_again()):
             self._explain(config, _NOT_AS_GOOD_AS_NEW.format(reason))
+        if (passes := config.pluginmanager.getplugin(PASSES)) is not None:
+            passes.record_left_over(self._interpreters.reason)
         self._interpreters.close()
 
     def _groups(self, session: pytest.Session, jobs: int) -> Iterator[list[int]]:
@@ -247,12 +251,11 @@ class IsolatedTests:
 
     def _can_fork(self, config: pytest.Config) -> bool:
         isolation = self._plugin.options.isolation
-        if isolation in ("reuse", "spawn"):
-            return False
-        if isolation == "fork" and not FORK_IS_SAFE:
-            raise pytest.UsageError("this system cannot fork a process safely. Leave out --isolation fork.")
-        if isolation == "auto" and not FORK_IS_SAFE:
-            return False
+        try:
+            if not is_forked(isolation):
+                return False
+        except UsageError as error:
+            raise pytest.UsageError(str(error)) from None
         if self._plugin.imports_late:
             self._explain(config, _IMPORTS_LATE.format(self._plugin.imports_late))
         else:
