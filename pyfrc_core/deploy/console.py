@@ -10,7 +10,7 @@ import struct
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 from ..terminal_text import VisibleStream, visible
@@ -175,32 +175,41 @@ def follow_console(address: Address, without_driver_station: bool = False, quiet
     report = ConnectionReports(quiet)
     with contextlib.suppress(KeyboardInterrupt):
         while True:
-            for line in _lines_of_one_connection(address, without_driver_station, report):
+            for line in lines_of_one_connection(address, without_driver_station, report):
                 output.write(f"{line}\n")
             time.sleep(_SECONDS_BETWEEN_TRIES)
 
 
 class ConnectionReports:
-    """Reports about the connection on standard error. Each is printed once until `reset`."""
+    """Reports about the connection on standard error. Each is printed once until `reset`.
+
+    :ivar made: the kinds of those that were made since
+    """
 
     def __init__(self, quiet: bool) -> None:
         self._quiet = quiet
-        self._made: set[str] = set()
+        self.made: set[str] = set()
 
     def __call__(self, kind: str, text: str) -> None:
-        if not self._quiet and kind not in self._made:
+        if not self._quiet and kind not in self.made:
             print(visible(text), file=sys.stderr, flush=True)
-        self._made.add(kind)
+        self.made.add(kind)
 
     def reset(self) -> None:
         """Allow each report to be printed again."""
-        self._made.clear()
+        self.made.clear()
 
 
-def _lines_of_one_connection(
-    address: Address, without_driver_station: bool, report: ConnectionReports
+def lines_of_one_connection(
+    address: Address,
+    without_driver_station: bool,
+    report: ConnectionReports,
+    is_over: Callable[[], bool] = lambda: False,
 ) -> Iterator[str]:
-    """Yield the lines of one connection until it is lost."""
+    """Yield the lines of one connection until it is lost, or until it is to be over.
+
+    :raises NoConsoleError: if the server is not a robot's console
+    """
     where = address
     with contextlib.ExitStack() as open_now:
         try:
@@ -226,7 +235,7 @@ def _lines_of_one_connection(
         report("connected", f"connected to {where}")
         frames = ConsoleFrames()
         try:
-            for received in _pieces(console, frames, report):
+            for received in _pieces(console, frames, report, is_over):
                 for line in frames.lines(received):
                     yield line
                     report.reset()
@@ -236,14 +245,17 @@ def _lines_of_one_connection(
                 where=str(where),
                 remedy="Check the address, or specify another with --robot HOST.",
             ) from error
-        report("lost", f"the connection was lost; reconnecting to {where}")
+        if not is_over():
+            report("lost", f"the connection was lost; reconnecting to {where}")
 
 
-def _pieces(console: socket.socket, frames: ConsoleFrames, report: ConnectionReports) -> Iterator[bytes]:
+def _pieces(
+    console: socket.socket, frames: ConsoleFrames, report: ConnectionReports, is_over: Callable[[], bool]
+) -> Iterator[bytes]:
     """Yield the received data until the connection is lost. Send keep-alive frames meanwhile."""
     console.settimeout(_WAKE_SECONDS)  # on Windows, Ctrl-C does not interrupt a blocking receive
     connected = kept_alive = time.monotonic()
-    while True:
+    while not is_over():
         received = None
         try:
             with contextlib.suppress(TimeoutError):

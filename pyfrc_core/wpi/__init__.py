@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from .season_2026 import motors as motors
     from .season_2026 import names as names
     from .season_2026 import network as network
+    from .season_2026 import network_client as network_client
     from .season_2026 import network_reads as network_reads
     from .season_2026 import reports as reports
     from .season_2026 import robots as robots

@@ -20,6 +20,8 @@ from .snapshot import Chooser, Failure, Opmode
 VALUE, TYPE = "nt:", "type:"
 #: The mode that the driver station asks for, as in `Snapshot.mode`; the robot's place: x, y and angle as in `Pose`.
 MODE, POSE = "sim.mode", "sim.pose"
+#: The mode of a robot elsewhere: while there is no connection to it, and when it does not say what it is.
+NO_CONNECTION, UNKNOWN_MODE = "no connection", "unknown mode"
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,10 @@ from collections import deque
 _MOST, _PIECE = 1 << 24, 1 << 16
 
 
+#: What lines of pyfrc's own begin with.
+OWN = "[pyfrc] "
+
+
 class OutputLog:
     """A text that grows at its end. May be used from any thread."""
 

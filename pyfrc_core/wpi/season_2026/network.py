@@ -34,6 +34,16 @@ _MAKE: dict[str, Callable[[Any], ntcore.Value]] = {
 #: The types of plain values.
 TYPES = tuple(_MAKE)
 
+
+def value_of_type(value: Any, type_name: str) -> ntcore.Value:
+    """Return a plain value as NetworkTables has it.
+
+    :param type_name: one of `TYPES`
+    :raises TypeError, ValueError, RuntimeError, KeyError: when no value can be made of it
+    """
+    return _MAKE[type_name](value)
+
+
 #: Where `wpilib.Preferences` has its entries; not all are marked as persistent at once.
 _PREFERENCES = "/Preferences/"
 
@@ -220,7 +230,7 @@ class Entry:
         :param type_name: one of `TYPES`; empty: that of the value in Python
         :raises TypeError, ValueError, RuntimeError: when no value can be made of it
         """
-        return self._entry.setValue(_MAKE[type_name](value) if type_name else value)
+        return self._entry.setValue(value_of_type(value, type_name) if type_name else value)
 
     def keep(self) -> None:
         """Make the entry persistent."""

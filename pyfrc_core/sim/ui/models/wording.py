@@ -9,6 +9,7 @@ from ....physics.pose import Pose
 from ....processes.standstill import REPORTED_AFTER
 from ....season import CURRENT
 from ...engine.commands import ChosenMode
+from ...engine.messages import NO_CONNECTION, UNKNOWN_MODE
 from ...engine.snapshot import Snapshot, Status
 
 #: The alliance stations: as they are shown, in the order of their numbers, and as they are commanded.
@@ -51,6 +52,8 @@ def mode_text(snapshot: Snapshot | None, status: Status) -> tuple[str, str]:
         return f"Replaying {clock(status.replayed)} of {clock(status.replaying_to)}", "wait"
     if snapshot is None or status.state == "starting":
         return "Starting…", "wait"
+    if snapshot.mode in (NO_CONNECTION, UNKNOWN_MODE):
+        return ("No connection", "wait") if snapshot.mode == NO_CONNECTION else ("Connected", "disabled")
     if snapshot.emergency_stopped:
         return "Emergency stopped", "error"
     if not snapshot.station_attached:

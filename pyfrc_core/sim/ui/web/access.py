@@ -175,10 +175,10 @@ class Guard:
         async def send_guarded(message: MutableMapping[str, Any]) -> None:
             if message["type"] == "http.response.start":
                 added = {**_HEADERS, "Content-Security-Policy": _policy(host, access.origins)}
-                message["headers"] = [
-                    *message.get("headers", ()),
-                    *((name.lower().encode(), value.encode()) for name, value in added.items()),
-                ]
+                given = list(message.get("headers", ()))
+                known = {name.lower() for name, _ in given}  # the page of a camera has others
+                new = ((name.lower().encode(), value.encode()) for name, value in added.items())
+                message["headers"] = [*given, *(header for header in new if header[0] not in known)]
             await send(message)
 
         await self._app(scope, receive, send_guarded)
@@ -193,6 +193,7 @@ def _policy(host: str, origins: Sequence[str]) -> str:
         "style-src": "'self'",
         "img-src": "'self' data: blob:",
         "font-src": "'self'",
+        "frame-src": "'self'",
         "connect-src": f"'self' ws://{host}{forwarded}",
         "base-uri": "'none'",
         "form-action": "'none'",

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import FileResponse, PlainTextResponse, Response
+from starlette.responses import FileResponse, HTMLResponse, PlainTextResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from ....config.pictures import field_picture, picture_kind
 from .access import Access, Guard, Receive, Role, Scope, Send
+from .cameras import camera_page, picture_addresses, streams_path
 from .commands import PageCommands
 from .greeting import greeting
 from .page_client import PageClient
@@ -77,6 +78,7 @@ class WebApp:
         routes = [
             Route("/", self._index),
             Route("/field-image", self._image),
+            Route("/camera", self._camera),
             WebSocketRoute("/ws", self._page),
             Mount("/static", _PageFiles(directory=PAGE)),
         ]
@@ -114,6 +116,15 @@ class WebApp:
         if file is None:
             return PlainTextResponse("There is no picture of the field.\n", 404)
         return FileResponse(file, media_type=picture_kind(file), headers={"Cache-Control": "no-cache"})
+
+    async def _camera(self, request: Request) -> Response:
+        if self._access.role_of(request.scope) is None:
+            return PlainTextResponse(_NO_KEY, 403)
+        name = request.query_params.get("name", "")
+        path = streams_path(name)
+        text, policy = camera_page(name, picture_addresses(self._collector.runs.present_values([path]).get(path)))
+        headers = {"Cache-Control": "no-cache", "Content-Security-Policy": policy, "X-Frame-Options": "SAMEORIGIN"}
+        return HTMLResponse(text, headers=headers)
 
     async def _page(self, socket: WebSocket) -> None:
         role = self._access.role_of(socket.scope)

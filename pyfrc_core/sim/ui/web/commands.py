@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any, get_args
 
 from ....errors import PyfrcError
 from ....runtime.scripts.script import trace_beside
-from ...engine.commands import ChosenMode
+from ...engine.commands import ChosenMode, chooser_target
 from ...engine.controls import Driver
 from ...engine.simulation import Simulation
+from ...live.tuning import Tuner
 from ..models.joysticks import FIRST_BUTTON, MOST_BUTTONS
 from ..models.time_controls import rewind, toggle
 from ..models.wording import STATIONS
@@ -49,6 +50,9 @@ class PageCommands:
         }
         if writer is not None:
             self._table["write"] = lambda m: writer.write(_writes(m))
+            self._table["choose"] = lambda m: writer.write({chooser_target(m.text("chooser")): m.text("option")})
+        if isinstance(writer, Tuner):
+            self._table["tune"] = lambda m: writer.tune(m.boolean("on"))
         if isinstance(writer, Driver) and isinstance(source, Simulation):
             self._table |= self._driving(source, writer)
 
@@ -64,7 +68,6 @@ class PageCommands:
             "attach": lambda m: d.attach_driver_station(m.boolean("attached")),
             "alliance": lambda m: d.set_alliance(m.one_of("station", tuple(STATIONS.values()))),
             "game_message": lambda m: d.set_game_message(m.text("text")),
-            "choose": lambda m: d.choose(m.text("chooser"), m.text("option")),
             "pause": lambda m: d.pause(),
             "resume": lambda m: d.resume(),
             "toggle": lambda m: toggle(s),

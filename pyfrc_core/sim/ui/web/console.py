@@ -11,6 +11,7 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Literal, get_args
 
+from ...engine.output_log import OWN
 from ..models.wording import plain_output
 
 Level = Literal["info", "warning", "error", "pyfrc"]
@@ -87,7 +88,7 @@ class Console:
         if len(self._open) > _MOST_LENGTH:
             whole, self._open = [*whole, self._open], ""
         self._count += skipped
-        return [self._append(line, time, self._level_of(line)) for line in whole]
+        return [self._append(line.removeprefix(OWN), time, self._level_of(line)) for line in whole]
 
     def say(self, text: str, time: float, level: Level = "pyfrc") -> list[ConsoleLine]:
         """Add lines of pyfrc's own."""
@@ -102,6 +103,8 @@ class Console:
         return added
 
     def _level_of(self, line: str) -> Level:
+        if line.startswith(OWN):
+            return "pyfrc"
         if self._in_traceback and _TRACE.match(line):
             return "error"
         self._in_traceback = line.startswith("Traceback")

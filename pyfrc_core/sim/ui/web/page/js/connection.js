@@ -3,7 +3,7 @@
 import { model } from "#js/model.js";
 import { isRecorded, readRun } from "#js/recorded.js";
 
-const TOKEN = new URLSearchParams(location.search).get("token") ?? "";
+export const TOKEN = new URLSearchParams(location.search).get("token") ?? "";
 
 const WAITS = [200, 400, 800, 1500]; // milliseconds between attempts to connect
 

@@ -32,6 +32,7 @@ class Model {
   run = { number: 1, t: 0 };
   clients = 1;
   knownFrom = 0; // the moment from which on values are known: more than 0 when the oldest were forgotten
+  tuning = false; // whether this page may set values on a robot elsewhere: only after the person has switched it on
   problem = "";
   hint = ""; // what a person who drives a disabled robot should do
   past = null; // { t, values } while the panels show a moment of the past
@@ -64,7 +65,7 @@ class Model {
   }
 
   get mayWrite() {
-    return Boolean(this.hello?.source?.writes) && !this.readonly;
+    return Boolean(this.hello?.source?.writes) && !this.readonly && (this.tuning || this.hello.source.kind !== "robot");
   }
 
   // Call a function with the set of changed parts, at most once per frame. Returns a function that ends it.
@@ -179,6 +180,7 @@ class Model {
   #begin(hello) {
     this.hello = hello;
     this.readonly = hello.readonly;
+    this.tuning = false;
     this.values = new Map();
     this.types = {};
     this.trail = [];

@@ -1,10 +1,12 @@
 // Looking at the past: one moment in every panel at once. Nothing is run, and nothing is lost.
 import { ask, command } from "#js/connection.js";
 import { clock } from "#js/format.js";
+import { NO_CONNECTION } from "#js/gaps.js";
 import { model } from "#js/model.js";
 import { isRecorded } from "#js/recorded.js";
 
 const PACKET = 0.02; // seconds
+const WITHOUT_STATION = { [NO_CONNECTION]: "No connection", "unknown mode": "Connected" };
 
 let wanted = null;
 let asking = false;
@@ -53,7 +55,7 @@ async function fetchWanted() {
 
 function show(t, values) {
   const mode = values.get("sim.mode") ?? "disabled";
-  const enabled = !mode.startsWith("disabled");
+  const enabled = !mode.startsWith("disabled") && !WITHOUT_STATION[mode];
   model.show({
     t,
     values,
@@ -63,6 +65,7 @@ function show(t, values) {
 }
 
 function modeText(mode) {
+  if (WITHOUT_STATION[mode]) return WITHOUT_STATION[mode];
   const chosen = mode === "disabled" ? "teleop" : mode.replace("disabled ", "");
   return `${model.hello.options.modes[chosen] ?? chosen} ${mode.startsWith("disabled") ? "disabled" : "enabled"}`;
 }

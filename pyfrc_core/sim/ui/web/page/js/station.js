@@ -7,6 +7,7 @@ import { Menu } from "#js/menu.js";
 import { model } from "#js/model.js";
 import { PANELS, panelTitle } from "#js/panels/all.js";
 import { live } from "#js/past.js";
+import { isRecorded } from "#js/recorded.js";
 import { SourceLabel } from "#js/recorded_bar.js";
 import { applyTheme, isDark, settings } from "#js/settings.js";
 import { Icon, Live, classes, html } from "#js/view.js";
@@ -15,11 +16,11 @@ const ICON = /** @type {HTMLLinkElement} */ (document.querySelector("link[rel=ic
 const SHORT = { teleop: "Teleop", autonomous: "Auto" };
 
 export class StationBar extends Live {
-  parts = ["station", "opmodes", "shown", "hello", "connection", "settings", "clients", "hint"];
+  parts = ["station", "opmodes", "shown", "hello", "connection", "settings", "clients", "hint", "tuning"];
 
   render() {
     const { station } = model.shown;
-    const left = model.past || !model.isDriven ? "" : matchLeft(model.station);
+    const left = model.past || model.isOver ? "" : matchLeft(model.station);
     return html`<header class="station">
       <div class="brand" title=${model.hello.project.root || model.hello.project.name}><img src=${ICON} alt="" /><span>${model.hello.project.name}</span></div>
       ${model.isDriven ? this.driving() : html`<${SourceLabel} />`}
@@ -30,6 +31,7 @@ export class StationBar extends Live {
       </div>
       ${model.hint && this.ready && !model.station.enabled && html`<span class="hint" role="status">${model.hint}</span>`}
       <div class="spacer"></div>
+      ${model.hello.source?.kind === "robot" && !model.readonly && html`<${TuneSwitch} />`}
       ${model.readonly && !model.isOver && html`<span class="chip" title="This address only shows the simulation">Read only</span>`}
       ${model.clients > 1 && html`<span class="chip" title="Windows that show this simulation">${model.clients} windows</span>`}
       <${LayoutMenu} />
@@ -73,6 +75,17 @@ export class StationBar extends Live {
     return html`<button class="estop" disabled=${!this.ready && !this.stuck} title="Emergency stop: the space bar. Only a restart enables the robot again."
         onClick=${() => stop("e_stop")}>E-STOP</button>`;
   }
+}
+
+// Values are set on a robot on purpose only.
+function TuneSwitch() {
+  const set = async (event) => {
+    const on = event.target.checked;
+    if (await command("tune", { on })) model.set("tuning", on);
+    model.announce("hello", "tuning");
+  };
+  return html`<label class=${classes({ tune: true, on: model.tuning })} title="While it is on, this page can set values on the robot. It never enables it.">
+    <span class="switch"><input type="checkbox" role="switch" checked=${model.tuning} disabled=${model.connection !== "open"} onChange=${set} /><i></i></span>Tune</label>`;
 }
 
 // The opmodes of the chosen mode; only robots of 2027 have some.
@@ -128,7 +141,7 @@ function LayoutMenu() {
 
 function PanelsMenu() {
   const open = new Set(panelsOf(settings.tree));
-  const ids = Object.keys(PANELS).filter((kind) => (model.isDriven || !PANELS[kind].drives)).flatMap((kind) => (kind === "plot" ? plotIds(open) : [kind]));
+  const ids = Object.keys(PANELS).filter((kind) => (model.isDriven || !PANELS[kind].drives) && !(isRecorded && PANELS[kind].served)).flatMap((kind) => (kind === "plot" ? plotIds(open) : [kind]));
   const items = ids.map((id) => ({ text: panelTitle(id), checked: open.has(id), act: () => toggle(id) }));
   return html`<${Menu} label="Panels" icon="panels" title="Open and close panels" items=${items} />`;
 }

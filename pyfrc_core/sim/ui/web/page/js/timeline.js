@@ -2,6 +2,7 @@
 import { ElementSize, Picture, font, sizeCanvas } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
 import { clock } from "#js/format.js";
+import { gapsOf, hatch } from "#js/gaps.js";
 import { model } from "#js/model.js";
 import { isForgotten, length, live, look, lookBy, lookByPackets } from "#js/past.js";
 import { watch, unwatch } from "#js/series.js";
@@ -106,6 +107,7 @@ export class Timeline extends Live {
       context.fillStyle = color(name);
       if (to >= from) context.fillRect(from, top, Math.max(to - from, 1), height);
     }
+    for (const [from, to] of gapsOf(this.modes, length())) hatch(context, this.x(from), top, Math.max(this.x(to) - this.x(from), 1), height);
     for (const branch of model.branches) {
       if (branch.id !== model.compared) continue;
       context.fillStyle = color("own");

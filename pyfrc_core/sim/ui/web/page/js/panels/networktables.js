@@ -39,10 +39,10 @@ export class NetworkTablesPanel extends Live {
   addLeaf(rows, { path, name }, depth, open) {
     const elements = elementsOf(path, model.shown.values.get(path));
     const toggle = elements.length ? () => this.toggle(path) : null;
-    rows.push(html`<${Leaf} key=${path} path=${path} name=${name} depth=${depth} open=${Boolean(open[path])} toggle=${toggle} resized=${() => this.setState({})} />`);
+    rows.push(html`<${Leaf} key=${path} locked=${!model.mayWrite} path=${path} name=${name} depth=${depth} open=${Boolean(open[path])} toggle=${toggle} resized=${() => this.setState({})} />`);
     if (!open[path]) return;
     elements.forEach((element, index) => {
-      rows.push(html`<${Leaf} key=${element} path=${element} name=${`[${index}]`} list=${path} index=${index} depth=${depth + 1} />`);
+      rows.push(html`<${Leaf} key=${element} locked=${!model.mayWrite} path=${element} name=${`[${index}]`} list=${path} index=${index} depth=${depth + 1} />`);
     });
   }
 
@@ -83,7 +83,7 @@ class Leaf extends Component {
 
   shouldComponentUpdate(next, state) {
     const { path, depth, open, toggle } = this.props;
-    return next.path !== path || next.depth !== depth || next.open !== open || !next.toggle !== !toggle || state !== this.state;
+    return next.locked !== this.props.locked || next.path !== path || next.depth !== depth || next.open !== open || !next.toggle !== !toggle || state !== this.state;
   }
 
   componentDidMount() {

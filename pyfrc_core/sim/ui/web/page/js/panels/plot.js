@@ -4,6 +4,7 @@ import { ElementSize } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
 import { ask } from "#js/connection.js";
 import { Computed, curveValue, isComputed, keyOf, numberIn, pathsOf, strokeOf, titleOf, unitOf } from "#js/curves.js";
+import { gapsOf, hatch } from "#js/gaps.js";
 import { model } from "#js/model.js";
 import { length, look } from "#js/past.js";
 import { buildChart } from "#js/plot_chart.js";
@@ -36,6 +37,7 @@ export class PlotPanel extends Live {
 
   componentDidMount() {
     super.componentDidMount();
+    this.modes = watch("sim.mode");
     this.size = new ElementSize(this.area.current, () => this.resize());
     this.update();
   }
@@ -43,7 +45,7 @@ export class PlotPanel extends Live {
   componentWillUnmount() {
     super.componentWillUnmount();
     this.size.disconnect();
-    for (const path of this.watched.keys()) unwatch(path);
+    for (const path of ["sim.mode", ...this.watched.keys()]) unwatch(path);
     this.plot?.destroy();
     this.plot = null;
   }
@@ -245,6 +247,7 @@ export class PlotPanel extends Live {
         hooks: {
           setSelect: [(plot) => this.select(plot)],
           setCursor: [(plot) => this.hover(plot)],
+          drawAxes: [(plot) => !xCurve && this.drawGaps(plot)],
           draw: [(plot) => (xCurve ? this.drawPoints(plot) : this.drawMoment(plot))],
         },
       },
@@ -307,6 +310,14 @@ export class PlotPanel extends Live {
     this.detail = new Map();
     this.set({ seconds });
     this.setState({});
+  }
+
+  drawGaps(plot) {
+    const { left, top, width, height } = plot.bbox;
+    for (const gap of gapsOf(this.modes, length())) {
+      const [from, to] = gap.map((t) => Math.min(Math.max(plot.valToPos(t, "x", true), left), left + width));
+      if (to > from) hatch(plot.ctx, from, top, to - from, height, devicePixelRatio);
+    }
   }
 
   drawMoment(plot) {

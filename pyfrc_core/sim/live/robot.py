@@ -1,0 +1,244 @@
+"""A robot on the network as a `Source`: follows its NetworkTables and its console, on a thread of its own."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from datetime import datetime
+from time import monotonic
+from types import MappingProxyType
+
+from ...deploy.discovery import Address
+from ...deploy.targets import controller_of
+from ...project import Project
+from ...season import CURRENT
+from ...wpi import network_client
+from ...wpi.network_news import Connected, Gone, Lost, Received
+from ..engine.changes import ReportSignal
+from ..engine.field import field_of
+from ..engine.messages import NO_CONNECTION, VALUE
+from ..engine.output_log import OWN, OutputCursor, OutputLog
+from ..engine.past_run import PastRun
+from ..engine.scene import Scene
+from ..engine.snapshot import Chooser, Snapshot, Status
+from ..engine.source import Abilities, ChangeFeed, FedReader
+from .addresses import RobotAddresses
+from .robot_console import RobotConsole
+from .runs import RobotRuns
+from .tuning import Tuner, checked_write
+
+#: How often to look at what was received, and how often at least to report that time has passed, in wall seconds.
+_LOOK_SECONDS, _TIME_SECONDS = 0.02, 0.1
+#: The tables of WPILib's choosers, by the name of their widget.
+_CHOOSERS = ("String Chooser", "Selectable")
+
+
+def console_of(host: str) -> Address | None:
+    """Return where a robot's console is; None: it needs a login."""
+    return None if controller_of(CURRENT).layout.output else Address(host)
+
+
+class LiveRobot:
+    """See `Source`.
+
+    :param project: whose field and layout the page has
+    :param console: returns where the console of the robot with this address is
+    :raises SettingsError: when ``sim/config.json`` is invalid
+    """
+
+    abilities = Abilities("robot", writes=True)
+    when: datetime | None = None
+    recorded: PastRun | None = None
+    branches: tuple[PastRun, ...] = ()
+    wants_to_run = True
+
+    def __init__(
+        self, project: Project, where: RobotAddresses, console: Callable[[str], Address | None] = console_of
+    ) -> None:
+        self.project, self.title = project, where.whose
+        self.field = field_of(project)
+        self.reports = ReportSignal()
+        self.status = Status(state="running")
+        self._where, self._console_of = where, console
+        self._hal, self._network, self._output = ChangeFeed(), ChangeFeed(), OutputLog()
+        self._runs = RobotRuns(self._hal.add, self._network.add)
+        self._shown = self._snapshot()
+        #: A mistake of pyfrc's own, which would leave the page without news.
+        self._mistake: Exception | None = None
+        self._console: RobotConsole | None = None
+        self._is_console_missing = False
+        self._reported_at = 0.0
+        #: The people who may set values now.
+        self._tuners: set[Tuner] = set()
+        self._over = threading.Event()
+        self._client: network_client.Client | None = None
+        self._thread = threading.Thread(target=self._follow, name="pyfrc view: robot", daemon=True)
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The newest state."""
+        if self._mistake is not None:
+            raise self._mistake
+        return self._shown
+
+    def output_cursor(self, from_start: bool = True) -> OutputCursor:
+        """Return a reader of what the robot prints."""
+        return self._output.cursor(from_start)
+
+    def change_cursor(self) -> FedReader:
+        """Return a reader of the runs; a robot does not say more of `hal_data`."""
+        return self._hal.cursor()
+
+    def network_cursor(self) -> FedReader:
+        """Return a reader of all changes of NetworkTables and of the mode."""
+        return self._network.cursor()
+
+    def attach(self) -> Tuner:
+        """Return what one person may do: set values, after having switched that on."""
+        return Tuner(self._write, self._tuners, self._stop_writing)
+
+    def start(self) -> None:
+        """Begin to look for the robot."""
+        where = self._where
+        self._say(f"Looking for the robot at {', '.join(map(_shown, where.servers))}.")
+        self._client = network_client.Client("pyfrc view", where.servers, where.asks_driver_station)
+        self._thread.start()
+
+    def close(self) -> None:
+        """End."""
+        self._over.set()
+        if self._client is not None:
+            self._thread.join()
+            self._client.close()
+        self._close_console()
+        with self.reports:
+            self.status = replace(self.status, state="closed")
+            self.reports.notify_all()
+
+    # -- what is received -----------------------------------------------------------------------------------------
+
+    def _follow(self) -> None:
+        assert self._client is not None
+        try:
+            while not self._over.wait(_LOOK_SECONDS):
+                self._look(self._client)
+        except Exception as mistake:
+            self._mistake = mistake
+
+    def _look(self, client: network_client.Client) -> None:
+        news: list[Received | Gone] = []
+        is_new = False
+        for each in client.read():
+            if isinstance(each, Connected):
+                news.clear()
+                self._runs.connect(monotonic(), client.now_us)
+                self._connected(each)
+            elif isinstance(each, Lost):
+                self._take(client, news)
+                news.clear()
+                self._runs.lose()
+                self._lost()
+            else:
+                news.append(each)
+            is_new = True
+        self._take(client, news)
+        if is_new or monotonic() >= self._reported_at + _TIME_SECONDS:
+            self._report()
+
+    def _take(self, client: network_client.Client, news: list[Received | Gone]) -> None:
+        number = self._runs.number
+        self._runs.take(news, monotonic(), client.now_us)
+        if number != self._runs.number:
+            self._say(f"0:00.00 is where the robot's own clock shows {self._runs.zero_us / 1e6:.2f} s.")
+
+    def _connected(self, to: Connected) -> None:
+        shown = _shown((to.host, to.port))
+        self.status = replace(self.status, network_address=shown)
+        self._say(f"Connected to {shown}.")
+        if self._is_console_missing:
+            return
+        address = self._console_of(to.host)
+        if address is None:
+            self._console_is_missing("What the robot prints is not shown here: pyfrc console shows it.")
+        else:
+            self._console = RobotConsole(address, self._print, self._console_is_missing)
+
+    def _lost(self) -> None:
+        self._say(f"The connection to {self.status.network_address} was lost. Trying again…")
+        self.status = replace(self.status, network_address=None)
+        self._close_console()
+
+    def _close_console(self) -> None:
+        console, self._console = self._console, None
+        if console is not None:
+            console.close()
+
+    def _console_is_missing(self, text: str) -> None:
+        self._is_console_missing = True
+        self._say(text)
+
+    def _print(self, text: str) -> None:
+        self._output.append(text)
+        with self.reports:
+            self.reports.notify_all()
+
+    def _say(self, text: str) -> None:
+        self._print(f"{OWN}{text}\n")
+
+    def _report(self) -> None:
+        self._reported_at = monotonic()
+        runs = self._runs
+        with self.reports:
+            self._shown = self._snapshot()
+            starts = max(runs.number, 1)
+            self.status = replace(self.status, length=runs.now, starts=starts, responding=True)
+            self.reports.notify_all()
+
+    def _snapshot(self) -> Snapshot:
+        runs, station = self._runs, self._runs.station
+        left = runs.values.get(runs.match_time_path or "")
+        left = left if isinstance(left, (int, float)) and left >= 0 and station.mode != NO_CONNECTION else None
+        values = {
+            "alliance_station": station.alliance_station,
+            "event.game_specific_message": station.game_message,
+        }
+        return Snapshot(
+            time=runs.now,
+            mode=station.mode,
+            scene=Scene(self.field),
+            values=MappingProxyType(values),
+            choosers=tuple(self._choosers()),
+            emergency_stopped=station.emergency_stopped,
+            station_attached=station.attached,
+            practice_since=None if left is None else 0.0,
+            match_left=0.0 if left is None else float(left),
+        )
+
+    def _choosers(self) -> list[Chooser]:
+        values, found = self._runs.values, []
+        for table in self._runs.choosers:
+            path = VALUE + table
+            options = values.get(f"{path}/options")
+            if values.get(f"{path}/.type") in _CHOOSERS and isinstance(options, list):
+                default, active = (str(values.get(f"{path}/{name}", "")) for name in ("default", "active"))
+                found.append(Chooser(table, tuple(map(str, options)), default, active or default))
+        return found
+
+    # -- what is written ------------------------------------------------------------------------------------------
+
+    def _write(self, writes: Mapping[str, object]) -> None:
+        client = self._client
+        for target, value in writes.items():
+            name, type_name, converted = checked_write(target, value, self._runs.values)
+            if client is not None:
+                client.write(name, converted, type_name)
+
+    def _stop_writing(self) -> None:
+        if self._client is not None:
+            self._client.stop_writing()
+
+
+def _shown(server: tuple[str, int]) -> str:
+    host, port = server
+    return f"{host}:{port}"

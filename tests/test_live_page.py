@@ -1,0 +1,67 @@
+"""The page of a robot on the network, in a real browser."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from browser_pages import MODULE, Seen, shared_browser  # noqa: F401 - `browser`
+from network_robots import TELEOP, WORD, link_to, network_robot
+from picture_server import camera
+from ports import lasting_port, refusing_port
+from test_live_robot import shown
+
+CAMERA = "/CameraPublisher/Front/streams"
+
+
+def test_a_person_looks_at_a_robot(browser: Any, tmp_path: Path) -> None:
+    port = lasting_port()
+    with network_robot(tmp_path, port) as robot, link_to(port) as link, shown(tmp_path, link.port) as there:
+        robot.set("/SmartDashboard/kP", "double", 0.5)
+        context = browser.new_context(viewport={"width": 1366, "height": 768})
+        page = context.new_page()
+        page.add_init_script(MODULE)
+        person = Seen(page, there)
+        person.open()
+        robot.set(WORD, "int", TELEOP)
+        person.state("Teleoperated enabled")
+        # Nothing drives.
+        for name in ("Enable", "Disable", "E-STOP", "Practice", "Pause"):
+            assert person.button(name).count() == 0, name
+        page.keyboard.press("Control+e")
+        page.keyboard.press(" ")
+        # Values are set after the switch only.
+        person.tab("NetworkTables").click()
+        box = person.row("nt:/SmartDashboard/kP").get_by_role("textbox")
+        person.shows(box, "0.5")
+        assert box.is_disabled()
+        page.get_by_role("switch", name="Tune").check(force=True)
+        person.set_number(box, "0.25")
+        page.wait_for_function("() => !document.querySelector('.notice')")
+        while robot.get("/SmartDashboard/kP") != 0.25:
+            pass
+        page.get_by_role("switch", name="Tune").uncheck(force=True)
+        page.locator("[data-path='nt:/SmartDashboard/kP'] input:disabled").wait_for()
+        # A connection that is lost is said, and what is known stays.
+        link.cut()
+        person.state("No connection")
+        person.shows(box, "0.25")
+        link.mend()
+        person.state("Teleoperated enabled")
+        page.locator(".line.pyfrc", has_text="was lost").wait_for()
+        page.locator(".timeline").press("Home")
+        person.state("Teleoperated disabled")
+        page.get_by_role("button", name="Live").click()
+        # The pictures of a camera, and where none comes.
+        with camera() as host, refusing_port() as silent:
+            robot.set(CAMERA, "string[]", [f"mjpg:http://{host}/?action=stream"])
+            robot.set("/CameraPublisher/Back/streams", "string[]", [f"mjpg:http://127.0.0.1:{silent}/stream.mjpg"])
+            person.choose("Open and close panels", "Cameras")
+            front = page.frame_locator("iframe[title='Camera Front']")
+            front.locator("img").wait_for(state="visible")
+            assert front.locator("img").evaluate("(image) => image.naturalWidth") == 32
+            back = page.frame_locator("iframe[title='Camera Back']")
+            back.get_by_text(f"No picture from 127.0.0.1:{silent}").wait_for()
+        assert robot.get(WORD) == TELEOP
+        assert not [text for text in person.wrong if "ERR_CONNECTION_REFUSED" not in text]
+        context.close()

@@ -1,0 +1,189 @@
+"""The page of a robot on the network: a program with NetworkTables in another process, and a page without a browser."""
+
+from __future__ import annotations
+
+import struct
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from network_robots import AUTONOMOUS, DISABLED, TELEOP, WORD, NetworkRobot, link_to, network_robot
+from ports import lasting_port
+from web_pages import Page, Served, served_source
+
+from pyfrc_core.project import Project
+from pyfrc_core.sim.live.addresses import addresses_for
+from pyfrc_core.sim.live.robot import LiveRobot
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Iterator[NetworkRobot]:
+    with network_robot(tmp_path, lasting_port()) as found:
+        yield found
+
+
+@contextmanager
+def shown(directory: Path, port: int) -> Iterator[Served]:
+    """Serve the page of the robot at a port of this computer. It has no console."""
+    where = addresses_for(f"127.0.0.1:{port}", None)
+    with served_source(LiveRobot(Project(directory / "robot.py"), where, lambda host: None)) as there:
+        yield there
+
+
+def curve(page: Page, path: str) -> list[Any]:
+    """Return the values that a plot of the whole time has."""
+    asked = {"from": 0, "to": 1000, "points": 1000}
+    return page.ask(type="plot", paths=[path], **asked)["series"][path]["v"]  # type: ignore[no-any-return]
+
+
+def test_values_types_structs_and_modes_are_shown(robot: NetworkRobot, tmp_path: Path) -> None:
+    robot.set("/SmartDashboard/kP", "double", 0.5)
+    robot.set("/SmartDashboard/names", "string[]", ["a", "b"])
+    robot.set_data("/pose", "struct:Point", struct.pack("<dd", 1.5, 2.5))
+    robot.set_data("/.schema/struct:Point", "structschema", b"double x;double y")
+    with shown(tmp_path, robot.port) as there, there.page() as page:
+        page.until(lambda: page.values.get("nt:/pose/y") == 2.5)
+        assert page.values["nt:/SmartDashboard/kP"] == 0.5
+        assert page.values["nt:/SmartDashboard/names"] == ["a", "b"]
+        assert page.types["nt:/SmartDashboard/kP"] == "double"
+        page.until(lambda: page.station["text"] == "Teleoperated disabled")
+        assert page.hello["source"]["kind"] == "robot"
+        for word, text in ((AUTONOMOUS, "Autonomous enabled"), (TELEOP, "Teleoperated enabled")):
+            robot.set(WORD, "int", word)
+            page.until(lambda text=text: page.station["text"] == text)
+        robot.set("/SmartDashboard/Match Time", "double", 73.4)
+        page.until(lambda: page.station.get("match_left") == 73.4)
+        robot.remove("/SmartDashboard/names")
+        page.until(lambda: "nt:/SmartDashboard/names" not in page.values)
+        for name in ("enable", "disable", "e_stop", "rewind", "restart", "axis", "button"):
+            assert page.ask(type="command", name=name)["type"] == "error"
+
+
+def test_every_change_is_kept(robot: NetworkRobot, tmp_path: Path) -> None:
+    robot.set("/x", "double", -1.0)
+    with shown(tmp_path, robot.port) as there, there.page() as page:
+        page.until(lambda: page.values.get("nt:/x") == -1.0)
+        for number in range(300):
+            robot.set("/x", "double", float(number))
+        page.until(lambda: page.values["nt:/x"] == 299.0)
+        assert curve(page, "nt:/x") == [-1.0, *map(float, range(300))]
+
+
+def test_a_link_that_is_cut_and_back(robot: NetworkRobot, tmp_path: Path) -> None:
+    robot.set("/x", "double", 1.0)
+    with link_to(robot.port) as link, shown(tmp_path, link.port) as there, there.page() as page:
+        page.until(lambda: page.values.get("nt:/x") == 1.0)
+        robot.set(WORD, "int", TELEOP)
+        page.until(lambda: page.station["text"] == "Teleoperated enabled")
+        link.cut()
+        page.until(lambda: page.station["text"] == "No connection")
+        assert page.values["nt:/x"] == 1.0
+        robot.set("/x", "double", 2.0)
+        link.mend()
+        page.until(lambda: page.values["nt:/x"] == 2.0)
+        robot.set("/x", "double", 3.0)
+        page.until(lambda: page.values["nt:/x"] == 3.0)
+        assert curve(page, "nt:/x") == [1.0, 2.0, 3.0]
+        assert curve(page, "sim.mode") == ["disabled", "teleop", "no connection", "teleop"]
+        said = [line["text"] for line in page.console if line["level"] == "pyfrc"]
+        assert sum("was lost" in text for text in said) == 1
+        assert sum(text.startswith("Connected") for text in said) == 2
+        assert not page.parts["branches"]
+
+
+def test_a_program_that_started_again_is_another_run(robot: NetworkRobot, tmp_path: Path) -> None:
+    robot.set("/x", "double", 1.0)
+    robot.set("/old", "boolean", True)
+    with shown(tmp_path, robot.port) as there, there.page() as page:
+        page.until(lambda: page.values.get("nt:/x") == 1.0)
+        robot.set("/x", "double", 2.0)
+        page.until(lambda: page.values["nt:/x"] == 2.0)
+        robot.restart()
+        robot.set("/x", "double", 5.0)
+        page.until(lambda: page.parts["run"]["number"] == 2 and page.values.get("nt:/x") == 5.0)
+        assert "nt:/old" not in page.values
+        page.until(lambda: page.parts["branches"])
+        (before,) = page.parts["branches"]
+        assert before["name"] == "before the restart"
+        asked = {"from": 0, "to": 1000, "points": 100, "branch": before["id"]}
+        assert page.ask(type="plot", paths=["nt:/x"], **asked)["series"]["nt:/x"]["v"] == [1.0, 2.0]
+        page.until(lambda: any("starts again" in line["text"] for line in page.console))
+
+
+def test_values_are_set_only_after_the_switch(robot: NetworkRobot, tmp_path: Path) -> None:
+    robot.set("/SmartDashboard/kP", "double", 0.5)
+    robot.set("/SmartDashboard/Auto/.type", "string", "String Chooser")
+    robot.set("/SmartDashboard/Auto/options", "string[]", ["Left", "Right"])
+    robot.set("/SmartDashboard/Auto/active", "string", "Left")
+
+    def ask(page: Page, name: str, **arguments: Any) -> str:
+        return str(page.ask(type="command", name=name, **arguments).get("message", ""))
+
+    with shown(tmp_path, robot.port) as there, there.page() as page, there.page() as other:
+        page.until(lambda: page.parts.get("choosers"))
+        assert page.parts["choosers"][0]["options"] == ["Left", "Right"]
+        kP = {"nt:/SmartDashboard/kP": 0.25}
+        assert "Tuning is off" in ask(page, "write", values=kP)
+        assert robot.get("/SmartDashboard/kP") == 0.5
+        page.command("tune", on=True)
+        assert "Tuning is off" in ask(other, "write", values=kP)  # each page has a switch of its own
+        page.command("write", values=kP)
+        page.until(lambda: page.values["nt:/SmartDashboard/kP"] == 0.25)
+        other.until(lambda: other.values["nt:/SmartDashboard/kP"] == 0.25)
+        while robot.get("/SmartDashboard/kP") != 0.25:
+            pass
+        page.command("choose", chooser="/SmartDashboard/Auto", option="Right")
+        while robot.get("/SmartDashboard/Auto/selected") != "Right":
+            pass
+        for target, value, why in (
+            ("nt:/SmartDashboard/kP", "much", "a number is needed"),
+            ("nt:/SmartDashboard/kI", 1.0, "publishes no value"),
+            ("dio[3].value", True, "publishes no value"),
+            (f"nt:{WORD}", TELEOP, "cannot be set"),
+            ("nt:/SmartDashboard/Auto/.type", "x", "cannot be set"),
+        ):
+            assert why in ask(page, "write", values={target: value})
+        page.command("tune", on=False)
+        assert "Tuning is off" in ask(page, "write", values=kP)
+        assert robot.get(WORD) == DISABLED
+        assert "Tuning is off" not in ask(page, "tune", on=True)
+    with shown(tmp_path, robot.port) as there, there.page(there.viewing_address) as guest:
+        assert "only shows" in ask(guest, "tune", on=True)
+
+
+def test_two_viewers_see_the_same(robot: NetworkRobot, tmp_path: Path) -> None:
+    with shown(tmp_path, robot.port) as there, there.page() as one:
+        robot.set("/x", "double", 1.0)
+        one.until(lambda: one.values.get("nt:/x") == 1.0)
+        with there.page(there.viewing_address) as other:
+            robot.set("/x", "double", 2.0)
+            other.until(lambda: other.values.get("nt:/x") == 2.0)
+            assert curve(one, "nt:/x") == curve(other, "nt:/x") == [1.0, 2.0]
+
+
+def test_a_robot_that_is_not_there_yet(tmp_path: Path) -> None:
+    port = lasting_port()
+    with shown(tmp_path, port) as there, there.page() as page:
+        page.until(lambda: any("Looking for the robot" in line["text"] for line in page.console))
+        assert page.station["text"] == "No connection"
+        with network_robot(tmp_path, port) as robot:
+            robot.set("/x", "double", 1.0)
+            page.until(lambda: page.values.get("nt:/x") == 1.0)
+
+
+@pytest.mark.slow
+def test_a_flood_of_changes_leaves_the_page_alive(robot: NetworkRobot, tmp_path: Path) -> None:
+    with shown(tmp_path, robot.port) as there, there.page() as page:
+        page.until(lambda: page.station["text"] == "Teleoperated disabled")
+        page.ask(type="show", paths=["nt:/flood/0"], beginnings=[])
+        changes: list[int] = []
+        flooding = threading.Thread(target=lambda: changes.append(robot.flood(250, 5000, 20.0)))
+        flooding.start()
+        page.until(lambda: not flooding.is_alive())  # an update comes ten times a second
+        last = float((changes[0] - 1) // 250 * 250)
+        page.until(lambda: page.values["nt:/flood/0"] == last)
+        assert changes[0] > 90_000
+        assert sum(len(curve(page, f"nt:/flood/{number}")) for number in range(250)) == changes[0]
