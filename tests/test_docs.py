@@ -174,6 +174,13 @@ def test_the_examples_in_the_simulation_guide_work(project) -> None:
     assert "failure: None\nmode: autonomous\nleft motor: 0.49" in done.stdout, done.stdout
 
 
+def test_the_examples_in_the_guide_to_logs_work(project) -> None:
+    for command in commands("docs/view.md"):
+        result = project.run(*shlex.split(command)[1:])
+        assert result.code == 0, result.output
+    assert {file.name for file in (project.path / ".runs").glob("*.html")} == {"before.html", "both.html"}
+
+
 def test_the_robot_in_the_guide_to_2027_becomes_what_is_shown_there(make_project) -> None:
     pytest.importorskip("libcst")
     document = "docs/migrate.md"

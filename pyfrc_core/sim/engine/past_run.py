@@ -16,12 +16,12 @@ class Happened(NamedTuple):
     """Something that happened.
 
     :param time: in seconds of the run
-    :param level: of the console's line: ``info``, ``warning`` or ``error``
-    :param is_mark: whether the timeline shows it, too
+    :param level: of the console's line: ``info``, ``warning`` or ``error``; empty: the text shows it
+    :param is_mark: whether the timeline shows it, too, if it is a warning or an error
     """
 
     time: float
-    level: Literal["info", "warning", "error"]
+    level: Literal["", "info", "warning", "error"]
     text: str
     is_mark: bool = False
 

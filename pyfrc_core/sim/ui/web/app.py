@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import FileResponse, HTMLResponse, PlainTextResponse, Response
+from starlette.responses import FileResponse, HTMLResponse, JSONResponse, PlainTextResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -23,6 +23,7 @@ from .cameras import camera_page, picture_addresses, streams_path
 from .commands import PageCommands
 from .greeting import greeting
 from .page_client import PageClient
+from .sent_logs import SentLogs
 from .single_file import PAGE
 from .updates import UpdateBuilder
 
@@ -73,12 +74,14 @@ class WebApp:
         self._clients: dict[int, PageClient] = {}
         self._count = 0
         self._executor = ThreadPoolExecutor(1, "pyfrc sim: web commands")
+        self._sent_logs = SentLogs(collector)
         for ending, kind in _TYPES.items():
             mimetypes.add_type(kind, ending)
         routes = [
             Route("/", self._index),
             Route("/field-image", self._image),
             Route("/camera", self._camera),
+            Route("/log", self._log, methods=["POST"]),
             WebSocketRoute("/ws", self._page),
             Mount("/static", _PageFiles(directory=PAGE)),
         ]
@@ -96,6 +99,7 @@ class WebApp:
     def close(self) -> None:
         """Carry out no more commands."""
         self._executor.shutdown(wait=False, cancel_futures=True)
+        self._sent_logs.close()
 
     async def close_pages(self) -> None:
         """Say to every page that the simulation was closed."""
@@ -125,6 +129,12 @@ class WebApp:
         text, policy = camera_page(name, picture_addresses(self._collector.runs.present_values([path]).get(path)))
         headers = {"Cache-Control": "no-cache", "Content-Security-Policy": policy, "X-Frame-Options": "SAMEORIGIN"}
         return HTMLResponse(text, headers=headers)
+
+    async def _log(self, request: Request) -> Response:
+        """Take a log from a page, and show it as a branch."""
+        if self._access.role_of(request.scope) != "drive":
+            return PlainTextResponse(_NO_KEY, 403)
+        return JSONResponse(await self._sent_logs.take(request))
 
     async def _page(self, socket: WebSocket) -> None:
         role = self._access.role_of(socket.scope)

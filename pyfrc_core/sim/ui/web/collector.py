@@ -182,9 +182,10 @@ class Collector:
         if recorded is None:
             return
         for at, level, text, is_mark in recorded.happened:
-            self.console.say(text, at, level)
-            if is_mark and level != "info":
-                self.marks.add(at, level, text.strip())
+            lines = self.console.say(text, at, level) if level else self.console.add(f"{text}\n", at)
+            for line in lines if is_mark else ():
+                if line.level in ("error", "warning"):
+                    self.marks.add(at, line.level, line.text.strip())
         for at, mode in self.runs.modes():
             self.marks.add(at, "mode", mode)
 

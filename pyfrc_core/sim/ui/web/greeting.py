@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ...._version import __version__
 from ....season import CURRENT
 from ....text_files import keep_out_of_version_control, write_whole
+from ...engine.messages import VALUE
 from ..models.joysticks import FIRST_BUTTON, JOYSTICKS, MOST_BUTTONS, axis_labels, button_labels
 from ..models.keyboard import BUTTON_KEYS, BUTTON_KEYS_TEXT, ENABLE_CHORD, GENTLE, LAYOUTS, layout_for
 from ..models.time_controls import FASTEST, SLOWEST
@@ -20,6 +21,7 @@ from .dashboards import Dashboards
 if TYPE_CHECKING:
     from ...engine.source import Source
 
+_BATTERY = re.compile(r"battery_?voltage$", re.IGNORECASE)
 #: The version of the messages; a page of another version asks to be reloaded.
 PROTOCOL = 1
 
@@ -40,7 +42,7 @@ def greeting(source: Source, client: int, read_only: bool, watching: bool = Fals
         "readonly": read_only,
         "version": __version__,
         "project": {
-            "name": project.root.resolve().name,
+            "name": project.root.resolve().name if project.main_file.is_file() else "pyfrc view",
             "root": str(project.root.resolve()),
             "main": project.main_file.name,
         },
@@ -89,9 +91,29 @@ def greeting(source: Source, client: int, read_only: bool, watching: bool = Fals
                 "enable_chord": sorted(ENABLE_CHORD),
             },
         },
-        "layout": load_layout(project.root),
+        "layout": load_layout(project.root) if abilities.drives else _looking(source, load_layout(project.root)),
         "dashboards": Dashboards(project.root).found(),
     }
+
+
+def _looking(source: Source, saved: Any) -> dict[str, Any]:
+    """Return the arrangement of a page that cannot drive: that of driving is of little use."""
+    layout = saved if isinstance(saved, dict) else {}
+    if not source.abilities.over:
+        return {"version": 1, **layout, "layout": "log"}
+    plots = layout.get("plots")
+    plots = plots if isinstance(plots, dict) else {}
+    if not any(plot.get("curves") for plot in plots.values()):
+        plots = {"plot:1": {"curves": _battery(source)}, "plot:2": {"curves": []}}
+    whole = {name: {**plot, "seconds": 0} for name, plot in plots.items()}
+    return {**layout, "version": 1, "layout": "log", "plots": whole}
+
+
+def _battery(source: Source) -> list[dict[str, object]]:
+    """Return the curve of the battery's voltage, which most questions about a match begin with."""
+    paths = () if source.recorded is None else source.recorded.histories["network"].paths()
+    found = [path for path in paths if path.startswith(VALUE) and _BATTERY.search(path)]
+    return [{"path": path, "axis": "left", "color": 0} for path in sorted(found, key=len)[:1]]
 
 
 #: The largest layout, in characters of JSON.

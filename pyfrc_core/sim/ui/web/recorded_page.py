@@ -86,7 +86,8 @@ def _hello(source: Source, collector: Collector, title: RunTitle) -> dict[str, A
         "writes": False,
         "over": True,
     }
-    found["layout"] = _layout(load_layout(source.project.root), collector)
+    if source.abilities.drives:
+        found["layout"] = _layout(load_layout(source.project.root), collector)
     return found
 
 

@@ -133,13 +133,19 @@ class Runs:
     def _forget(self, branch: Branch) -> None:
         self.branches = tuple(each for each in self.branches if each is not branch)
 
-    def add_branch(self, run: PastRun) -> None:
-        """Show another run beside the present one."""
+    @property
+    def network(self) -> ValueHistory:
+        """The present run's values of NetworkTables, its mode and the robot's place."""
+        return self._histories["network"]
+
+    def add_branch(self, run: PastRun) -> int:
+        """Show another run beside the present one, and return the number of its branch."""
         with self._lock:
             number = max([_FIRST_OTHER - 1, *(branch.number for branch in self.branches)]) + 1
             offset = run.offset
             branch = Branch(number, run.name, max(offset, 0.0), run.end + offset, run.histories, offset)
             self.branches = (*self.branches, branch)
+        return number
 
     def move(self, number: int, offset: float) -> bool:
         """Change what is added to the times of a branch that is no former run; return whether there is one."""

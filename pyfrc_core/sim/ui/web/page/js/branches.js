@@ -5,11 +5,14 @@ import { askText } from "#js/dialog.js";
 import { clock, typedNumber } from "#js/format.js";
 import { Menu } from "#js/menu.js";
 import { model } from "#js/model.js";
+import { chooseLog } from "#js/open_log.js";
 import { look } from "#js/past.js";
+import { isRecorded } from "#js/recorded.js";
 import { html } from "#js/view.js";
 
 export function BranchesMenu() {
-  if (!model.branches.length) return null;
+  const opens = model.isOver && !isRecorded && !model.readonly;
+  if (!model.branches.length && !opens) return null;
   /** @type {any[]} */
   const items = model.branches.map((branch) => ({
     text: branch.name,
@@ -22,10 +25,11 @@ export function BranchesMenu() {
     items.push({ separator: true }, { text: `Name “${chosen.name}”…`, act: () => nameBranch(chosen), disabled: model.readonly });
     if (chosen.offset !== undefined) items.push({ text: "Move it in time…", act: () => moveBranch(chosen), disabled: model.readonly });
   }
+  if (opens) items.push(...(items.length ? [{ separator: true }] : []), { text: "Show another log beside it…", act: chooseLog });
   const { difference } = compared;
   return html`${chosen && difference !== undefined && html`<button class="quiet" disabled=${difference === null} onClick=${() => look(difference)}
       title="The first moment at which the branch differs from this run">${difference === null ? "No difference" : `Differs at ${clock(difference)}`}</button>`}
-    <${Menu} label=${`Branches ${model.branches.length}`} icon="branch" title="Compare with an earlier run" items=${items} />`;
+    <${Menu} label=${model.branches.length ? `Branches ${model.branches.length}` : "Compare"} icon="branch" title=${model.isOver ? "Compare with another log" : "Compare with an earlier run"} items=${items} />`;
 }
 
 async function nameBranch(branch) {

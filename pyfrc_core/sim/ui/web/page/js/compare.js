@@ -55,6 +55,7 @@ class Compared {
 export const compared = new Compared();
 
 model.listen((changed) => {
+  // A branch that was just opened, or moved in time, is asked for again.
   const moved = changed.has("branches") && compared.id !== null && compared.branch?.offset !== compared.offset;
   if (changed.has("compared") || moved) compared.choose(model.compared);
 });

@@ -23,7 +23,7 @@ export class RecordedTimeBar extends Live {
   parts = ["status", "shown", "hello", "playback", "branches", "compared", "compared-series"];
 
   render() {
-    const { past, status } = model;
+    const { past, status, hello: { source } } = model;
     const { playing, speed, position } = playback;
     const step = (packets) => () => {
       playback.pause();
@@ -38,7 +38,7 @@ export class RecordedTimeBar extends Live {
         <button class="quiet" title="Look at the packet after" aria-label="Look at the packet after" onClick=${step(1)}><${Icon} name="step" /></button>
         <button class="quiet" title="To the end" aria-label="To the end" onClick=${toEnd}><${Icon} name="last" /></button>
         <time class="clock" title="Robot time">${clock(past ? past.t : model.t)}</time>
-        <span class="run-end">${past ? "" : "End of the run"}</span>
+        <span class="run-end">${past ? "" : source.kind === "log" ? "End of the log" : "End of the run"}</span>
         <label class="speed" title="Robot seconds per second">Speed
           <input type="range" min="0" max="1" step="0.005" value=${position} aria-label="Speed" aria-valuetext=${speedText(speed)}
             onInput=${(event) => { playback.position = Number(event.target.value); }} />
@@ -47,8 +47,8 @@ export class RecordedTimeBar extends Live {
         <${BranchesMenu} />
         <dl class="figures">
           <div title="The length of the run, in robot time"><dt>Length</dt><dd>${clock(status.length)}</dd></div>
-          <div class=${status.overruns ? "warn" : ""} title="Turns of the robot's loop that took longer than its period">
-            <dt>Overruns</dt><dd>${status.overruns ?? 0}</dd></div>
+          ${source.kind === "simulation" && html`<div class=${status.overruns ? "warn" : ""} title="Turns of the robot's loop that took longer than its period">
+            <dt>Overruns</dt><dd>${status.overruns ?? 0}</dd></div>`}
         </dl>
       </div>
       <${Timeline} />

@@ -129,8 +129,9 @@ function switchTheme() {
 
 function LayoutMenu() {
   const chosen = settings.get("layout");
+  const offered = Object.entries(PRESETS).filter(([, { looks }]) => !looks || !model.isDriven);
   /** @type {any[]} */
-  const items = Object.entries(PRESETS).map(([name, preset]) => ({
+  const items = offered.map(([name, preset]) => ({
     text: preset.title,
     checked: name === chosen,
     act: () => settings.set("layout", name),

@@ -12,7 +12,18 @@ export function column(sizes, ...children) {
   return { kind: "column", sizes, children };
 }
 
+/** @type {Record<string, { title: string, looks?: boolean, tree: any }>} */
 export const PRESETS = {
+  log: {
+    title: "Log",
+    looks: true, // for what cannot be driven
+    tree: row(
+      [24, 44, 32],
+      tabs("networktables", "devices"),
+      column([60, 40], tabs("field", "mechanism"), tabs("console")),
+      column([62, 38], tabs("plot:1", "plot:2"), tabs("joysticks", "match", "widgets")),
+    ),
+  },
   driving: {
     title: "Driving",
     tree: row(

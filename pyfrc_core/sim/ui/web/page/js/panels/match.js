@@ -23,7 +23,7 @@ export class MatchPanel extends Live {
         <${TextBox} list="game-messages" text=${station.game_message ?? ""} disabled=${locked} spellcheck="false"
           placeholder="none" onKeyDown=${commit} onChange=${(event) => command("game_message", { text: event.target.value })} />
         <datalist id="game-messages">${options.game_messages.map((text) => html`<option key=${text} value=${text}></option>`)}</datalist></label>
-      ${starts.length > 0 && html`<label>Start
+      ${starts.length > 0 && model.isDriven && html`<label>Start
         <span class="beside"><select value=${start || starts[0]} disabled=${locked} onChange=${(event) => this.choose(event.target.value)}>
           ${starts.map((name) => html`<option key=${name} value=${name}>${name}</option>`)}</select>
           <button disabled=${locked} title="Put the robot back to its start" onClick=${() => command("reset_position", { start: start || starts[0] })}>Reset</button></span></label>`}

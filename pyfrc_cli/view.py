@@ -1,0 +1,69 @@
+"""`pyfrc view`."""
+
+from __future__ import annotations
+
+import sys
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import click
+
+from pyfrc_core.processes.loading import loading
+
+from .verbosity import verbosity
+
+
+@click.command("view", context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--align",
+    type=click.Choice(["enabled", "match", "start"]),
+    default="enabled",
+    help="By what further logs are aligned: the first enabling, the match's beginning, or the beginning of the logs.",
+)
+@click.option(
+    "--offset",
+    "offsets",
+    type=float,
+    multiple=True,
+    metavar="S",
+    help="Show a further log this many seconds later than its own time says; once for each of them, in their order.",
+)
+@click.option(
+    "--page",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="Write the log as a page, such as match.html, for any browser, and show nothing.",
+)
+@click.option(
+    "--share",
+    type=click.Choice(["view"]),
+    is_flag=False,
+    flag_value="view",
+    help="Serve the page to the network, too.",
+)
+@click.option(
+    "--port",
+    type=click.IntRange(1, 65535),
+    metavar="PORT",
+    help="Serve the page at this port. Default: any free one.",
+)
+@click.option(
+    "--allow-host",
+    multiple=True,
+    metavar="HOST",
+    help="Also serve the page under this host name, to which a port of this computer is forwarded.",
+)
+@click.argument("files", nargs=-1, required=True, metavar="FILE...", type=click.Path(path_type=Path, exists=True))
+def command(**request: Any) -> None:
+    """Look at logs of a robot on a page in your browser: values, plots, field, console and timeline.
+
+    A log is a .wpilog of WPILib, AdvantageKit or PyKit, a .dslog or .dsevents of the driver station, or a recording or
+    trace of pyfrc (.jsonl). Further logs are branches of the first one: compare them.
+
+    \b
+    Exit codes: 0 all went well, 1 a file is no log that can be read, 2 wrong usage.
+    """
+    with loading(verbosity().quiet):
+        from pyfrc_core.sim.view import ViewRequest, view
+    sys.exit(view(ViewRequest(**request, quiet=verbosity().quiet), partial(click.echo, nl=False)))

@@ -1,0 +1,258 @@
+"""What the entries of a log mean: which are the mode, the robot's place, the joysticks and the output.
+
+Known are the names of WPILib's `DataLogManager` and `DriverStation`, of AdvantageKit and PyKit, of the driver station's
+own logs (`ds_log`), and of pyfrc. Everything else is shown as a value of NetworkTables, under the name that it has.
+"""
+
+from __future__ import annotations
+
+import re
+from array import array
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from ...physics.pose import METRES_PER_FOOT
+from ...runtime.robot_time import PACKET_US
+from ...season import CURRENT
+from ..engine.messages import MODE, POSE, TYPE, VALUE
+from ..engine.past_run import Happened, PastRun, Stream
+from ..engine.value_history import MISSING, ValueHistory
+from .columns import Column, LogHistory, ReadLog
+
+_HAL, _STATION = "/hal_data/", "DS:"
+#: The entries with the output of a robot.
+_OUTPUT = re.compile(r"(NT:)?/?((Real|Replay)Outputs/)?(messages|console|DSEvents)", re.IGNORECASE)
+#: The entries of the mode, in the order in which they are looked for: enabled, autonomous, test, emergency stop.
+_MODES = (
+    ("DS:enabled", "DS:autonomous", "DS:test", "DS:estop"),
+    *(
+        tuple(f"{table}/{name}" for name in ("Enabled", "Autonomous", "Test", "EmergencyStop"))
+        for table in ("/DriverStation", "NT:/AdvantageKit/DriverStation")
+    ),
+    ("/hal_data/control.enabled", "/hal_data/control.autonomous", "/hal_data/control.test", "/hal_data/control.eStop"),
+    ("/DSLog/Enabled", "/DSLog/Autonomous", "", ""),
+)
+_CONTROL = "NT:/FMSInfo/FMSControlData"
+#: Booleans that are marked when they become true.
+_ALARMS = {"/SystemStats/BrownedOut": "brownout", "/DSLog/Brownout": "brownout", "/DSLog/Watchdog": "watchdog"}
+#: The names of the robot's place, the most certain first.
+_PLACES = (
+    r"/pose",
+    r".*/Odometry/Robot",
+    r".*Field\w*/Robot",
+    r".*(estimated|robot|bot|drive)_?pose(2d)?",
+    r".*/pose",
+)
+_NO_PLACE = re.compile(r"vision|target|goal|tag|set_?point|camera|ghost|desired|limelight", re.IGNORECASE)
+
+
+def run_of(log: ReadLog, name: str, height: float) -> PastRun:
+    """Return the run that a log has.
+
+    :param name: for people
+    :param height: that of the field, in feet
+    """
+    begin = _begin(log)
+    columns = log.columns
+    end = max([begin, *(column.moments[-1] for column in columns.values() if column.moments)])
+    hal = dict(_station(columns))
+    network: dict[str, Column] = {}
+    for each, column in columns.items():
+        if each.startswith(_HAL):
+            hal.setdefault(each.removeprefix(_HAL), column)
+        else:
+            network[_path(each)] = column
+    for each, type_name in log.types.items():
+        if not each.startswith(_HAL):
+            network[TYPE + _path(each).removeprefix(VALUE)] = Column.of([0], [type_name])
+    if (mode := _mode(columns)) is not None:
+        network[MODE] = mode
+    if (place := _place(columns, height)) is not None:
+        network[POSE] = place
+    happened = [*log.happened, *_output(columns), *_alarms(columns)]
+    end = max([end, *(round(each.time * 1e6) for each in happened)])
+    happened = [each._replace(time=max(each.time - begin / 1e6, 0.0)) for each in happened]
+    happened.sort(key=lambda each: each.time)
+    seconds = (end - begin) / 1e6
+    if log.problem:
+        happened.append(Happened(seconds, "warning", f"{name}: {log.problem}.", is_mark=True))
+    histories: dict[Stream, ValueHistory] = {
+        "hal": LogHistory(hal, begin, end),
+        "network": LogHistory(network, begin, end),
+    }
+    return PastRun(name, seconds, histories, tuple(happened))
+
+
+def _begin(log: ReadLog) -> int:
+    """Return the moment that is shown as 0: that of the first value of those that change, as a packet."""
+    columns = log.columns.values()
+    firsts = [column.moments[0] for column in columns if len(column.moments) > 1]
+    firsts = firsts or [column.moments[0] for column in columns if column.moments]
+    firsts += [round(each.time * 1e6) for each in log.happened[:1]]
+    first = min(firsts, default=0)
+    return 0 if first <= PACKET_US else first // PACKET_US * PACKET_US
+
+
+def _path(name: str) -> str:
+    """Return the path of an entry."""
+    if name.startswith(_STATION):
+        return f"{VALUE}/DS/{name.removeprefix(_STATION)}"
+    plain = name.removeprefix("NT:")
+    return VALUE + plain if plain.startswith("/") else f"{VALUE}/{plain}"
+
+
+def together(columns: Sequence[Column | None], make: Callable[..., Any]) -> Column:
+    """Return a column that is made of the values of others whenever one of them changes.
+
+    :param make: is passed one value of each column, None where there is none
+    """
+    moments = sorted(set().union(*(column.moments for column in columns if column is not None)))
+    values = [list(_held(column, moments)) for column in columns]
+    return Column.of(moments, [make(*each) for each in zip(*values, strict=True)])
+
+
+def _held(column: Column | None, moments: Iterable[int]) -> Iterator[Any]:
+    """Yield a column's value at each of some moments, which are in order."""
+    if column is None:
+        yield from (None for _ in moments)
+        return
+    values, own, number = column.values(), column.moments, 0
+    for moment in moments:
+        while number < len(own) and own[number] <= moment:
+            number += 1
+        found = values[number - 1] if number else None
+        yield None if found is MISSING else found
+
+
+# -- the mode ---------------------------------------------------------------------------------------------------------
+
+
+def _mode(columns: Mapping[str, Column]) -> Column | None:
+    for names in _MODES:
+        if names[0] in columns:
+            return together([columns.get(name) for name in names], _mode_name)
+    if (control := columns.get(_CONTROL)) is not None:
+        return together([control], lambda bits: _mode_name(*(bool((bits or 0) & bit) for bit in (1, 2, 4, 8))))
+    return None
+
+
+def _mode_name(enabled: Any, autonomous: Any, test: Any, stopped: Any) -> str:
+    mode = "autonomous" if autonomous else "test" if test else ""
+    if enabled and not stopped:
+        return mode or "teleop"
+    return f"disabled {mode}" if mode else "disabled"
+
+
+# -- the driver station -----------------------------------------------------------------------------------------------
+
+
+def _station(columns: Mapping[str, Column]) -> Iterator[tuple[str, Column]]:
+    """Yield the values of `hal_data` that the entries of a driver station are."""
+    for stick in range(6):
+        for sort in ("axes", "povs"):
+            if (column := columns.get(f"DS:joystick{stick}/{sort}")) is not None:
+                yield f"joysticks[{stick}].{sort}", column
+        if (column := columns.get(f"DS:joystick{stick}/buttons")) is not None:
+            yield f"joysticks[{stick}].buttons", together([column], _buttons)
+        table = f"/DriverStation/Joystick{stick}"
+        for sort, name in (("axes", "AxisValues"), ("povs", "POVs")):
+            if (column := columns.get(f"{table}/{name}")) is not None:
+                yield f"joysticks[{stick}].{sort}", column
+        if (bits := columns.get(f"{table}/ButtonValues")) is not None:
+            yield f"joysticks[{stick}].buttons", together([columns.get(f"{table}/ButtonCount"), bits], _button_bits)
+    if (station := columns.get("/DriverStation/AllianceStation")) is not None:
+        yield "alliance_station", together([station], _plain_number)
+    elif (red := columns.get("NT:/FMSInfo/IsRedAlliance")) is not None:
+        yield "alliance_station", together([red, columns.get("NT:/FMSInfo/StationNumber")], _station_number)
+    for table in ("NT:/FMSInfo", "/DriverStation"):
+        if (message := columns.get(f"{table}/GameSpecificMessage")) is not None:
+            yield "event.game_specific_message", message
+
+
+def _buttons(pressed: Any) -> Any:
+    return (*(False,) * CURRENT.first_button, *(pressed or ()))
+
+
+def _button_bits(count: Any, bits: Any) -> Any:
+    number = 32 if count is None else min(int(count), 32)
+    return _buttons([bool(int(bits or 0) >> each & 1) for each in range(number)])
+
+
+def _plain_number(value: Any) -> int:
+    return int(value or 0)
+
+
+def _station_number(is_red: Any, number: Any) -> int:
+    return min(max(int(number or 1), 1), 3) + (0 if is_red else 3)
+
+
+# -- the robot's place ------------------------------------------------------------------------------------------------
+
+
+def _place(columns: Mapping[str, Column], height: float) -> Column | None:
+    found = [each for each in (_place_of(columns, name) for name in columns) if each is not None]
+    for pattern in _PLACES:
+        matching = [each for each in found if re.fullmatch(pattern, each[0].removeprefix("NT:"), re.IGNORECASE)]
+        if matching:
+            return _placed(*max(matching, key=lambda each: len(each[1]))[1:], height)
+    return None
+
+
+def _placed(moments: array[int], read: _Read, height: float) -> Column:
+    return Column(moments, lambda begin, end: [_on_field(*each, height) for each in read(begin, end)])
+
+
+_Read = Callable[[int, int], Sequence[tuple[Any, Any, Any]]]
+
+
+def _place_of(columns: Mapping[str, Column], name: str) -> tuple[str, array[int], _Read] | None:
+    """Return a place's name, its moments, and what reads x, y and angle in metres and radians; None for others."""
+    column = columns[name]
+    if not column.moments or _NO_PLACE.search(name):
+        return None
+    whole = name.removesuffix("/translation/x")
+    if whole != name:
+        x, y, angle = (columns.get(f"{whole}/{part}") for part in ("translation/x", "translation/y", "rotation/value"))
+        if x is None or y is None or angle is None:
+            return None
+        parts = x, y, angle
+        return whole, x.moments, lambda begin, end: list(zip(*(each.decode(begin, end) for each in parts), strict=True))
+    if name.endswith("/Robot") and _is_place(column.decode(0, 1)[0]):
+        # As Field2d publishes it: metres and degrees.
+        return name, column.moments, lambda begin, end: [_in_radians(each) for each in column.decode(begin, end)]
+    return None
+
+
+def _is_place(value: Any) -> bool:
+    return isinstance(value, tuple) and len(value) == 3 and all(isinstance(each, float) for each in value)
+
+
+def _in_radians(value: Any) -> tuple[Any, Any, Any]:
+    return (value[0], value[1], value[2] * 0.017453292519943295) if _is_place(value) else (MISSING,) * 3
+
+
+def _on_field(x: Any, y: Any, angle: Any, height: float) -> Any:
+    """Return a place as the field has it: feet from the top left corner, radians clockwise."""
+    if not all(isinstance(each, (int, float)) for each in (x, y, angle)):
+        return MISSING
+    return x / METRES_PER_FOOT, height - y / METRES_PER_FOOT, -angle
+
+
+# -- what happened ----------------------------------------------------------------------------------------------------
+
+
+def _output(columns: Mapping[str, Column]) -> Iterator[Happened]:
+    for name, column in columns.items():
+        if _OUTPUT.fullmatch(name):
+            for moment, text in zip(column.moments, column.values(), strict=True):
+                if isinstance(text, str) and text.strip():
+                    yield Happened(moment / 1e6, "", text.rstrip("\n"), is_mark=True)
+
+
+def _alarms(columns: Mapping[str, Column]) -> Iterator[Happened]:
+    for name, text in _ALARMS.items():
+        if (column := columns.get(name)) is not None:
+            changes = Column.of(column.moments, column.values())
+            for moment, value in zip(changes.moments, changes.values(), strict=True):
+                if value is True:
+                    yield Happened(moment / 1e6, "warning", text, is_mark=True)

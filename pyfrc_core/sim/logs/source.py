@@ -1,0 +1,97 @@
+"""A log as what the page shows: a source whose time is over."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+from ...project import Project
+from ..engine.changes import ReportSignal
+from ..engine.field import field_of
+from ..engine.messages import MODE, POSE, VALUE
+from ..engine.output_log import OutputCursor, OutputLog
+from ..engine.past_run import PastRun
+from ..engine.scene import Point, Pose, Scene
+from ..engine.snapshot import Chooser, Snapshot, Status
+from ..engine.source import Abilities, ChangeFeed, FedReader
+from ..engine.value_history import MISSING
+from .align import moment_of
+from .open import OpenedLog
+
+#: The most points of the robot's path.
+_MOST_POINTS = 4000
+#: How long after the enabling code may set its place, in seconds.
+_SETTLED = 0.1
+
+
+class LogSource:
+    """A log, with others as its branches.
+
+    :param project: whose layout, field and names are used
+    :raises SettingsError: when ``sim/config.json`` is invalid
+    """
+
+    abilities = Abilities("log", over=True)
+    wants_to_run = False
+
+    def __init__(self, project: Project, log: OpenedLog, branches: tuple[PastRun, ...] = ()) -> None:
+        self.project, self.recorded, self.branches = project, log.run, branches
+        self.title, self.when = log.run.name, log.when
+        self.field = field_of(project)
+        self.reports = ReportSignal()
+        self.status = Status(state="paused", length=log.run.end, starts=1)
+        self.snapshot: Snapshot | None = self._snapshot(log.run)
+
+    def _snapshot(self, run: PastRun) -> Snapshot:
+        network = run.histories["network"]
+        pose = network.now.get(POSE, MISSING)
+        return Snapshot(
+            time=run.end,
+            mode=str(network.now.get(MODE, "disabled")),
+            scene=Scene(self.field, None if pose is MISSING else Pose(*pose), _trail(run)),
+            values=run.histories["hal"].now,
+            choosers=_choosers(network.now),
+        )
+
+    def output_cursor(self, from_start: bool = True) -> OutputCursor:
+        """Return a reader of nothing: what was printed is in `recorded`."""
+        return OutputLog().cursor()
+
+    def change_cursor(self) -> FedReader:
+        """Return a reader of nothing: all changes are in `recorded`."""
+        return ChangeFeed().cursor()
+
+    def network_cursor(self) -> FedReader:
+        """Return a reader of nothing, likewise."""
+        return ChangeFeed().cursor()
+
+    def attach(self) -> None:
+        """Nothing can be done to a log."""
+
+    def start(self) -> None:
+        """Do nothing, but say so."""
+        with self.reports:
+            self.reports.notify_all()
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+def _trail(run: PastRun) -> tuple[Point, ...]:
+    """Return the robot's path from its first enabling on: before that, code sets the place where it stands."""
+    network = run.histories["network"]
+    _, poses = network.changes(POSE, (moment_of(network, "enabled") or 0.0) + _SETTLED)
+    every = max(len(poses) // _MOST_POINTS, 1)
+    return tuple((pose[0], pose[1]) for pose in poses[::every] if pose is not MISSING)
+
+
+def _choosers(values: MappingProxyType[str, object]) -> tuple[Chooser, ...]:
+    """Return the choosers among values of NetworkTables."""
+    found = []
+    for path, value in values.items():
+        if value == "String Chooser" and path.endswith("/.type"):
+            place = path.removesuffix("/.type")
+            options = values.get(f"{place}/options")
+            default, active = (str(values.get(f"{place}/{name}", "")) for name in ("default", "active"))
+            texts = tuple(map(str, options)) if isinstance(options, tuple) else ()
+            found.append(Chooser(place.removeprefix(VALUE), texts, default, active or default))
+    return tuple(found)

@@ -1,0 +1,72 @@
+"""Logs that a person has dropped on a page: they become branches of what it shows."""
+
+from __future__ import annotations
+
+import asyncio
+import tempfile
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from starlette.requests import ClientDisconnect, Request
+
+from ....errors import PyfrcError
+from ...logs import open_log
+from ...logs.align import offset_of
+
+if TYPE_CHECKING:
+    from .collector import Collector
+
+#: The largest log that a page may send, and all of them together, in bytes.
+_MOST, _MOST_TOGETHER = 1 << 30, 2 << 30
+_LONGEST_NAME = 200
+
+
+class SentLogs:
+    """The logs that pages have sent, in files of their own as long as the page is served."""
+
+    def __init__(self, collector: Collector) -> None:
+        self._collector = collector
+        self._directory: tempfile.TemporaryDirectory[str] | None = None
+        self._count = self._size = 0
+
+    def close(self) -> None:
+        """Remove the files."""
+        if self._directory is not None:
+            with suppress(OSError):  # on Windows, one that is open
+                self._directory.cleanup()
+
+    async def take(self, request: Request) -> dict[str, Any]:
+        """Read the log that a request has, and return what the page gets: the branch, and a text for the person."""
+        name = Path(request.query_params.get("name", "").replace("\\", "/")).name[:_LONGEST_NAME] or "log"
+        if self._directory is None:
+            self._directory = tempfile.TemporaryDirectory(prefix="pyfrc-", ignore_cleanup_errors=True)
+        self._count += 1
+        file = Path(self._directory.name) / f"{self._count}"
+        try:
+            await self._save(request, file)
+            return await asyncio.to_thread(self._open, file, name)
+        except (PyfrcError, OSError, ClientDisconnect) as wrong:
+            file.unlink(missing_ok=True)
+            return {"text": " ".join(str(wrong).split()) or f"{name} did not arrive whole."}
+
+    async def _save(self, request: Request, file: Path) -> None:
+        size = 0
+        with file.open("wb") as saved:
+            async for piece in request.stream():
+                size += len(piece)
+                if size > _MOST or self._size + size > _MOST_TOGETHER:
+                    raise PyfrcError("This log is too large to be dropped on the page.", remedy="pyfrc view opens it.")
+                await asyncio.to_thread(saved.write, piece)
+        self._size += size
+
+    def _open(self, file: Path, name: str) -> dict[str, Any]:
+        collector = self._collector
+        opened = open_log(file, collector.state.field.height, name)
+        offset = offset_of(opened.run.histories["network"], collector.runs.network, "enabled")
+        branch = collector.runs.add_branch(replace(opened.run, offset=offset or 0.0))
+        how = "where the robots were first enabled" if offset is not None else "at their start, since one says no mode"
+        problem = f" But {opened.problem}." if opened.problem else ""
+        collector.announce(f"{name} is a branch, aligned {how}.")
+        return {"branch": branch, "text": f"{name} is shown beside this, aligned {how}.{problem}"}

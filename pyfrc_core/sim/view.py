@@ -1,0 +1,115 @@
+"""`pyfrc view`: logs on the page, without a robot program."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+from ..errors import ProjectError, UsageError
+from ..interruption import ending_like_ctrl_c
+from ..project import MAIN_FILE, Project, find_project
+from ..text_files import check_writable
+from .engine.field import field_of
+from .engine.past_run import PastRun
+from .logs import OpenedLog, open_log
+from .logs.align import Align, offset_of
+from .logs.source import LogSource
+from .page_file import PageFile
+
+#: Prints to the terminal.
+Say = Callable[[str], object]
+
+
+@dataclass(frozen=True)
+class ViewRequest:
+    """The options of the command.
+
+    :param files: the logs; the first one is shown, the others are its branches
+    :param align: by what the others are aligned with the first one
+    :param offsets: what is added to the times of the others, in seconds; None: as they are aligned
+    :param page: where to write the log as a page, instead of serving it
+    """
+
+    files: tuple[Path, ...]
+    align: Align = "enabled"
+    offsets: tuple[float, ...] = ()
+    page: Path | None = None
+    quiet: bool = False
+    share: Literal["view", "drive"] | None = None
+    port: int | None = None
+    allow_host: tuple[str, ...] = ()
+
+
+def view(request: ViewRequest, say: Say) -> int:
+    """Show logs on the page until Ctrl-C, or write them as one file, and return the exit code.
+
+    :raises LogError: when one of them cannot be read
+    """
+    if len(request.offsets) >= len(request.files):
+        raise UsageError(
+            f"--offset is given {len(request.offsets)} times, for {len(request.files) - 1} logs beside the first one",
+            remedy="Give it once for each of them, in their order.",
+        )
+    check_writable("--page", request.page)
+    project = project_or_none() or _no_project()
+    height = field_of(project).height
+    first, *others = [_opened(file, height, say) for file in request.files]
+    source = LogSource(project, first, tuple(_aligned(request, first.run, [each.run for each in others], say)))
+    if request.page is not None:
+        page = PageFile(request.page, f"pyfrc view {first.run.name}")
+        page.follow(source)
+        page.write(source)
+        if not request.quiet:
+            say(f"wrote {request.page}\n")
+        return 0
+    from .ui.web.front_end import WebFrontEnd
+    from .ui.web.server import WebOptions
+
+    front_end = WebFrontEnd(say, WebOptions(request.share, request.port or 0, request.allow_host), request.quiet)
+    with ending_like_ctrl_c() as interruption, suppress(KeyboardInterrupt):
+        try:
+            return front_end.run(source)
+        finally:
+            interruption.finish()
+    return 0
+
+
+def project_or_none() -> Project | None:
+    """Return the project of the current directory, if there is one."""
+    try:
+        return find_project()
+    except ProjectError:
+        return None
+
+
+def _no_project() -> Project:
+    """Return what stands for a project where there is none: it keeps the page's arrangement."""
+    import platformdirs
+
+    root = platformdirs.user_data_path("pyfrc", appauthor=False) / "view"
+    with suppress(OSError):  # then nothing is kept
+        root.mkdir(parents=True, exist_ok=True)
+    return Project(root / MAIN_FILE)
+
+
+def _opened(file: Path, height: float, say: Say) -> OpenedLog:
+    opened = open_log(file, height)
+    if opened.problem:
+        say(f"{file}: {opened.problem}.\n")
+    return opened
+
+
+def _aligned(request: ViewRequest, first: PastRun, others: list[PastRun], say: Say) -> list[PastRun]:
+    found = []
+    for number, run in enumerate(others):
+        if number < len(request.offsets):
+            offset: float | None = request.offsets[number]
+        else:
+            offset = offset_of(run.histories["network"], first.histories["network"], request.align)
+            if offset is None:
+                say(f"{run.name} begins together with {first.name}: one of them does not say when it was enabled.\n")
+        found.append(replace(run, offset=offset or 0.0))
+    return found

@@ -1,0 +1,287 @@
+"""Logs that nobody here has driven: what readers find in them, and what they say about those that are damaged."""
+
+from __future__ import annotations
+
+import json
+import struct
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from written_logs import BOOT, SECOND, Written, a_match
+
+from pyfrc_core.sim.engine.past_run import PastRun
+from pyfrc_core.sim.logs import LogError, open_log
+from pyfrc_core.sim.logs.align import moment_of, offset_of
+from pyfrc_core.sim.logs.wpilog import read_wpilog
+
+HEIGHT = 27.0
+
+
+def network(run: PastRun, path: str) -> tuple[list[float], list[Any]]:
+    times, values = run.histories["network"].changes(path)
+    return list(times), list(values)
+
+
+def test_a_log_has_values_modes_and_output(tmp_path: Path) -> None:
+    opened = open_log(a_match().save(tmp_path / "match.wpilog"), HEIGHT)
+    run = opened.run
+    assert (opened.problem, run.name, run.end) == ("", "match.wpilog", 19.9)
+    assert network(run, "sim.mode") == (
+        [0.0, 1.0, 2.0, 8.0, 9.0, 10.0, 18.0],
+        ["disabled", "disabled autonomous", "autonomous", "disabled autonomous", "disabled", "teleop", "disabled"],
+    )
+    assert network(run, "nt:/SmartDashboard/speed")[1][:3] == [0.0, 1 / 7, 2 / 7]
+    assert run.histories["network"].values_at(0.15)["nt:/SmartDashboard/speed"] == 1 / 7
+    assert run.histories["network"].now["type:/SmartDashboard/speed"] == "double"
+    assert [(each.time, each.text) for each in run.happened] == [(3.0, "hello"), (4.0, "ValueError: it broke")]
+
+
+def test_wpilibs_own_writer_is_read(tmp_path: Path) -> None:
+    from wpimath.geometry import Pose2d, Rotation2d
+
+    from pyfrc_core.wpi import logs
+
+    log = logs.LogWriter(tmp_path / "ours.wpilog", "a test")
+    number, texts = log.entry("/hal_data/pwm[0].value", "number"), log.entry("NT:/text", "text")
+    flags, place = log.entry("NT:/flags", "booleans"), log.poses("/pose", 20_000)
+    number(0.5, 20_000)
+    place(Pose2d(3.048, 3.048, Rotation2d(1.0)), 20_000)
+    texts("one", 40_000)
+    flags([True, False], 40_000)
+    number(-0.5, 60_000)
+    log.close()
+    run = open_log(tmp_path / "ours.wpilog", HEIGHT).run
+    assert [list(each) for each in run.histories["hal"].changes("pwm[0].value")] == [[0.02, 0.06], [0.5, -0.5]]
+    now = run.histories["network"].now
+    assert (now["nt:/text"], now["nt:/flags"]) == ("one", (True, False))
+    assert now["nt:/pose/translation/x"] == 3.048
+    assert now["sim.pose"] == pytest.approx((10.0, HEIGHT - 10.0, -1.0))
+
+
+def test_structs_and_their_arrays_unfold(tmp_path: Path) -> None:
+    log = Written()
+    log.values(".schema/struct:Rotation2d", "structschema", "", (0, b"double value"))
+    schema = b"double speed;Rotation2d angle"
+    log.values(".schema/struct:SwerveModuleState", "structschema", "", (0, schema))
+    two, one = struct.pack("<4d", 1, 2, 3, 4), struct.pack("<2d", 5, 6)
+    log.values("NT:/modules", "struct:SwerveModuleState[]", "", (1, two), (2, one))
+    log.values("/raw", "struct:Unknown", "", (1, b"abc"), (2, b"def"))
+    run = open_log(log.save(tmp_path / "a.wpilog"), HEIGHT).run
+    assert network(run, "nt:/modules/0/speed") == ([0.0, 1.0], [1.0, 5.0])
+    at_first = run.histories["network"].values_at(0.5)
+    assert at_first["nt:/modules/1/angle/value"] == 4.0
+    assert "nt:/modules/1/speed" not in run.histories["network"].now
+    assert run.histories["network"].now["nt:/raw"]["type"] == "Unknown"
+
+
+@pytest.mark.parametrize("table", ["/DriverStation", "NT:/AdvantageKit/DriverStation"])
+def test_layouts_of_advantagekit_and_pykit(tmp_path: Path, table: str) -> None:
+    log = Written()
+    log.values(f"{table}/Enabled", "boolean", "?", (0, False), (1, True))
+    log.values(f"{table}/Autonomous", "boolean", "?", (0, True))
+    log.values("/DriverStation/Joystick0/AxisValues", "float[]", "", (1, struct.pack("<2f", 0.5, -1)))
+    log.values("/DriverStation/Joystick0/ButtonCount", "int64", "q", (0, 3))
+    log.values("/DriverStation/Joystick0/ButtonValues", "int64", "q", (0, 0), (2, 0b101))
+    log.values("/DriverStation/AllianceStation", "int64", "q", (0, 5))
+    log.values("/RealOutputs/Console", "string", "", (1, b"first\nError: second\n"))
+    log.values("/SystemStats/BrownedOut", "boolean", "?", (0, False), (2, True))
+    run = open_log(log.save(tmp_path / "akit.wpilog"), HEIGHT).run
+    assert network(run, "sim.mode")[1] == ["disabled autonomous", "autonomous"]
+    now = run.histories["hal"].now
+    assert now["joysticks[0].axes"] == (0.5, -1.0)
+    assert now["joysticks[0].buttons"][-3:] == (True, False, True)
+    assert now["alliance_station"] == 5
+    assert [each.text for each in run.happened] == ["first\nError: second", "brownout"]
+
+
+def test_logs_are_aligned_by_what_the_robot_did(tmp_path: Path) -> None:
+    match = open_log(a_match().save(tmp_path / "match.wpilog"), HEIGHT).run.histories["network"]
+    practice = Written()
+    practice.values("DS:enabled", "boolean", "?", (0, False), (3, True), (4, False), (5, True), (7, False))
+    practice.values("DS:autonomous", "boolean", "?", (0, False), (3.5, True), (6.5, False))
+    other = open_log(practice.save(tmp_path / "practice.wpilog"), HEIGHT).run.histories["network"]
+    assert (moment_of(match, "enabled"), moment_of(other, "enabled")) == (2.0, 3.0)
+    assert (moment_of(match, "match"), moment_of(other, "match")) == (2.0, 5.0)
+    assert (offset_of(other, match, "enabled"), offset_of(other, match, "match")) == (-1.0, -3.0)
+    assert offset_of(other, match, "start") == 0.0
+
+
+def test_records_of_several_threads_are_put_in_order(tmp_path: Path) -> None:
+    log = Written()
+    log.values("/a", "int64", "q", (1, 1), (3, 3), (2, 2))
+    run = open_log(log.save(tmp_path / "a.wpilog"), HEIGHT).run
+    assert network(run, "nt:/a") == ([0.0, 1.0, 2.0], [1, 2, 3])
+
+
+def test_an_entry_that_begins_again_goes_on(tmp_path: Path) -> None:
+    log = Written()
+    log.values("/a", "int64", "q", (1, 1))
+    log.record(0, b"\x01" + struct.pack("<I", 1), BOOT + SECOND)
+    log.values("/a", "int64", "q", (2, 2))
+    log.values("/a", "string", "", (3, b"text"))
+    run = open_log(log.save(tmp_path / "a.wpilog"), HEIGHT).run
+    assert network(run, "nt:/a")[1] == [1, 2]
+    assert network(run, "nt:/a (string)")[1] == ["text"]
+
+
+def test_a_cut_log_is_shown_until_there(tmp_path: Path) -> None:
+    log = a_match()
+    whole = len(log.data)
+    log.values("NT:/late", "double", "d", (19, 1.0))
+    file = log.save(tmp_path / "cut.wpilog")
+    file.write_bytes(log.data[:-3])
+    opened = open_log(file, HEIGHT)
+    assert opened.problem.startswith("it is cut at byte ")
+    assert int(opened.problem.split()[5].rstrip(",").replace(",", "")) > whole
+    assert opened.run.happened[-1].text == f"cut.wpilog: {opened.problem}."
+    assert len(network(opened.run, "nt:/SmartDashboard/speed")[0]) == 200
+
+
+def test_zeros_after_a_loss_of_power_and_damage_in_the_middle(tmp_path: Path) -> None:
+    log = a_match()
+    file = tmp_path / "a.wpilog"
+    file.write_bytes(log.data + bytes(5000))
+    opened = open_log(file, HEIGHT)
+    assert opened.problem == f"from byte {len(log.data):,} on, it has only zeros, as after a loss of power"
+    place = log.data.index(struct.pack("<d", 100 / 7)) - 17
+    file.write_bytes(log.data[:place] + b"\xff" * 40 + log.data[place:])
+    opened = open_log(file, HEIGHT)
+    assert opened.problem == f"it is damaged at byte {place:,}"
+    assert len(network(opened.run, "nt:/SmartDashboard/speed")[0]) == 200
+    assert [each.text for each in opened.run.happened][:2] == ["hello", "ValueError: it broke"]
+
+
+def test_a_very_long_log_is_shown_as_far_as_memory_allows(tmp_path: Path) -> None:
+    file = a_match().save(tmp_path / "long.wpilog")
+    found = read_wpilog(file, most=100)
+    assert sum(len(column.moments) for column in found.columns.values()) == 100
+    assert "its first 100 records are shown" in found.problem
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.data())
+def test_no_damage_is_more_than_a_sentence(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
+    """Cut anywhere, with bytes changed anywhere: either a run comes of it, or an error for people."""
+    whole = bytearray(a_match().data)
+    for _ in range(data.draw(st.integers(0, 4))):
+        whole[data.draw(st.integers(12, len(whole) - 1))] = data.draw(st.integers(0, 255))
+    file = tmp_path_factory.getbasetemp() / "damaged.wpilog"
+    file.write_bytes(whole[: data.draw(st.integers(0, len(whole)))])
+    try:
+        run = open_log(file, HEIGHT).run
+    except LogError:
+        return
+    for history in run.histories.values():
+        assert history.values_at(run.end / 2) is not None
+        for path in history.paths():
+            times, values = history.changes(path)
+            assert len(times) == len(values)
+            assert list(times) == sorted(times)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("empty.wpilog", b"", "empty.wpilog: this file is empty"),
+        ("only_a_head.wpilog", b"WPILOG\x00\x01", "there is nothing in it: it ends within its header"),
+        ("nothing.wpilog", b"WPILOG\x00\x01\x00\x00\x00\x00", "there is nothing in it: it has no values"),
+        ("photo.wpilog", b"\x89PNG\r\n\x1a\n" * 9, "this is not a log that pyfrc knows"),
+        ("match.hoot", b"CTRE", "owlet -f wpilog"),
+        ("match.revlog", b"REV", "AdvantageScope opens it"),
+        ("a.jsonl", b'{"format": "another"}\n', "this is not a log that pyfrc knows"),
+    ],
+)
+def test_what_is_no_log_is_said_in_a_sentence(tmp_path: Path, name: str, content: bytes, says: str) -> None:
+    file = tmp_path / name
+    file.write_bytes(content)
+    with pytest.raises(LogError, match=says.replace(".", r"\.")):
+        open_log(file, HEIGHT)
+
+
+# -- the driver station's logs ----------------------------------------------------------------------------------------
+
+
+def _stamp(seconds: float) -> bytes:
+    since_1904 = (
+        datetime(2026, 3, 7, 12, tzinfo=timezone.utc) - datetime(1904, 1, 1, tzinfo=timezone.utc)
+    ).total_seconds()
+    return struct.pack(">qQ", int(since_1904 + seconds), 0)
+
+
+#: Bits of a record's status, which are 0 where it is so.
+DISABLED, AUTO, TELEOP, BROWNOUT = 1, 2, 4, 128
+
+
+def ds_record(status: int, volts: float = 12.5, kind: int = 0, power: bytes = b"") -> bytes:
+    return (
+        struct.pack(">BbHBBBBH", 20, 0, round(volts * 256), 100, 255 & ~status, 90, 0, 0)
+        + bytes([0, 0, 0, kind])
+        + power
+    )
+
+
+def test_the_driver_stations_log(tmp_path: Path) -> None:
+    records = [ds_record(DISABLED)] * 10 + [ds_record(AUTO)] * 5 + [ds_record(0)] * 2 + [ds_record(AUTO)] * 3
+    records += [ds_record(TELEOP | BROWNOUT, 6.5)] * 10 + [ds_record(DISABLED, 200.0)]
+    (tmp_path / "match.dslog").write_bytes(struct.pack(">i", 4) + _stamp(0) + b"".join(records) + b"\x01\x02")
+    event = b"<TagVersion>1 <time> 00.100 <message> Warning: low battery <TagVersion>1 <time> 1 <details> joystick 0"
+    (tmp_path / "match.dsevents").write_bytes(
+        struct.pack(">i", 4) + _stamp(0) + _stamp(0.4) + struct.pack(">i", len(event)) + event + b"\x00" * 7
+    )
+    opened = open_log(tmp_path / "match.dslog", HEIGHT)
+    assert opened.when == datetime(2026, 3, 7, 12, tzinfo=timezone.utc)
+    assert opened.problem.startswith("it is cut at byte ")
+    run = opened.run
+    # A packet that is lost says no mode.
+    assert network(run, "sim.mode") == ([0.0, 0.2, 0.4, 0.6], ["disabled", "autonomous", "teleop", "disabled"])
+    assert network(run, "nt:/DSLog/BatteryVoltage")[1] == [12.5, 6.5]
+    assert [each.text for each in run.happened][:3] == ["Warning: low battery", "joystick 0", "brownout"]
+    events = open_log(tmp_path / "match.dsevents", HEIGHT)
+    assert [each.text for each in events.run.happened][:2] == ["Warning: low battery", "joystick 0"]
+    assert "cut at byte" in events.problem
+
+
+def test_the_currents_of_both_kinds_of_power_distribution(tmp_path: Path) -> None:
+    rev = sum(channel * 8 << channel // 3 * 32 + channel % 3 * 10 for channel in range(20)).to_bytes(27, "little")
+    rev = b"\x01" + rev + bytes(16 * each for each in (1, 2, 3, 4)) + b"\x00"
+    ctre = sum(channel * 8 << 158 - channel // 6 * 64 - channel % 6 * 10 for channel in range(16)).to_bytes(21, "big")
+    ctre = b"\x01" + ctre + b"\x00" * 3
+    for kind, power, channels, last in ((33, rev, 24, 4.0), (25, ctre, 16, 15.0)):
+        file = tmp_path / f"{kind}.dslog"
+        file.write_bytes(struct.pack(">i", 4) + _stamp(0) + ds_record(DISABLED, 12, kind, power) * 3)
+        now = open_log(file, HEIGHT).run.histories["network"].now
+        assert now["nt:/DSLog/Currents/7"] == 7.0
+        assert now[f"nt:/DSLog/Currents/{channels - 1}"] == last
+    (tmp_path / "old.dslog").write_bytes(struct.pack(">i", 2) + _stamp(0) + bytes(100))
+    with pytest.raises(LogError, match="versions 3 and 4 can be read"):
+        open_log(tmp_path / "old.dslog", HEIGHT)
+
+
+# -- pyfrc's own files ------------------------------------------------------------------------------------------------
+
+
+def test_recordings_and_traces(tmp_path: Path) -> None:
+    script, trace = tmp_path / "drive.jsonl", tmp_path / "drive.trace.jsonl"
+    steps = [{"format": "pyfrc-input 1", "end": 2.0}, {"t": 1.0, "set": {"mode": "teleop"}}]
+    script.write_text("".join(json.dumps(each) + "\n" for each in steps))
+    opened = open_log(script, HEIGHT)
+    assert network(opened.run, "sim.mode") == ([1.0], ["teleop"])
+    assert "inputs only" in opened.run.happened[0].text
+    lines: list[dict[str, Any]] = [
+        {"format": "pyfrc-trace 2"},
+        {"t": 0.02, "set": {"pwm[0].value": 0.0, "control.enabled": False}},
+        {"t": 1.0, "set": {"pwm[0].value": 0.5, "control.enabled": True, "control.autonomous": True}},
+        {"t": 1.5, "set": {}, "gone": ["pwm[0].value"]},
+        {"sha256": "0"},
+    ]
+    trace.write_text("".join(json.dumps(each) + "\n" for each in lines))
+    run = open_log(script, HEIGHT).run
+    assert network(run, "sim.mode") == ([0.02, 1.0], ["disabled", "autonomous"])
+    assert list(run.histories["hal"].changes("pwm[0].value", 0, 1.2)[1]) == [0.0, 0.5]
+    assert "pwm[0].value" not in run.histories["hal"].now
+    trace.write_text("".join(json.dumps(each) + "\n" for each in lines[:3]) + '{"t": 1.2, "se')
+    assert open_log(trace, HEIGHT).problem == "drive.trace.jsonl: line 4 is cut."

@@ -1,0 +1,164 @@
+"""`pyfrc view`: logs on the page, without a robot program."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import struct
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote, urlsplit
+
+import pytest
+from browser_pages import missing_browser, shared_browser  # noqa: F401 - `browser`
+from recorded_pages import run_in
+from sim_robots import PATIENCE
+from skips import require
+from web_pages import Served, served_source
+from written_logs import Written, a_match
+
+from pyfrc_core.project import Project
+from pyfrc_core.sim.logs import open_log
+from pyfrc_core.sim.logs.source import LogSource
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+HEIGHT = 27.0
+
+
+def practice() -> Written:
+    """Return a log of another robot, which is enabled after 5 s."""
+    log = Written()
+    log.values("DS:enabled", "boolean", "?", (0, False), (5, True), (9, False))
+    log.values("NT:/SmartDashboard/speed", "double", "d", *((step / 10, step / 2) for step in range(100)))
+    return log
+
+
+def send(server: Served, name: str, data: bytes, token: str = "") -> tuple[int, dict[str, Any]]:
+    """Send a log as a page does on which it was dropped."""
+    parts = urlsplit(server.address)
+    connection = http.client.HTTPConnection(parts.netloc, timeout=PATIENCE)
+    try:
+        connection.request("POST", f"/log?{token or parts.query}&name={quote(name)}", data)
+        response = connection.getresponse()
+        text = response.read()
+        return response.status, json.loads(text) if response.status == 200 else {}
+    finally:
+        connection.close()
+
+
+def source_of(directory: Path) -> LogSource:
+    log = open_log(a_match().save(directory / "match.wpilog"), HEIGHT)
+    return LogSource(Project(directory / "robot.py"), log)
+
+
+# -- the command ------------------------------------------------------------------------------------------------------
+
+
+def test_a_log_becomes_a_page_also_outside_of_a_project(make_project: Any) -> None:
+    made = make_project({"readme.txt": "no robot here"})
+    a_match().save(made.path / "match.wpilog")
+    result = made.run("view", "match.wpilog", "--page", "match.html")
+    assert (result.code, result.output) == (0, "wrote match.html\n")
+    run = run_in(made.path / "match.html")
+    assert run["hello"]["source"]["title"] == "pyfrc view match.wpilog"
+    assert (run["hello"]["source"]["kind"], run["hello"]["source"]["over"]) == ("log", True)
+    assert run["network"]["values"]["sim.mode"]["v"][:3] == ["disabled", "disabled autonomous", "autonomous"]
+    assert [line["text"] for line in run["hello"]["console"]] == ["hello", "ValueError: it broke"]
+    assert [mark["text"] for mark in run["hello"]["marks"] if mark["kind"] == "error"] == ["ValueError: it broke"]
+    assert not (made.path / ".pyfrc").exists()
+
+
+def test_what_cannot_be_shown_is_said_in_a_sentence(make_project: Any) -> None:
+    made = make_project({"photo.png": "no log", "match.hoot": "CTRE"})
+    a_match().save(made.path / "match.wpilog")
+    (made.path / "cut.wpilog").write_bytes(a_match().data[:-2])
+    result = made.run("view", "photo.png")
+    assert result.code == 1
+    assert "photo.png: this is not a log that pyfrc knows" in result.output
+    result = made.run("view", "match.wpilog", "match.hoot")
+    assert result.code == 1
+    assert "owlet" in result.output
+    result = made.run("view", "gone.wpilog")
+    assert result.code == 2
+    result = made.run("view", "match.wpilog", "--offset", "1")
+    assert result.code == 2
+    assert "Give it once for each of them" in result.output
+    result = made.run("view", "cut.wpilog", "match.wpilog", "--page", "a.html")
+    assert result.code == 0
+    assert "cut.wpilog: it is cut at byte" in result.output
+
+
+# -- the page ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_log_that_is_dropped_on_the_page_becomes_a_branch(tmp_path: Path) -> None:
+    with served_source(source_of(tmp_path)) as server, server.page() as page:
+        assert page.values["nt:/SmartDashboard/speed"] == pytest.approx(199 / 7)
+        status, answer = send(server, "C:\\logs\\practice.wpilog", practice().data)
+        assert (status, "practice.wpilog is shown beside this" in answer["text"]) == (200, True)
+        page.until(lambda: page.parts.get("branches"))
+        (branch,) = page.parts["branches"]
+        assert (branch["id"], branch["name"], branch["offset"]) == (answer["branch"], "practice.wpilog", -3.0)
+        asked = {"paths": ["nt:/SmartDashboard/speed"], "from": 2.0, "to": 2.5, "points": 99, "branch": branch["id"]}
+        assert page.ask(type="plot", **asked)["series"]["nt:/SmartDashboard/speed"]["v"][0] == 25.0
+        for name, data in (("photo.png", b"PNG"), ("empty.wpilog", b""), ("a.hoot", b"x")):
+            status, answer = send(server, name, data)
+            assert (status, "branch" in answer) == (200, False)
+            assert answer["text"].startswith(name)
+
+
+def test_only_who_may_drive_can_drop_a_log(tmp_path: Path) -> None:
+    with served_source(source_of(tmp_path)) as server:
+        viewing = urlsplit(server.viewing_address).query
+        for token in (viewing, "token=wrong"):
+            assert send(server, "practice.wpilog", practice().data, token)[0] == 403
+
+
+def test_a_match_of_a_thousand_values_opens(tmp_path: Path) -> None:
+    """All values, any moment and any curve of 300,000 records; `docs/view.md` says how long larger ones take."""
+    log = Written()
+    entries = [log.start(f"NT:/values/{number}", "double") for number in range(1000)]
+    pieces = [log.data]
+    for step in range(300):
+        for number, entry in enumerate(entries):
+            head = struct.pack("<BIIQ", 127, entry, 8, 12_000_000 + step * 500_000 + number)
+            pieces.append(head + struct.pack("<d", step + number))
+    log.data = b"".join(pieces)
+    opened = open_log(log.save(tmp_path / "large.wpilog"), HEIGHT)
+    with served_source(LogSource(Project(tmp_path / "robot.py"), opened)) as server, server.page() as page:
+        assert page.values["nt:/values/999"] == 299 + 999
+        assert page.ask(type="values", t=75.2)["values"]["nt:/values/7"] == 150 + 7
+
+
+def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:
+    require("the page of pyfrc view in a browser", missing_browser())
+    with served_source(source_of(tmp_path)) as server:
+        page = browser.new_page(viewport={"width": 1180, "height": 820})
+        wrong: list[str] = []
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.set_default_timeout(PATIENCE * 1000)
+        page.goto(server.address)
+        page.locator(".recorded code", has_text="match.wpilog").wait_for()
+        assert page.get_by_role("button", name="Enable", exact=True).count() == 0
+        assert page.get_by_role("tab", name="Keys", exact=True).count() == 0
+        page.get_by_role("tab", name="NetworkTables", exact=True).click()
+        page.locator("[data-path='nt:/SmartDashboard/speed']").first.wait_for()
+        timeline = page.locator(".timeline")
+        box = timeline.bounding_box()
+        assert box is not None
+        page.mouse.click(box["x"] + box["width"] * 0.25, box["y"] + 12)
+        page.locator(".state b", has_text="Autonomous enabled").wait_for()
+        page.locator(".console", has_text="ValueError: it broke").wait_for()
+        drop = """([name, bytes]) => {
+          const transfer = new DataTransfer();
+          transfer.items.add(new File([new Uint8Array(bytes)], name));
+          document.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true, cancelable: true }));
+        }"""
+        page.evaluate(drop, ["practice.wpilog", list(practice().data)])
+        page.locator(".notice", has_text="practice.wpilog is shown beside this").wait_for()
+        page.get_by_title("Compare with another log", exact=True).click()
+        page.locator(".menu-list button", has_text="practice.wpilog").first.wait_for()
+        page.close()
+        assert wrong == []
