@@ -61,6 +61,10 @@ class Elsewhere:
             self.reports.notify_all()
 
     def start(self) -> None:
+        if self.abilities.over:
+            with self.reports:
+                self.reports.notify_all()
+            return
         for feed in (self.hal, self.network):
             feed.add(RunBegan(1, 0.0, {}))
         self.come(0.0)

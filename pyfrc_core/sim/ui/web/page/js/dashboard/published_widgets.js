@@ -51,7 +51,7 @@ export class ChooserWidget extends TableWidget {
     const options = chooser?.options ?? plain(values.get(`${path}/options`)) ?? [];
     const active = chooser?.active ?? plain(values.get(`${path}/active`)) ?? "";
     const choose = (option) => (chooser ? command("choose", { chooser: chooser.name, option }) : write({ [`${path}/selected`]: option }));
-    return html`<div class="chooser-widget"><select aria-label=${name} value=${active} disabled=${model.readonly} onChange=${(event) => choose(event.target.value)}>
+    return html`<div class="chooser-widget"><select aria-label=${name} value=${active} disabled=${!model.mayWrite} onChange=${(event) => choose(event.target.value)}>
       ${options.map((option) => html`<option key=${option} value=${option} selected=${option === active}>${option}</option>`)}</select></div>`;
   }
 }

@@ -96,7 +96,7 @@ export class Lamp extends ValueWidget {
 export class Switch extends ValueWidget {
   render({ path, title }) {
     return html`<div class="switch-widget"><label class="switch"><input type="checkbox" role="switch" aria-label=${title} checked=${Boolean(this.value)}
-      disabled=${model.readonly} onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label></div>`;
+      disabled=${!model.mayWrite} onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label></div>`;
   }
 }
 
