@@ -7,9 +7,11 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from conftest import sampled
 
 from pyfrc_core.fuzz.oracle.growth import Growth, Growths
 from pyfrc_core.fuzz.oracle.hints import CampaignHints, LoopTimes, MatchHints
+from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.runtime.time.timed_loop import Periodic
 
 ROBOT = """
@@ -66,6 +68,29 @@ def test_a_campaign_ends_with_hints(make_project: Any) -> None:
     assert hints[0].startswith("hint: robot.history grows all the time: by about 50 elements a second, to 1")
     line = project.place("robot.py", "it never is")
     assert hints[1].startswith(f"hint: {line}: Climb.isFinished() was never true: the command ran for up to ")
+
+
+@pytest.mark.parametrize("isolation", sampled(["fork", "reuse"] if FORK_IS_SAFE else ["reuse"], "reuse"))
+def test_a_thread_that_does_not_end_with_the_robot_program(isolation: str, make_project: Any) -> None:
+    robot = """
+        import threading
+        import time
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                threading.Thread(target=self.look, name="camera").start()
+
+            def look(self):
+                while True:
+                    time.sleep(0.5)  # for ever
+        """
+    project = make_project({"robot.py": robot})
+    fuzzed = project.run("fuzz", "--runs", "5", "--isolation", isolation)
+    assert fuzzed.code == 0, fuzzed.output
+    (hint,) = [line for line in fuzzed.output.splitlines() if line.startswith("hint: ")]
+    line = project.place("robot.py", "for ever")
+    assert hint.startswith(f"hint: {line}: the thread 'camera' does not end with the robot program (5 matches)")
 
 
 def growths_of(sizes: list[int]) -> list[Growth]:

@@ -38,7 +38,7 @@ from ..inputs.network_reads import watch_network_reads
 from ..inputs.values import Value
 from ..oracle.checks import attach_oracle
 from ..oracle.failure import FuzzFailure, failure_of
-from ..oracle.hints import HintWatch
+from ..oracle.hints import HintWatch, threads_left
 from ..oracle.misbehavior_notes import MisbehaviorNotes
 from .imported_robot import (
     imported_devices,
@@ -168,6 +168,9 @@ def _fuzz(
         unrepeatable = run.hal_data["CAN"].unrepeatable_devices()
         restarts = fuzz_run.restarts and failure is None and run.clock.now_us < ends_us
         restart = Restart.after(begin.number, run.clock.now_us, rng.getstate()) if restarts else None
+        hints = watch.hints()
+        if failure is None and not restarts:
+            hints = replace(hints, threads=threads_left(run))
         played = MatchResult(
             failure,
             script,
@@ -175,7 +178,7 @@ def _fuzz(
             generator.inputs,
             unrepeatable,
             tuple(notes.found),
-            hints=watch.hints(),
+            hints=hints,
             restart=restart,
             names=dict(states.names),
         )

@@ -5,12 +5,15 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
 from ...project.robot_files import RobotFiles
 from ...runtime.clock import PACKET_US
+from ...runtime.exceptions import TestEnded, TestFroze
 from ...runtime.robot import RobotRun
+from ...runtime.threads.cooperative import line_of_thread
 from ...season import CURRENT
 from ...wording import counted
 from .growth import NETWORK_TABLES, Containers, Growth, Growths
@@ -35,6 +38,7 @@ class MatchHints:
     :param finished: the commands that ended because they were finished
     :param loop_seconds: the processor time of a long loop; a few loops took longer
     :param period: the period of these loops, in seconds
+    :param threads: those that did not end with the robot program: where each was, and its name
     """
 
     growths: tuple[Growth, ...] = ()
@@ -42,6 +46,18 @@ class MatchHints:
     finished: frozenset[str] = frozenset()
     loop_seconds: float = 0.0
     period: float = PACKET_US / 1_000_000
+    threads: tuple[tuple[str, str], ...] = ()
+
+
+def threads_left(run: RobotRun) -> tuple[tuple[str, str], ...]:
+    """End the robot program of a match that is over, if Python would wait for its threads; return those that remain."""
+    if not run.threads.must_end:
+        return ()
+    with suppress(Exception, TestEnded, TestFroze):
+        run.end()
+    places = (record.left_at or line_of_thread(record.ident) or "" for record in run.still_running)
+    names = (record.thread.name if record.thread is not None else "?" for record in run.still_running)
+    return tuple(zip(places, names, strict=True))
 
 
 class LoopTimes:
@@ -126,6 +142,7 @@ class CampaignHints:
         self._unfinished: dict[str, list[int]] = {}
         self._finished: set[str] = set()
         self._slow: list[MatchHints] = []
+        self._threads: dict[tuple[str, str], int] = {}
 
     def add(self, hints: MatchHints) -> None:
         """Add what a match shows."""
@@ -134,6 +151,8 @@ class CampaignHints:
         for name, ran_us in hints.unfinished.items():
             self._unfinished.setdefault(name, []).append(ran_us)
         self._finished |= hints.finished
+        for thread in hints.threads:
+            self._threads[thread] = self._threads.get(thread, 0) + 1
         if hints.loop_seconds > hints.period:
             self._slow.append(hints)
 
@@ -152,6 +171,12 @@ class CampaignHints:
                 yield (
                     f"{name} was never true: the command ran for up to {max(times) / 1e6:.0f} s "
                     f"({counted(len(times), 'match', 'matches')})"
+                )
+        for (place, name), matches in sorted(self._threads.items()):
+            if matches >= _LEAST_MATCHES:
+                yield (
+                    f"{place}: the thread {name!r} does not end with the robot program "
+                    f"({counted(matches, 'match', 'matches')}): end it in endCompetition, or make it a daemon"
                 )
         if len(self._slow) >= _LEAST_MATCHES:
             slow = sorted(self._slow, key=lambda hints: hints.loop_seconds)[len(self._slow) // 2]

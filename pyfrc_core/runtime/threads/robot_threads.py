@@ -352,6 +352,11 @@ class RobotThreads:
         stuck = [record for record in self._all if not (record.finished or record.left_alone)]
         return [*left_running, *(record for record in stuck if record not in left_running)]
 
+    @property
+    def must_end(self) -> bool:
+        """Whether there are threads, besides the robot's own, for which Python would wait at the end of the program."""
+        return any(self._must_end(record) and not record.is_the_robot for record in self._all)
+
     def _must_end(self, record: RobotThread) -> bool:
         """Return whether Python would wait for this thread at the end of the robot program.
 
