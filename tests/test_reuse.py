@@ -87,6 +87,7 @@ DEVICES = """
             self.encoder = wpilib.Encoder(3, 4)
             self.counter = wpilib.Counter(6)
             self.gyro = wpilib.ADXRS450_Gyro()
+            self.accelerometer = wpilib.BuiltInAccelerometer()
             self.field = wpilib.Field2d()
             wpilib.SmartDashboard.putData("field", self.field)
             wpilib.SmartDashboard.putData("pdp", self.pdp)

@@ -66,16 +66,17 @@ def __getattr__(name: str) -> Any:
 
 def devices_exist() -> bool:
     """Return whether this process has created any device in the HAL that still exists."""
-    return _tree().any_exist()
+    return tree().any_exist()
 
 
 def existing_devices() -> list[str]:
     """Return the devices that this process has created in the HAL and that still exist, such as ``pwm[3]``."""
-    return _tree().existing()
+    return tree().existing()
 
 
 @cache  # creating it takes longer than reading it
-def _tree() -> HalData:
+def tree() -> HalData:
+    """Return the tree of this process."""
     from .data import HalData
 
     return HalData()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..wpi import devices
-from . import counters, pneumatics
+from . import counters, pneumatics, tree
 from .created_devices import prepare_reset
 from .modules import MODULES
 
@@ -15,10 +15,15 @@ def forget_inputs() -> None:
     counters.forget_written_counts()
 
 
-def forget_power_distributions() -> None:
-    """Forget the power distributions: in WPILib's simulation, one stays when its object is gone, and does no harm."""
+def forget_what_stays() -> None:
+    """Forget power distributions and the accelerometer: in WPILib's simulation, they stay when their objects are gone.
+
+    They do no harm.
+    """
     for number in range(MODULES):
         module = pneumatics.PowerDistribution(number)
         if pneumatics.exists(module):
             prepare_reset()
             pneumatics.reset(module)
+    if "accelerometer" in (data := tree()):
+        data["accelerometer"]["active"] = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...hal import existing_devices
-from ...hal.reset import forget_inputs, forget_power_distributions
+from ...hal.reset import forget_inputs, forget_what_stays
 from ...wpi import sim_devices
 from .part import Part
 
@@ -17,7 +17,7 @@ class Devices(Part):
         self._before = existing_devices()
 
     def restore(self) -> None:
-        forget_power_distributions()
+        forget_what_stays()
         sim_devices.forget_parts()
 
     def left_over(self) -> Iterator[str]:

@@ -9,7 +9,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...collector import collector_paused
 from ...errors import PyfrcError
 from ...processes.fork import is_forked
 from ...processes.reuse import Interpreters
@@ -67,7 +66,7 @@ def _import_robot(project: Project, send: Send, log: CrashLog) -> None:
     from ...physics.engine import load_physics
     from ...runtime.loading import load_robot
 
-    with suppress(PyfrcError), collector_paused():
+    with suppress(PyfrcError):
         load_robot(project)
         if project.physics_file.is_file():
             load_physics(project)
