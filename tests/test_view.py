@@ -70,6 +70,19 @@ def test_a_log_becomes_a_page_also_outside_of_a_project(make_project: Any) -> No
     assert not (made.path / ".pyfrc").exists()
 
 
+def test_a_page_has_the_other_logs_too(make_project: Any) -> None:
+    made = make_project({})
+    a_match().save(made.path / "match.wpilog")
+    practice().save(made.path / "practice.wpilog")
+    result = made.run("view", "match.wpilog", "practice.wpilog", "--offset", "1.5", "--page", "both.html", "-q")
+    assert (result.code, result.output) == (0, "")
+    run = run_in(made.path / "both.html")
+    (branch,) = run["hello"]["branches"]
+    assert (branch["name"], branch["offset"]) == ("practice.wpilog", 1.5)
+    assert run["branches"][0]["id"] == branch["id"]
+    assert run["branches"][0]["network"]["values"]["nt:/SmartDashboard/speed"]["v"][:2] == [0.0, 0.5]
+
+
 def test_what_cannot_be_shown_is_said_in_a_sentence(make_project: Any) -> None:
     made = make_project({"photo.png": "no log", "match.hoot": "CTRE"})
     a_match().save(made.path / "match.wpilog")

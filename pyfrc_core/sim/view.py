@@ -16,9 +16,14 @@ from .engine.field import field_of
 from .engine.past_run import PastRun
 from .logs import OpenedLog, open_log
 from .logs.align import Align, offset_of
+from .logs.columns import LogHistory
 from .logs.source import LogSource
 from .page_file import PageFile
 
+#: The size of logs that take longer to read than a person waits without a word, in bytes.
+_LARGE = 100 << 20
+#: The most values in one page: about 100 MB in the browser.
+_MOST_ON_PAGE = 5_000_000
 #: Prints to the terminal.
 Say = Callable[[str], object]
 
@@ -56,9 +61,10 @@ def view(request: ViewRequest, say: Say) -> int:
     check_writable("--page", request.page)
     project = project_or_none() or _no_project()
     height = field_of(project).height
-    first, *others = [_opened(file, height, say) for file in request.files]
+    first, *others = [_opened(file, height, request, say) for file in request.files]
     source = LogSource(project, first, tuple(_aligned(request, first.run, [each.run for each in others], say)))
     if request.page is not None:
+        _check_size(first.run, *source.branches)
         page = PageFile(request.page, f"pyfrc view {first.run.name}")
         page.follow(source)
         page.write(source)
@@ -75,6 +81,16 @@ def view(request: ViewRequest, say: Say) -> int:
         finally:
             interruption.finish()
     return 0
+
+
+def _check_size(*runs: PastRun) -> None:
+    """:raises UsageError: when a page with all values of these runs would be too large"""
+    histories = [history for run in runs for history in run.histories.values() if isinstance(history, LogHistory)]
+    if (count := sum(history.count for history in histories)) > _MOST_ON_PAGE:
+        raise UsageError(
+            f"--page: these logs have {count:,} values; a page has at most {_MOST_ON_PAGE:,}",
+            remedy="Leave out --page, or some of the logs.",
+        )
 
 
 def project_or_none() -> Project | None:
@@ -95,7 +111,9 @@ def _no_project() -> Project:
     return Project(root / MAIN_FILE)
 
 
-def _opened(file: Path, height: float, say: Say) -> OpenedLog:
+def _opened(file: Path, height: float, request: ViewRequest, say: Say) -> OpenedLog:
+    if not request.quiet and (size := file.stat().st_size) > _LARGE:
+        say(f"Reading {file} ({size >> 20} MB)…\n")
     opened = open_log(file, height)
     if opened.problem:
         say(f"{file}: {opened.problem}.\n")

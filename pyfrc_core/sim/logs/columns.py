@@ -86,6 +86,11 @@ class LogHistory(ValueHistory):
         return MappingProxyType(self.values_at(self.end))
 
     @property
+    def count(self) -> int:
+        """The number of all changes."""
+        return sum(len(column.moments) for column in self._columns.values())
+
+    @property
     def known_from(self) -> float:
         """The time from which on values are known."""
         return 0.0

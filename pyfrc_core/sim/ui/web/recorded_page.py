@@ -59,11 +59,13 @@ def recorded_page(source: Source, collector: Collector, title: RunTitle) -> str:
     if title.failure is not None:
         collector.marks.add(title.failure.time, "failure", title.failure.headline)
         collector.console.say(f"failed: {title.failure.headline}", title.failure.time, "error")
-    collector.state = replace(collector.state, status=shown, branches=(), wants_to_run=False)
+    branches = tuple(branch for branch in collector.runs.branches if not branch.is_former)
+    collector.state = replace(collector.state, status=shown, branches=branches, wants_to_run=False)
     clean = cleaner(collector.root)
     run: dict[str, Any] = {
         "hello": _cleaned(_hello(source, collector, title), clean),
         **collector.runs.packed(clean),
+        "branches": [branch.plain() | branch.packed(clean) for branch in branches],
     }
     return single_file("A recorded run - pyfrc", gzip.compress(json_text(run).encode(), 9, mtime=0))
 

@@ -51,6 +51,13 @@ class Branch:
         found: dict[str, object] = {"id": self.number, "name": self.name, "from": self.begin, "to": self.end}
         return found if self.is_former else found | {"offset": self.offset}
 
+    def packed(self, clean: Callable[[str], str]) -> dict[str, Any]:
+        """Return its values for a page without a server.
+
+        :param clean: changes each text
+        """
+        return {stream: packed(history, clean) for stream, history in self.histories.items()}
+
 
 class Runs:
     """May be used from any thread.

@@ -1,5 +1,5 @@
 // A run that is part of this file, as `--page` writes it: it answers what the server answers about the past.
-// `history.py` says how its values are stored.
+// `value_history.py` says how its values are stored.
 import { elementIn } from "#js/parts.js";
 import { indexAfter } from "#js/times.js";
 
@@ -14,10 +14,12 @@ export async function readRun() {
   const packed = Uint8Array.from(atob(data.textContent), (letter) => letter.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   const run = await new Response(stream).json();
-  const values = columnsOf(run);
+  const present = { columns: columnsOf(run), offset: 0 };
+  const branches = new Map(run.branches.map((branch) => [branch.id, { columns: columnsOf(branch), offset: branch.offset }]));
+  const chosen = (branch) => branches.get(branch) ?? present;
   const answers = {
-    values: ({ t }) => ({ t, values: valuesAt(values, t) }),
-    plot: ({ paths, from, to }) => ({ series: Object.fromEntries(paths.map((path) => [path, seriesOf(values, path, from, to)])) }),
+    values: ({ t, branch }) => ({ t, values: valuesAt(chosen(branch).columns, t - chosen(branch).offset) }),
+    plot: ({ paths, from, to, branch }) => ({ series: Object.fromEntries(paths.map((path) => [path, curveOf(chosen(branch), path, from, to)])) }),
     subscribe: () => ({}), // nothing comes any more
   };
   return {
@@ -50,6 +52,11 @@ function valuesAt(columns, t) {
     if (value !== undefined) found[path] = value;
   }
   return found;
+}
+
+function curveOf({ columns, offset }, path, from, to) {
+  const curve = seriesOf(columns, path, from - offset, to - offset);
+  return offset ? { ...curve, t: curve.t.map((t) => t + offset) } : curve;
 }
 
 // The steps of a value between two times; the first is the one in force at `from`. `path` may name an element of a list.

@@ -18,10 +18,10 @@ export const PRESETS = {
     title: "Log",
     looks: true, // for what cannot be driven
     tree: row(
-      [24, 44, 32],
+      [24, 48, 28],
       tabs("networktables", "devices"),
-      column([60, 40], tabs("field", "mechanism"), tabs("console")),
-      column([62, 38], tabs("plot:1", "plot:2"), tabs("joysticks", "match", "widgets")),
+      column([50, 50], tabs("field", "mechanism"), tabs("plot:1", "plot:2")),
+      column([58, 42], tabs("console"), tabs("joysticks", "match", "widgets")),
     ),
   },
   driving: {

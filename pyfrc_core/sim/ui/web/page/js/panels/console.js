@@ -50,7 +50,7 @@ export class ConsolePanel extends Live {
         ${model.dropped > 0 && html`<p class="faint">${model.dropped} lines were left out: the robot prints faster than anyone can read.</p>`}
         ${lines.length > visible.length && html`<button class="link" onClick=${() => this.setState({ shown: shown + MOST_SHOWN })}>Show earlier lines (${lines.length - visible.length})</button>`}
         ${visible.map((line) => html`<${Line} key=${line.n} line=${line} />`)}
-        ${!lines.length && html`<p class="empty">${model.console.length ? "No line matches." : "What the robot prints appears here."}</p>`}
+        ${!lines.length && html`<p class="empty">${model.console.length ? "No line matches." : model.isOver ? "There is no output in it." : "What the robot prints appears here."}</p>`}
       </div>
     </div>`;
   }

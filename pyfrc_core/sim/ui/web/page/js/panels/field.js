@@ -96,7 +96,7 @@ export class FieldPanel extends Live {
         <canvas ref=${this.canvas}></canvas>
       </div>
       ${!bare && html`<div class="field-line">
-        <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose.x)} ${pose.unit}</b><i>y</i><b>${numberText(pose.y)} ${pose.unit}</b><i class="long">heading</i><b>${numberText(pose.degrees, 1)}°</b>` : "No physics.py: pyfrc create-physics writes one"}</span>
+        <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose.x)} ${pose.unit}</b><i>y</i><b>${numberText(pose.y)} ${pose.unit}</b><i class="long">heading</i><b>${numberText(pose.degrees, 1)}°</b>` : model.isDriven ? "No physics.py: pyfrc create-physics writes one" : "Where the robot is, is not known"}</span>
         <button class="quiet" title="Show the whole field: double click" aria-label="Show the whole field" onClick=${this.whole}><${Icon} name="fit" /></button>
         <${Menu} label="Show" title="What is drawn" items=${layers} />
       </div>`}

@@ -22,8 +22,8 @@ export class NetworkTablesPanel extends Live {
     const rows = [];
     const visit = (node, depth) => {
       for (const child of [...node.children.values()].sort(byName)) {
-        const isOpen = words.length > 0 || open[child.path];
-        if (child.children.size) rows.push(html`<${Folder} key=${`folder ${child.path}`} node=${child} depth=${depth} open=${isOpen} toggle=${() => this.toggle(child.path)} />`);
+        const isOpen = words.length > 0 || (open[child.path] ?? (depth === 0 && tree.children.size === 1));
+        if (child.children.size) rows.push(html`<${Folder} key=${`folder ${child.path}`} node=${child} depth=${depth} open=${isOpen} toggle=${() => this.toggle(child.path, isOpen)} />`);
         if (child.leaf) this.addLeaf(rows, child, depth, open);
         if (child.children.size && isOpen) visit(child, depth + 1);
       }
@@ -46,9 +46,8 @@ export class NetworkTablesPanel extends Live {
     });
   }
 
-  toggle(path) {
-    const { open } = this.state;
-    this.setState({ open: { ...open, [path]: !open[path] } });
+  toggle(path, isOpen = this.state.open[path]) {
+    this.setState({ open: { ...this.state.open, [path]: !isOpen } });
   }
 }
 
