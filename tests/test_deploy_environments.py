@@ -19,6 +19,8 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, pro
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 from pyfrc_core.deploy.errors import DeployError, RefusedError
 from pyfrc_core.deploy.manifest import Entry, Manifest
+from pyfrc_core.deploy.targets import ControllerKind
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.deploy.targets.systemcore import SYSTEMCORE
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a robot runs Linux")
@@ -56,22 +58,27 @@ class Packages:
         self.content[SECOND] = {**self.content[FIRST], SPINNER: b"VERSION = 2\n", "more.py": b"B = 1\n"}
 
 
-def new_robot(root: Path) -> LocalRobot:
+def new_robot(root: Path, controller: ControllerKind = SYSTEMCORE) -> LocalRobot:
     """A robot with a Python, as the shell script of an installation leaves it, and nothing else."""
-    robot = LocalRobot.new(root, SYSTEMCORE)
+    robot = LocalRobot.new(root, controller)
     send_python(robot)
     return robot
 
 
 def send_python(robot: LocalRobot) -> None:
-    python = robot.home / ".pyfrc/pythons" / PYTHON / "bin/python3"
+    system = robot.controller.layout.python
+    python = robot.paths.of(system) if system else robot.home / ".pyfrc/pythons" / PYTHON / "bin/python3"
     python.parent.mkdir(parents=True, exist_ok=True)
     python.unlink(missing_ok=True)
     python.symlink_to(os.path.realpath(sys.executable))
 
 
-def copied(robot: LocalRobot, root: Path) -> LocalRobot:
-    return robot.copy(root)
+def their_packages(robot: LocalRobot) -> Path:
+    """The directory where another tool installs packages."""
+    layout = robot.controller.layout
+    place = robot.paths.of(layout.environment or str(Path(layout.python).parents[1])) / "lib/python3.14/site-packages"
+    place.mkdir(parents=True)
+    return place
 
 
 @contextlib.contextmanager
@@ -86,7 +93,9 @@ def agent(robot: LocalRobot, agents: Agents, **options: Any) -> Generator[AgentC
 def install(robot: LocalRobot, agents: Agents, packages: Packages, name: str, **cut: Any) -> int:
     send_python(robot)  # if a deploy that does not need it has removed it
     with agent(robot, agents, **cut) as session:
-        return session.install(name, PYTHON, packages.wheels[name], 10_000)
+        wheels = packages.wheels[name]
+        python = None if robot.controller.layout.python else PYTHON
+        return session.install(name, python, wheels, [5_000] * len(wheels.entries))
 
 
 def deploy(robot: LocalRobot, agents: Agents, project: Manifest, environment: str | None, **cut: Any) -> None:
@@ -99,11 +108,11 @@ def started(robot: LocalRobot) -> tuple[Files, Files] | None:
     program = robot.startable()
     if program is None:
         return None
-    python = robot.root / robot.paths.start_command().split()[0].lstrip("/")
-    place = python.parent.parent
+    (python,) = (word for word in robot.paths.start_command().split() if word.endswith("/bin/python3"))
+    place = robot.paths.of(python).parents[1]
     if place.is_symlink():
         place = place.parent / place.readlink()
-    assert (place / "environment.json").is_file() or place.name in ("venv", "taken-1"), "an incomplete environment"
+    assert (place / "environment.json").is_file() or place.name in ("venv", "taken-1", "local"), "an incomplete one"
     (packages,) = place.glob("lib/python3*/site-packages")
     return program, {file.relative_to(packages).as_posix(): file.read_bytes() for file in packages.rglob("*.py")}
 
@@ -119,10 +128,15 @@ def packages(directory: Path) -> Packages:
     return Packages(directory / "wheels")
 
 
+@pytest.fixture(params=[ROBORIO, SYSTEMCORE], ids=lambda each: each.name)
+def controller(request: pytest.FixtureRequest) -> ControllerKind:
+    return request.param
+
+
 def test_a_change_sends_only_what_is_new_and_a_rollback_undoes_it(
-    directory: Path, packages: Packages, agents: Agents
+    controller: ControllerKind, directory: Path, packages: Packages, agents: Agents
 ) -> None:
-    robot = new_robot(directory / "robot")
+    robot = new_robot(directory / "robot", controller)
     old, new = project_of(directory / "old", OLD), project_of(directory / "new", NEW)
     assert install(robot, agents, packages, FIRST) == 2
     assert started(robot) is None
@@ -133,34 +147,58 @@ def test_a_change_sends_only_what_is_new_and_a_rollback_undoes_it(
     assert started(robot) == (OLD, packages.content[FIRST])
     deploy(robot, agents, new, SECOND)
     assert started(robot) == (NEW, packages.content[SECOND])
-    tool = robot.home / "venv/bin/tool"
-    assert tool.read_text().startswith(f"#!{robot.home.resolve()}/.pyfrc/environments/{SECOND}/bin/python3\n")
-    assert os.access(tool, os.X_OK)
+    check_scripts(robot, SECOND)
+    places = [robot.home / ".pyfrc/environments" / name for name in (FIRST, SECOND)]
+    kept, spinner = (next(places[1].rglob(name)).relative_to(places[1]) for name in ("kept.py", "spinner/__init__.py"))
+    shared = [kept, *(each.relative_to(places[1]) for each in places[1].rglob("kept.*.pyc"))]
+    assert len(shared) == 2
+    assert all(Path.samefile(*(place / each for place in places)) for each in shared), "what is the same is one file"
+    assert not Path.samefile(*(place / spinner for place in places))
     with agent(robot, agents) as session:
         assert session.rollback().release.number == 1
     assert started(robot) == (OLD, packages.content[FIRST])
 
 
-def test_what_no_release_needs_is_removed(directory: Path, packages: Packages, agents: Agents) -> None:
+def check_scripts(robot: LocalRobot, environment: str) -> None:
+    place = robot.home.resolve() / ".pyfrc/environments" / environment
+    tool = place / "bin/tool"
+    assert tool.read_text().startswith(f"#!{place}/bin/python3\n")
+    assert os.access(tool, os.X_OK)
+
+
+def test_scripts_of_a_wheel_that_another_environment_has(directory: Path, packages: Packages, agents: Agents) -> None:
     robot = new_robot(directory / "robot")
+    packages.wheels[FIRST] = Manifest(packages.wheels[SECOND].entries[1:])
+    assert (install(robot, agents, packages, SECOND), install(robot, agents, packages, FIRST)) == (3, 0)
+    check_scripts(robot, FIRST)
+
+
+def test_a_wheel_of_which_a_file_is_gone_is_sent_again(directory: Path, packages: Packages, agents: Agents) -> None:
+    robot = new_robot(directory / "robot")
+    install(robot, agents, packages, FIRST)
+    next(robot.home.rglob("kept.py")).unlink()
+    assert install(robot, agents, packages, SECOND) == 3
+
+
+def test_what_no_release_needs_is_removed(
+    controller: ControllerKind, directory: Path, packages: Packages, agents: Agents
+) -> None:
+    robot = new_robot(directory / "robot", controller)
     install(robot, agents, packages, FIRST)
     deploy(robot, agents, project_of(directory / "0", OLD), FIRST)
     install(robot, agents, packages, SECOND)
     for number in range(1, 5):
         deploy(robot, agents, project_of(directory / str(number), {"robot.py": f"# {number}\n"}), SECOND)
     assert [each.name for each in (robot.home / ".pyfrc/environments").iterdir()] == [SECOND]
-    wheels = {f"{each.sha256}.whl" for each in packages.wheels[SECOND].entries}
-    assert {each.name for each in (robot.home / ".pyfrc/wheels").iterdir()} == wheels
-    assert [each.name for each in (robot.home / ".pyfrc/pythons").iterdir()] == [PYTHON]
+    assert not (robot.home / ".pyfrc/wheels").exists()
+    assert list((robot.home / ".pyfrc").glob("pythons/*")) in ([], [robot.home / ".pyfrc/pythons" / PYTHON])
 
 
 def test_another_tools_environment_is_kept_for_the_releases_that_use_it(
-    directory: Path, packages: Packages, agents: Agents
+    controller: ControllerKind, directory: Path, packages: Packages, agents: Agents
 ) -> None:
-    robot = new_robot(directory / "robot")
-    site = robot.home / "venv/lib/python3.14/site-packages"
-    site.mkdir(parents=True)
-    (site / "theirs.py").write_text("C = 1\n")
+    robot = new_robot(directory / "robot", controller)
+    (their_packages(robot) / "theirs.py").write_text("C = 1\n")
     deploy(robot, agents, project_of(directory / "old", OLD), None)
     assert started(robot) == (OLD, {"theirs.py": b"C = 1\n"})
     install(robot, agents, packages, SECOND)
@@ -175,9 +213,9 @@ def test_another_tools_environment_is_kept_for_the_releases_that_use_it(
 
 
 def test_another_tools_program_keeps_the_packages_that_it_was_deployed_with(
-    directory: Path, packages: Packages, agents: Agents
+    controller: ControllerKind, directory: Path, packages: Packages, agents: Agents
 ) -> None:
-    robot = new_robot(directory / "robot")
+    robot = new_robot(directory / "robot", controller)
     install(robot, agents, packages, FIRST)
     deploy(robot, agents, project_of(directory / "old", OLD), FIRST)
     (robot.home / "py").unlink()
@@ -216,7 +254,7 @@ def test_too_little_disk_space_is_said_before_anything_is_sent(
 ) -> None:
     robot = new_robot(directory / "robot")
     with agent(robot, agents) as session, pytest.raises(RefusedError, match="too full to install packages") as caught:
-        session.install(FIRST, PYTHON, packages.wheels[FIRST], 1 << 50)
+        session.install(FIRST, PYTHON, packages.wheels[FIRST], [1 << 50, 1])
     assert "Nothing was changed" in str(caught.value.remedy)
     assert not (robot.home / ".pyfrc/wheels").exists()
 
@@ -227,41 +265,41 @@ class Scenario:
     :param name: ``first``: nothing is there; ``update``; ``theirs``: another tool's environment and program
     """
 
-    def __init__(self, name: str, directory: Path, packages: Packages, agents: Agents) -> None:
+    def __init__(
+        self, controller: ControllerKind, name: str, directory: Path, packages: Packages, agents: Agents
+    ) -> None:
         self._directory, self._packages, self._agents = directory, packages, agents
-        self._before = new_robot(directory / "before")
+        self._before = new_robot(directory / "before", controller)
         self.project = project_of(directory / "new", NEW)
         if name == "update":
             install(self._before, agents, packages, FIRST)
             deploy(self._before, agents, project_of(directory / "old", OLD), FIRST)
         elif name == "theirs":
-            site = self._before.home / "venv/lib/python3.14/site-packages"
-            site.mkdir(parents=True)
-            (site / "theirs.py").write_text("C = 1\n")
+            (their_packages(self._before) / "theirs.py").write_text("C = 1\n")
             deploy(self._before, agents, project_of(directory / "old", OLD), None)
         self.old, self.new = started(self._before), (NEW, packages.content[SECOND])
-        self._installed = copied(self._before, directory / "installed")
+        self._installed = self._before.copy(directory / "installed")
         install(self._installed, agents, packages, SECOND)
         self.installing = self._installed.channel
-        whole = copied(self._installed, directory / "robot")
+        whole = self._installed.copy(directory / "robot")
         deploy(whole, agents, self.project, SECOND)
         assert started(whole) == self.new
         self.deploying = whole.channel
 
     def check_installation(self, **cut: int | bool) -> None:
         """Interrupt the installation, look, then install and deploy."""
-        robot = copied(self._before, self._directory / "robot")
+        robot = self._before.copy(self._directory / "robot")
         with contextlib.suppress(DeployError):
             install(robot, self._agents, self._packages, SECOND, **cut)
         assert started(robot) == self.old, f"after {cut}"
         install(robot, self._agents, self._packages, SECOND)
         deploy(robot, self._agents, self.project, SECOND)
         assert started(robot) == self.new, f"after {cut}, and another deploy"
-        assert not list((robot.home / ".pyfrc").rglob("*.new"))
+        assert not (robot.home / ".pyfrc/wheels").exists()
 
     def check_deploy(self, **cut: int | bool) -> bool:
         """Interrupt the deploy, look, then deploy again. Return whether the new program was in place already."""
-        robot = copied(self._installed, self._directory / "robot")
+        robot = self._installed.copy(self._directory / "robot")
         with contextlib.suppress(DeployError):
             deploy(robot, self._agents, self.project, SECOND, **cut)
         found = started(robot)
@@ -272,14 +310,23 @@ class Scenario:
         return found == self.new
 
 
-SCENARIOS = sampled(["first", "update", "theirs"], "update")
+SCENARIOS = sampled(
+    [(controller, name) for controller in (ROBORIO, SYSTEMCORE) for name in ("first", "update", "theirs")],
+    (SYSTEMCORE, "update"),
+)
 
 
-@pytest.fixture(params=SCENARIOS)
-def scenario(request: pytest.FixtureRequest, directory: Path, packages: Packages, agents: Agents) -> Scenario:
-    return Scenario(request.param, directory, packages, agents)
+@pytest.fixture
+def scenario(controller: ControllerKind, name: str, directory: Path, packages: Packages, agents: Agents) -> Scenario:
+    return Scenario(controller, name, directory, packages, agents)
 
 
+on_each = pytest.mark.parametrize(
+    ("controller", "name"), SCENARIOS, ids=lambda each: each if isinstance(each, str) else each.name
+)
+
+
+@on_each
 @pytest.mark.parametrize("places", sampled([5, 50], 5))
 def test_connections_cut(scenario: Scenario, places: int) -> None:
     """Through the installation and the deploy, in both directions: 200 times in all, by night."""
@@ -291,6 +338,7 @@ def test_connections_cut(scenario: Scenario, places: int) -> None:
             scenario.check_deploy(**{f"cut_{way}_robot": total * number // places})
 
 
+@on_each
 @pytest.mark.parametrize("loses", [False, True], ids=["killed", "without power"])
 @pytest.mark.parametrize("each", sampled([10, 1], 10))
 def test_agents_killed_before_steps_on_the_disk(scenario: Scenario, each: int, loses: bool) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import getpass
 import socket
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
@@ -80,7 +80,8 @@ class AgentClient:
     ) -> AgentClient:
         """Start the agent on the robot, and read the robot's facts.
 
-        :param python: the path of the Python in which it runs, or words for a shell; default: the program's
+        :param python: the path of the Python in which it runs, or the beginning of a shell command; default: the path
+            of the controller's
         :param hello: fields for the first message: ``modules`` to look for in the robot's Python; in tests, ``root``,
             the directory with the robot's files
         """
@@ -121,18 +122,25 @@ class AgentClient:
             return self._request(Plan.of, "plan", files=_as_lists(manifest))
 
     def install(
-        self, environment: str, python: str, wheels: Manifest, unpacked: int, on_progress: OnProgress | None = None
+        self,
+        environment: str,
+        python: str | None,
+        wheels: Manifest,
+        unpacked: Sequence[int],
+        on_progress: OnProgress | None = None,
     ) -> int:
         """Make an environment on the robot, beside the current one. Return how many wheels were sent.
 
         :param environment: its name
-        :param python: the name of its Python, which is on the robot
+        :param python: the name of its Python, which is on the robot; None: the system's
         :param wheels: its packages
-        :param unpacked: the bytes that they take on the disk
+        :param unpacked: the bytes that each takes on the disk
         """
-        listed = [[each.path, each.size, each.sha256] for each in wheels.entries]
+        listed = [
+            [each.path, each.size, each.sha256, taken] for each, taken in zip(wheels.entries, unpacked, strict=True)
+        ]
         with self._reporting(on_progress):
-            self._send("install", environment=environment, python=python, wheels=listed, unpacked=unpacked)
+            self._send("install", environment=environment, python=python, wheels=listed)
             needed = self._stream.read_message(lambda fields: _needed(fields, wheels))
             if needed:
                 self._send_contents(needed, on_progress, None)

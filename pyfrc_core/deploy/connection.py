@@ -90,6 +90,13 @@ class Connection:
         """Return whether the robot is a virtual robot, according to its greeting."""
         return str(self._transport.remote_version).startswith(VIRTUAL_ROBOT_GREETING)
 
+    def python(self, environment: str | None = None) -> str:
+        """Return the beginning of a shell command: the Python that the current program starts with.
+
+        :param environment: the name of an environment, whose Python is taken if it is complete
+        """
+        return self.controller.python if self.is_virtual_robot else self.controller.python_command(environment)
+
     @property
     def host(self) -> str:
         return self.address.host

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import shlex
-import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +23,7 @@ from .connection import Connection, connection_lost
 from .errors import DeployError, NoPythonError, OtherComputerError, RefusedError
 from .manifest import Entry, Manifest
 from .progress import DeployProgress, Phase
+from .robot_checks import python_problem, refuse_installation
 from .targets import ControllerKind
 
 if TYPE_CHECKING:
@@ -37,41 +36,17 @@ _NAME_LENGTH = 16
 _CHUNK_BYTES = 1 << 16
 _UNPACK_SECONDS = 600.0
 
-# The robot may have no Python yet, so this is for its shell. If it is interrupted, the next one removes its remains.
-_SEND_PYTHON = """
-set -e
-umask 022
-mkdir -p {pythons}
-cd {pythons}
-[ ! -e {name} ] || {{ echo there; exit 0; }}
-rm -rf .new
-set -- $(df -Pk . | tail -n 1)
-[ "$4" -ge {kilobytes} ] || {{ echo "full $4"; exit 0; }}
-mkdir .new
-cd .new
-echo send
-cat > archive
-echo "{sha256}  archive" | sha256sum -c > /dev/null
-tar -xzf archive
-rm archive
-set -- */
-"$1/bin/python3" -c ""
-sync
-mv "$1" ../{name}
-rmdir ../.new
-"""
-
 
 @dataclass(frozen=True)
 class Environment:
     """The environment on the robot that a project's lock asks for.
 
-    :param lock: its Python and packages
-    :param home: the directory on the robot with environments and Pythons
+    :param lock:       its Python and packages
+    :param controller: of the robot
     """
 
     lock: Lock
-    home: str
+    controller: ControllerKind
 
     @property
     def name(self) -> str:
@@ -82,35 +57,32 @@ class Environment:
 
     @property
     def python_name(self) -> str:
-        """The name of its Python on the robot."""
+        """A name for its Python on the robot."""
         return self.lock.python.sha256[:_NAME_LENGTH]
 
     @property
     def python(self) -> str:
         """The path of its Python on the robot."""
-        return f"{self.home}/pythons/{self.python_name}/bin/python3"
-
-    def or_else(self, python: str) -> str:
-        """Return words for a shell that start its Python if it is complete, else another one."""
-        place = f"{self.home}/environments/{self.name}"
-        return f"p={place}/bin/python3; [ -e {place}/environment.json ] || p={python}; exec $p"
+        layout = self.controller.layout
+        return layout.python or f"{layout.home}/.pyfrc/pythons/{self.python_name}/bin/python3"
 
     def is_met_by(self, facts: RobotFacts) -> bool:
         """Return whether the robot has all of it already, in this environment or in another tool's."""
+        same = facts.python == self.lock.python.version
+        if self.controller.layout.python:  # which is replaced by no newer one: the old program needs it
+            same = python_problem(facts.python, str(CURRENT.year)) is None
         packages = {each.name: each.version for each in self.lock.packages}
-        same = facts.python == self.lock.python.version and facts.packages.items() >= packages.items()
+        same = same and facts.packages.items() >= packages.items()
         return facts.environment == self.name or (facts.environment is None and same)
 
 
 def wanted_environment(project: Project, controller: ControllerKind) -> Environment | None:
-    """Return the environment that the project's lock asks for, or None: no lock, or a robot with a Python of its own.
+    """Return the environment that the project's lock asks for, or None without a lock.
 
     :raises SettingsError: if the lock is damaged, or of another season
     """
-    if not controller.layout.environment:
-        return None
     lock = load_lock(lock_file_of(project), CURRENT)
-    return None if lock is None else Environment(lock, f"{controller.layout.home}/.pyfrc")
+    return None if lock is None else Environment(lock, controller)
 
 
 def start_agent(
@@ -123,9 +95,9 @@ def start_agent(
     from .agent_client import AgentClient
 
     if wanted is None:
-        return AgentClient.start(connection, hello=hello)
+        return AgentClient.start(connection, hello=hello, python=connection.python())
     with contextlib.suppress(NoPythonError):
-        return AgentClient.start(connection, hello=hello, python=wanted.or_else(connection.controller.python))
+        return AgentClient.start(connection, hello=hello, python=connection.python(wanted.name))
     return None
 
 
@@ -139,9 +111,11 @@ def install(
     """Install an environment, and start the agent in it.
 
     :param robot: the agent that runs in another Python, which then ends; None without one
+    :raises RefusedError: if the robot has another problem, which an installation does not solve
     :raises NotSyncedError: if this computer does not have the files
     """
     try:
+        refuse_installation(connection, None if robot is None else robot.facts)
         with progress.phase("install") as phase:
             robot = _install(connection, robot, wanted, phase)
     finally:
@@ -161,15 +135,22 @@ def _install(connection: Connection, robot: AgentClient | None, wanted: Environm
     from .agent_client import AgentClient
 
     files = {each: cached_file(each, CURRENT) for each in wanted.lock.files}
-    phase.doing(str(wanted.lock.python))
-    sent_python = _send_python(connection, wanted, files[wanted.lock.python], phase)
+    installer, has_place = wanted.controller.install_python, bool(wanted.controller.layout.python)
+    sent_python = False
+    if robot is None or not has_place:
+        phase.doing(str(wanted.lock.python))
+        with contextlib.ExitStack() as stack:
+            user = connection
+            if installer.user != wanted.controller.layout.user:
+                user = stack.enter_context(connection.as_user(installer.user))
+            sent_python = _send_python(user, wanted, files[wanted.lock.python], phase)
     if robot is None:
         robot = AgentClient.start(connection, python=wanted.python)
     wheels = Manifest(
         tuple(Entry(each.file, each.size, each.sha256, False, files[each]) for each in wanted.lock.packages)
     )
-    unpacked = sum(_unpacked_size(entry.file) for entry in wheels.entries)
-    sent = robot.install(wanted.name, wanted.python_name, wheels, unpacked, phase.work)
+    unpacked = [_unpacked_size(entry.file) for entry in wheels.entries]
+    sent = robot.install(wanted.name, None if has_place else wanted.python_name, wheels, unpacked, phase.work)
     phase.detail = f"{counted(sent, 'package')} of {len(wheels.entries)} sent"
     if sent_python:
         phase.detail = f"{wanted.lock.python}, {phase.detail}"
@@ -196,16 +177,10 @@ def _send_python(connection: Connection, wanted: Environment, archive: Path, pha
     :raises RefusedError: if the robot's disk is too full
     :raises DeployError: if it cannot be unpacked
     """
-    with archive.open("rb") as stream:
-        stream.seek(-4, 2)
-        (unpacked,) = struct.unpack("<I", stream.read())  # gzip's last field
-    size = archive.stat().st_size
-    needed = size + unpacked * 5 // 4
-    script = _SEND_PYTHON.format(
-        pythons=shlex.quote(f"{wanted.home}/pythons"),
-        name=wanted.python_name,
-        kilobytes=needed // 1024,
-        sha256=wanted.lock.python.sha256,
+    size, installer = archive.stat().st_size, wanted.controller.install_python
+    needed = installer.needed(archive)
+    script = installer.script.format(
+        name=wanted.python_name, size=size, kilobytes=needed // 1024, sha256=wanted.lock.python.sha256
     )
     with connection.opened(script) as channel:
         try:

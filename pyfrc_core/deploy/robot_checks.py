@@ -1,8 +1,6 @@
 """Checks whether the robot is ready for a Python program, with a remedy for each problem.
 
-`pyfrc deploy`, `pyfrc doctor` and docs/deploy.md share the instructions for preparing a robot. The `robotpy` command of
-the package `robotpy` installs Python, WPILib and the project's packages on the robot. It is not a dependency of pyfrc,
-since it is needed only once after imaging.
+`pyfrc deploy`, `pyfrc doctor` and docs/deploy.md share the instructions for preparing a robot.
 """
 
 from __future__ import annotations
@@ -17,14 +15,13 @@ from shlex import quote
 from typing import TYPE_CHECKING
 
 from .._version import requirement
-from ..config.packages import install_line
 from ..season import CURRENT, SEASONS
 from ..terminal_text import one_line
 from .connection import Connection
 from .errors import ConnectionFailedError, NoPythonError, RefusedError
 from .facts import VIRTUAL_IMAGE
 from .progress import DeployProgress
-from .targets import AdministratorTask, ControllerKind, controller_of
+from .targets import AdministratorTask, ControllerKind
 
 if TYPE_CHECKING:
     from .agent.layout import Layout
@@ -46,6 +43,19 @@ def refuse_unfit_robot(facts: RobotFacts, controller: ControllerKind, where: str
             raise RefusedError(each.text, where=where, remedy=f"{each.remedy} {NO_CHECK}")
 
 
+def refuse_installation(connection: Connection, facts: RobotFacts | None) -> None:
+    """Check whether anything but Python and packages is missing on a robot, before these are installed.
+
+    :param facts: None: it has no Python
+    :raises RefusedError: if something is
+    """
+    found = RobotWithoutPython(connection).obstacles() if facts is None else obstacles(facts, connection.controller)
+    for each in found:
+        if not each.installable:
+            remedy = each.remedy if each.certain else f"{each.remedy} {NO_CHECK}"
+            raise RefusedError(each.text, where=str(connection.address), remedy=remedy)
+
+
 def obstacles(facts: RobotFacts, controller: ControllerKind) -> Iterator[Obstacle]:
     """Yield the reasons why a robot is not ready, most important first.
 
@@ -61,13 +71,15 @@ def obstacles(facts: RobotFacts, controller: ControllerKind) -> Iterator[Obstacl
     if facts.image == VIRTUAL_IMAGE:  # nothing is installed on it
         prepare = same_version = f"Start the virtual robot with wpilib {ours}, as here: pyfrc virtual-robot."
     if facts.wpilib is None:
-        yield Obstacle("there is no wpilib for Python on the robot", prepare)
+        yield Obstacle("there is no wpilib for Python on the robot", prepare, installable=True)
     wrong_python = python_problem(facts.python, ours)
-    if wrong_python is not None:
-        yield Obstacle(wrong_python, prepare, certain=False)
+    if wrong_python is not None and controller.layout.python:  # another version beside it would take its name
+        yield Obstacle(wrong_python, image, certain=False)
+    elif wrong_python is not None:
+        yield Obstacle(wrong_python, prepare, certain=False, installable=True)
     if facts.wpilib not in (None, ours):
         text = f"the robot has wpilib {facts.wpilib}, this computer has {ours}: what passes here may fail there"
-        yield Obstacle(text, same_version, certain=False)
+        yield Obstacle(text, same_version, certain=False, installable=True)
     wrong_image = image_problem(facts.image, ours, controller)
     if wrong_image is not None:
         yield Obstacle(wrong_image, image, certain=False)
@@ -113,14 +125,9 @@ def _our_wpilib() -> str:
 
 _SECTION = 'docs/deploy.md, "A freshly imaged robot", has every step.'
 
-#: How to install the packages in ``[tool.robotpy]`` on the robot, and how to prepare it. The first command needs the
-#: internet, the second the robot.
-if controller_of(CURRENT).layout.environment:
-    INSTALL_PACKAGES = "with internet: pyfrc sync; then at the robot: pyfrc deploy"
-    PREPARE = f"Prepare the robot: {INSTALL_PACKAGES}. {_SECTION}"
-else:
-    INSTALL_PACKAGES = "with internet: python -m robotpy sync; then at the robot: python -m robotpy deploy"
-    PREPARE = f"Prepare the robot: {install_line('robotpy')}; {INSTALL_PACKAGES}. {_SECTION}"
+#: How to install the packages in ``[tool.robotpy]`` on the robot, and how to prepare it.
+INSTALL_PACKAGES = "with internet: pyfrc sync; then at the robot: pyfrc deploy"
+PREPARE = f"Prepare the robot: {INSTALL_PACKAGES}. {_SECTION}"
 
 _REMOVE_OTHER_LANGUAGES = "To remove it: pyfrc undeploy --java-cpp"
 _MAX_NAMED = 2  # files of other languages
@@ -136,11 +143,13 @@ class Obstacle:
     :param text:    the problem
     :param remedy:  how to solve it
     :param certain: whether programs cannot run at all; otherwise they might run
+    :param installable: whether an installation of Python and packages solves it
     """
 
     text: str
     remedy: str
     certain: bool = True
+    installable: bool = False
 
 
 def other_languages_notice(found: Sequence[str]) -> tuple[str, str]:
@@ -244,7 +253,7 @@ class RobotWithoutPython:
             wrong_image = None
         if wrong_image is not None:
             yield Obstacle(wrong_image, image_it(self._controller))
-        yield Obstacle(f"there is no Python on the robot ({self._controller.python})", PREPARE)
+        yield Obstacle(f"there is no Python on the robot ({self._controller.python})", PREPARE, installable=True)
 
     def refusal(self, error: NoPythonError) -> RefusedError:
         """Return the error for a command that needs the agent."""

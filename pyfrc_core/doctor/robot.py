@@ -124,7 +124,7 @@ class RobotSearch:
 
     def _examine(self, project: Project | None, connection: Connection) -> Iterator[CheckResult]:
         try:
-            robot = AgentClient.start(connection)
+            robot = AgentClient.start(connection, python=connection.python())
         except NoPythonError:
             there = RobotWithoutPython(connection)
             obstacles = list(there.obstacles())

@@ -1,7 +1,9 @@
 """Python environments on the robot: each has a Python and packages, and is never changed once it is complete.
 
-The environment that programs start with is a link, as the code is, and each release's record names its own: a switch
-to a release replaces both links (`releases`). An environment is complete when it has its record, which is written last.
+Each release's record names its environment. The one that programs start with is a link, as the code is, and a switch to
+a release replaces both links (`releases`). Where the system has a Python, the start command names the environment
+instead. An environment is complete when it has its record, which is written last. Its files are never changed, so
+environments share those of the same wheel.
 """
 
 from __future__ import annotations
@@ -17,12 +19,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from .activity import Activity
+from .compiling import CompiledForms
 from .disk import free_bytes, remove, text_of, write_whole
 from .robot_paths import Refusal, RobotPaths
 from .system import exchange, flush, linked_directory, make_link
-from .wheels import unpack_wheel
+from .wheels import link_wheel, unpack_wheel
 
-#: An environment's record: the name of its Python, and the SHA-256 of its wheels.
+#: An environment's record: the name of its Python (None: the system's), and its files, by the SHA-256 of their wheel.
 RECORD = "environment.json"
 _NAME, _TAKEN = re.compile(r"[0-9a-f]{16}"), re.compile(r"taken-\d+")
 _SHA256 = re.compile(r"[0-9a-f]{64}")
@@ -31,24 +34,26 @@ _RESERVE = 8 << 20
 
 
 class Wheel(NamedTuple):
-    """A wheel for an environment."""
+    """A wheel for an environment; `unpacked` are the bytes that its files take on the disk."""
 
     file: str
     size: int
     sha256: str
+    unpacked: int
 
 
 class Environments:
     """The environments on the robot, and the files that they are made of.
 
-    :param paths: the robot's files; the layout must have an environment
+    :param paths: the robot's files; the layout must have environments
     """
 
     def __init__(self, paths: RobotPaths, activity: Activity) -> None:
         self._paths = paths
         self._activity = activity
-        #: The link to the environment that programs start with, or a directory created by another tool.
-        self.link = paths.of(paths.layout.environment)
+        #: The link to the environment that programs start with, or a directory created by another tool; None: start
+        #: commands name it.
+        self.link = paths.of(paths.layout.environment) if paths.layout.environment else None
         self._directory = paths.own / "environments"
         self._pythons = paths.own / "pythons"
         self._wheels = paths.own / "wheels"
@@ -69,27 +74,31 @@ class Environments:
 
     def current(self) -> str | None:
         """Return the environment that programs start with, or None: another tool's, or none."""
+        if self.link is None:
+            pattern = re.escape(self._paths.layout.environments) + "/([0-9a-f]{16})/"
+            found = re.search(pattern, self._paths.start_command())
+            return found[1] if found is not None and self.is_usable(found[1]) else None
         place = linked_directory(self.link)
         if place is None or place.parent != self._directory or not self.is_usable(place.name):
             return None
         return place.name
 
     def other_than_current(self, name: str | None) -> str | None:
-        """Return the environment of a release if programs start with another one now, else None.
+        """Return the environment of a release if the link leads to another one now, else None.
 
         :raises Refusal: if it is no longer there
         """
         if name is None or name == self.current():
             return None
         if self.is_usable(name):
-            return name
+            return None if self.link is None else name
         if self.next_taken() is not None and _TAKEN.fullmatch(name):
             return None  # interrupted before another tool's environment was moved: it is in its place still
         raise Refusal("release", "the packages of this release are no longer on the robot", "Choose another.")
 
     def next_taken(self) -> str | None:
         """Return a name for another tool's environment that will be replaced, or None if there is none."""
-        if self.link.is_dir() and linked_directory(self.link) is None:
+        if self.link is not None and self.link.is_dir() and linked_directory(self.link) is None:
             names = (f"taken-{number}" for number in count(1))
             return next(name for name in names if not self.directory(name).exists())
         return None
@@ -99,6 +108,7 @@ class Environments:
 
         :param taken: the name for another tool's environment that is in its place
         """
+        assert self.link is not None
         link = self._paths.own / "venv" if taken is None else self.directory(taken)
         remove(link)
         make_link(link, self.directory(name), self.link)
@@ -124,42 +134,52 @@ class Environments:
     def install(self, request: dict[str, Any], receive: Any) -> None:
         """Make an environment, unless it is there.
 
-        :param request: ``environment``, its name; ``python``, that of its Python, which is on the robot; ``wheels``,
-            file, size and SHA-256 of each; ``unpacked``, the bytes that they take
+        :param request: ``environment``, its name; ``python``, that of its Python, which is on the robot (None: the
+            system's); ``wheels``, each as a `Wheel`
         :param receive: called with the wheels that are not on the robot, and the file for each
         :raises Refusal: if there is not enough disk space, or it cannot be made
         """
-        name, python = str(request["environment"]), str(request["python"])
-        wheels = [Wheel(str(file), int(size), str(sha256)) for file, size, sha256 in request["wheels"]]
-        if not (_NAME.fullmatch(name) and _NAME.fullmatch(python) and all(_SHA256.fullmatch(x.sha256) for x in wheels)):
+        name, python = str(request["environment"]), request["python"]
+        wheels = [Wheel(*each) for each in request["wheels"]]
+        names = [name] if python is None else [name, str(python)]
+        if not all(map(_NAME.fullmatch, names)) or not all(_SHA256.fullmatch(each.sha256) for each in wheels):
             raise Refusal("protocol", "an environment has a name that is not one")
-        interpreter = self._pythons / python / "bin/python3"
+        interpreter = self._paths.of(self._paths.layout.python)
+        if python is not None:
+            interpreter = self._pythons / python / "bin/python3"
         if not os.path.lexists(interpreter):
             what = "the Python that was sent is no longer there: another computer has deployed meanwhile"
             raise Refusal("environment", what, "Run the command again.")
         complete = self.is_usable(name)
-        missing = [] if complete else [each for each in wheels if not self._store(each).is_file()]
+        there = {} if complete else self._unpacked(python, {each.sha256 for each in wheels})
+        missing = [] if complete else [each for each in wheels if each.sha256 not in there]
         if not complete:
-            self._check_disk_space(sum(each.size for each in missing) + int(request["unpacked"]))
+            self._check_disk_space(sum(each.size + each.unpacked for each in missing))
         self._wheels.mkdir(parents=True, exist_ok=True)
-        receive(missing, [self._wheels / f"{each.sha256}.new" for each in missing])
+        receive(missing, [self._wheels / each.sha256 for each in missing])
         if complete:
             return
+        record = {"python": python, "wheels": self._make(self.directory(name), interpreter, wheels, there)}
         self._flush()
-        for each in missing:
-            (self._wheels / f"{each.sha256}.new").replace(self._store(each))
-        self._make(self.directory(name), interpreter, wheels)
-        self._flush()
-        record = {"python": python, "wheels": [each.sha256 for each in wheels]}
         write_whole(self.directory(name) / RECORD, json.dumps(record))
         self._flush()
+        remove(self._wheels)
 
     def _flush(self) -> None:
         self._activity.begin("sync")
         self._activity.wait_for(flush, self._paths.own)
 
-    def _store(self, wheel: Wheel) -> Path:
-        return self._wheels / f"{wheel.sha256}.whl"
+    def _unpacked(self, python: str | None, wanted: set[str]) -> dict[str, tuple[str, list[str]]]:
+        """Return where wanted wheels are unpacked already: the environment, and their files there."""
+        found = {}
+        for place in self._directory.iterdir() if self._directory.is_dir() else ():
+            record = self._record(place.name) if self.is_usable(place.name) else {}
+            wheels = record.get("wheels")
+            if record.get("python") == python and isinstance(wheels, dict):
+                for sha256 in wanted & wheels.keys():
+                    if all((place / file).is_file() for file in wheels[sha256]):
+                        found[sha256] = place.name, wheels[sha256]
+        return found
 
     def _check_disk_space(self, needed: int) -> None:
         self.remove_remains()
@@ -173,7 +193,13 @@ class Environments:
                 free=free,
             )
 
-    def _make(self, place: Path, python: Path, wheels: list[Wheel]) -> None:
+    def _make(
+        self, place: Path, python: Path, wheels: list[Wheel], there: dict[str, tuple[str, list[str]]]
+    ) -> dict[str, list[str]]:
+        """Make an environment, and return its files by their wheel.
+
+        :param there: the wheels that another environment has
+        """
         remove(place)
         place.parent.mkdir(parents=True, exist_ok=True)
         self._activity.begin("environment")
@@ -181,20 +207,25 @@ class Environments:
         packages = next(iter(place.glob("lib/python3*/site-packages")), None)
         if packages is None:
             raise Refusal("environment", f"{python} has made no environment")
+        files, forms = {}, CompiledForms()
         self._activity.begin("unpack", len(wheels))
         for each in wheels:
-            try:
-                unpack_wheel(self._store(each), each.file, place, packages, self._activity)
-            except Refusal:
-                remove(self._store(each))  # so that it is sent again
-                raise
+            if each.sha256 in there:
+                name, files[each.sha256] = there[each.sha256]
+                link_wheel(files[each.sha256], self.directory(name), place, forms, self._activity)
+            else:
+                wheel = self._wheels / each.sha256
+                files[each.sha256] = unpack_wheel(wheel, each.file, place, packages, self._activity)
+                remove(wheel)
         self._activity.begin("environment")
         # As programs are started. A package may have files for another version of Python, which do not count.
         self._run([str(place / "bin/python3"), "-O", "-m", "compileall", "-q", str(packages)], check=False)
+        return files
 
     def without_pip(self, python: Path) -> list[str]:
-        """Return the option of `venv` for a Python that cannot install pip, as Debian's."""
-        return [] if list(python.parent.parent.glob("lib/python3*/ensurepip")) else ["--without-pip"]
+        """Return the option of `venv` for a Python that cannot install pip, as Debian's, or that has it already."""
+        with_pip = self.link is not None and list(python.parent.parent.glob("lib/python3*/ensurepip"))
+        return [] if with_pip else ["--without-pip"]
 
     def _run(self, command: list[str], check: bool = True) -> None:
         import subprocess
@@ -216,11 +247,10 @@ class Environments:
             # Of a taken environment that is not in its place yet, there is only the link for the exchange.
             if linked_directory(place) is not None or (_NAME.fullmatch(place.name) and not self.is_usable(place.name)):
                 remove(place)
-        for file in self._wheels.glob("*.new"):
-            remove(file)
+        remove(self._wheels)
 
     def remove_unused(self, used: Iterable[str | None]) -> None:
-        """Remove environments, Pythons and wheels that nothing needs.
+        """Remove environments and Pythons that nothing needs.
 
         :param used: the environments of the releases
         """
@@ -232,11 +262,9 @@ class Environments:
         records = [self._record(name) for name in here if name is not None]
         shown = linked_directory(self._paths.of(self._paths.layout.shown_python))
         pythons = {record.get("python") for record in records} | {None if shown is None else shown.name}
-        wheels = {f"{each}.whl" for record in records for each in record.get("wheels", ())}
-        for place, kept in ((self._pythons, pythons), (self._wheels, wheels)):
-            for each in list(place.iterdir()) if place.is_dir() else ():
-                if each.name not in kept:
-                    remove(each)
+        for place in list(self._pythons.iterdir()) if self._pythons.is_dir() else ():
+            if _NAME.fullmatch(place.name) and place.name not in pythons:
+                remove(place)
 
     def _record(self, name: str) -> dict[str, Any]:
         try:

@@ -30,9 +30,10 @@ class Layout(NamedTuple):
     :param other_files:   patterns of their files; one that ends with a slash is a directory, if it has files
     :param command_mode:  the permissions of the files with start commands
     :param can_fail:      whether the exit code of `stop` and `restart` says that they have failed
-    :param environment:   a link to the Python environment that programs start with, in `home`; empty where the robot's
-        Python is the image's
+    :param environment:   a link to the Python environment that programs start with, in `home`; empty if `python` is not
     :param shown_python:  where other tools look for its Python
+    :param python:        the system's Python, in the start commands; a program with an environment of its own starts
+        with the Python of that instead
     :param output:        a command that prints what the program prints from then on; without one, the console service
         on the robot sends that
     """
@@ -60,11 +61,22 @@ class Layout(NamedTuple):
     output: Sequence[str] = ()
     environment: str = ""
     shown_python: str = ""
+    python: str = ""
 
     @property
     def by_administrator(self) -> str:
         """Return where a user types a command for the administrator, for messages."""
         return f"as {self.administrator} on the robot:" if self.administrator != self.user else "on the robot: sudo"
+
+    @property
+    def has_environments(self) -> bool:
+        """Return whether programs can start with environments of their own."""
+        return bool(self.environment or self.python)
+
+    @property
+    def environments(self) -> str:
+        """Return the directory with the environments."""
+        return f"{self.home}/.pyfrc/environments"
 
     @property
     def command_files(self) -> list[str]:

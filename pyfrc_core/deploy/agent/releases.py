@@ -39,7 +39,7 @@ class Releases:
         #: Releases whose cached record could not be written, as on a full disk.
         self._unwritten: set[int] = set()
         #: Environments with the packages of releases, on a controller that has them.
-        self.environments = Environments(paths, activity) if paths.layout.environment else None
+        self.environments = Environments(paths, activity) if paths.layout.has_environments else None
 
     def flush(self, directory: Path) -> None:
         """Wait until all data written to this file system is on the disk."""
@@ -171,7 +171,7 @@ class Releases:
         if self.environments is not None:
             environment = self.environments.other_than_current(self.record(number).get("environment"))
         if environment is not None:
-            shared, own = f"{self.paths.layout.environment}/", f"{self.paths.environments_on_robot}/{environment}/"
+            shared, own = f"{self.paths.layout.environment}/", f"{self.paths.layout.environments}/{environment}/"
             direct = {name: text and text.replace(shared, own) for name, text in direct.items()}
         detour = changed or environment is not None or not REPLACES_LINKS
         link = self.paths.own / "py" if taken is None else self.directory(taken)

@@ -53,8 +53,6 @@ class RobotPaths:
         self.lock = self.own / "lock"
         #: Where the robot finds the releases.
         self.releases_on_robot = f"{layout.home}/.pyfrc/releases"
-        #: The same for environments.
-        self.environments_on_robot = f"{layout.home}/.pyfrc/environments"
 
     def of(self, path: str) -> Path:
         """Return where a path of the robot is in this file system."""
@@ -70,9 +68,10 @@ class RobotPaths:
         return text_of(self.home / name) or ""
 
 
-def start_commands(layout: Layout, main: str, debug: bool) -> dict[str, str | None]:
+def start_commands(layout: Layout, main: str, debug: bool, environment: str | None = None) -> dict[str, str | None]:
     """Return the content of the robot's start command files for a program with this main file.
 
+    :param environment: the environment that it starts with; None: the current one, or the system's Python
     :raises Refusal: if the main file's name has characters that are not allowed in a command
     """
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_./-]*", main):
@@ -83,6 +82,9 @@ def start_commands(layout: Layout, main: str, debug: bool) -> dict[str, str | No
         )
     file = f"{layout.code}/{main}"
     start, start_debug = layout.start.replace("{main}", file), layout.start_debug.replace("{main}", file)
+    if environment is not None and layout.python:
+        own = f"{layout.environments}/{environment}/bin/python3"
+        start, start_debug = start.replace(layout.python, own), start_debug.replace(layout.python, own)
     if layout.debug_command:
         return {layout.command: start, layout.debug_command: start_debug}
     return {layout.command: start_debug if debug else start}

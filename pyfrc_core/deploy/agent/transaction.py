@@ -92,7 +92,7 @@ class Deploy:
         self._restarts = bool(request.get("restart"))
         self._environment = request.get("environment")
         self._program = frozenset(request.get("program") or ())
-        self._commands = start_commands(self._paths.layout, self._main, self._debug)
+        self._commands = start_commands(self._paths.layout, self._main, self._debug, self._environment)
 
     def run(self) -> Message:
         """Carry out the deploy, and return the result for the laptop."""

@@ -1,24 +1,29 @@
-"""Unpacking wheels into an environment. pip on the robot would refuse them: it does not know the robot's tags."""
+"""Wheels in an environment: unpacked, or linked from another one. pip on the robot does not know the robot's tags."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from zipfile import BadZipFile, ZipFile
 
 from .activity import Activity
-from .disk import BLOCK
+from .compiling import CompiledForms
+from .disk import BLOCK, link_or_copy
 from .robot_paths import Refusal
 
 _SCRIPT = b"#!python"
 
 
-def unpack_wheel(wheel: Path, name: str, environment: Path, packages: Path, activity: Activity) -> None:
+def unpack_wheel(wheel: Path, name: str, environment: Path, packages: Path, activity: Activity) -> list[str]:
     """Unpack a wheel as the specification of wheels says. Its console scripts are not made.
+
+    Return the paths of its files in the environment.
 
     :param name:     the wheel's name, for messages
     :param packages: the directory of the environment's packages
     :raises Refusal: if it is damaged, or has a path that leads out of the environment
     """
+    unpacked = []
     try:
         with ZipFile(wheel) as archive:
             for member in archive.infolist():
@@ -35,8 +40,30 @@ def unpack_wheel(wheel: Path, name: str, environment: Path, packages: Path, acti
                             activity.step(0)
                     executable = (member.external_attr >> 16) & 0o111 or target.parent == environment / "bin"
                     target.chmod(0o755 if executable else 0o644)
+                    unpacked.append(target.relative_to(environment).as_posix())
     except (BadZipFile, NotImplementedError, EOFError) as error:
         raise Refusal("wheel", f"{name} cannot be unpacked: {error}") from error
+    activity.step()
+    return unpacked
+
+
+def link_wheel(files: Iterable[str], source: Path, environment: Path, forms: CompiledForms, activity: Activity) -> None:
+    """Link the files of a wheel, with their compiled files, from another environment with the same Python.
+
+    :param files: their paths in it
+    :param forms: the compiled files of the other environment
+    """
+    for file in files:
+        target = environment / file
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if target.parent == environment / "bin":  # it may begin with the environment's path
+            there = (source / file).read_bytes()
+            target.write_bytes(there.replace(f"#!{source}/".encode(), f"#!{environment}/".encode(), 1))
+            target.chmod(0o755)
+        else:
+            link_or_copy(f"{source}/{file}", str(target))
+            forms.link(f"{source}/{file}", str(target))
+        activity.step(0)
     activity.step()
 
 

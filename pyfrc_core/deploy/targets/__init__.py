@@ -7,7 +7,7 @@ No other part of a deploy names a controller. To add one, write a module such as
 from __future__ import annotations
 
 from ...season import Season
-from .controller import AdministratorTask, ControllerKind, DriverStation
+from .controller import AdministratorTask, ControllerKind, DriverStation, PythonInstaller
 from .roborio import ROBORIO
 from .systemcore import SYSTEMCORE
 
@@ -17,6 +17,7 @@ __all__ = [
     "AdministratorTask",
     "ControllerKind",
     "DriverStation",
+    "PythonInstaller",
     "controller_named",
     "controller_of",
     "is_shared_host",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from shlex import join, quote
 from typing import Any
 
@@ -29,6 +30,24 @@ class AdministratorTask:
 
 
 @dataclass(frozen=True)
+class PythonInstaller:
+    """How Python is installed on a robot that has none: a shell script, which reads its file.
+
+    The script prints ``there`` if this Python is on the robot, or ``full`` and the kilobytes that are free, or ``send``
+    before it reads. Two computers may run it at once. If it is interrupted, the next one removes its remains.
+
+    :param script: for the shell of `user`; ``{name}`` is a name for this Python, ``{size}`` and ``{sha256}`` are about
+        its file, ``{kilobytes}`` have to be free
+    :param user:   who runs it
+    :param needed: returns how many bytes have to be free for a file
+    """
+
+    script: str
+    user: str
+    needed: Callable[[Path], int]
+
+
+@dataclass(frozen=True)
 class DriverStation:
     """A program on this computer from which robots are driven.
 
@@ -47,6 +66,8 @@ class ControllerKind:
 
     :param layout:           its files and commands, which the agent needs
     :param python:           the path of its Python
+    :param find_python:      shell commands that set ``p`` to the Python that the current program starts with
+    :param install_python:   installs Python
     :param password:         of its users, unless the team has changed it
     :param shared_hosts:     hosts that all teams' robots have, as on a USB cable
     :param machine:          the beginning of its processor architecture, as `platform.machine` returns it
@@ -69,6 +90,8 @@ class ControllerKind:
 
     layout: Layout
     python: str
+    find_python: str
+    install_python: PythonInstaller
     password: str
     shared_hosts: tuple[str, ...]
     machine: str
@@ -90,6 +113,17 @@ class ControllerKind:
     def name(self) -> str:
         """Its product name."""
         return self.layout.name
+
+    def python_command(self, environment: str | None = None) -> str:
+        """Return the beginning of a shell command: the Python that the current program starts with.
+
+        :param environment: the name of an environment, whose Python is taken if it is complete
+        """
+        other = ""
+        if environment is not None:
+            place = f"{self.layout.environments}/{environment}"
+            other = f"[ ! -e {place}/environment.json ] || p={place}/bin/python3; "
+        return f"{self.find_python}; {other}exec $p"
 
 
 def team_of_address(host: str) -> int | None:

@@ -6,6 +6,7 @@ import ipaddress
 import re
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
+from pathlib import Path
 from shlex import quote
 from typing import Any
 
@@ -14,6 +15,7 @@ from .controller import (
     AdministratorTask,
     ControllerKind,
     DriverStation,
+    PythonInstaller,
     Texts,
     address_of_team,
     removal_script,
@@ -51,6 +53,7 @@ _LAYOUT = Layout(
     texts={"image": "/etc/natinst/share/scs_imagemetadata.ini", "memory": _MEMORY_SETTINGS},
     other_start="[.]jar|frcUserProgram",
     other_files=(*_PROGRAMS, "/usr/local/frc/JRE/bin/java", f"{_LIBRARIES}/"),
+    python=_PYTHON,
 )
 
 
@@ -153,9 +156,49 @@ sync
 """
 )
 
+# While the file `installing` is there, Python is not complete: opkg was interrupted, and runs again. Then it finds
+# files that no package has, so it must overwrite. Its messages go to a file: it must not end with the connection. Its
+# usual directory for temporary files is in memory.
+_OWN = "/usr/local/pyfrc"
+_INSTALL_PYTHON = f"""
+set -e
+umask 022
+mkdir -p {_OWN}
+cd {_OWN}
+for each in *.ipk; do
+    kill -0 "${{{{each%.ipk}}}}" 2> /dev/null || rm -f "$each"
+done
+set -- $(df -Pk . | tail -n 1)
+[ "$4" -ge {{kilobytes}} ] || {{{{ echo "full $4"; exit 0; }}}}
+echo send
+cat > $$.ipk
+[ "$(wc -c < $$.ipk)" -eq {{size}} ]
+: > installing
+sync
+if ! opkg --tmp-dir {_OWN} --force-overwrite install ./$$.ipk > $$.log 2>&1 || ! {_PYTHON} -c "" 2> $$.log; then
+    tail -n 1 $$.log >&2
+    rm -f $$.*
+    exit 1
+fi
+sync
+rm -f $$.* installing
+"""
+_ENVIRONMENTS = f"{_LAYOUT.environments}/[0-9a-f]*/bin/python3"
+_FIND_PYTHON = (
+    f"[ ! -e {_OWN}/installing ] || exit 127; "
+    f'p=$(grep -o "{_ENVIRONMENTS}" {_HOME}/{_LAYOUT.command} 2> /dev/null); [ -x "$p" ] || p={_PYTHON}'
+)
+
+
+def _needed_for_python(package: Path) -> int:
+    return package.stat().st_size * 5  # estimated: what is in it is compressed about as much as other Pythons
+
+
 ROBORIO = ControllerKind(
     layout=_LAYOUT,
     python=_PYTHON,
+    find_python=_FIND_PYTHON,
+    install_python=PythonInstaller(_INSTALL_PYTHON, _LAYOUT.administrator, _needed_for_python),
     password="",
     shared_hosts=(_USB_CABLE,),
     machine="arm",

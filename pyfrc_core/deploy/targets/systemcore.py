@@ -6,11 +6,20 @@ Where its image says its version was not found in public (SystemcoreTesting issu
 from __future__ import annotations
 
 import ipaddress
+import struct
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from ..agent.layout import Layout
-from .controller import ControllerKind, DriverStation, address_of_team, removal_script, team_of_address
+from .controller import (
+    ControllerKind,
+    DriverStation,
+    PythonInstaller,
+    address_of_team,
+    removal_script,
+    team_of_address,
+)
 from .roborio import NI_STATION
 
 _USER = "systemcore"
@@ -73,9 +82,44 @@ def _station_robot(message: Mapping[str, Any]) -> tuple[str | None, bool]:
     return host if is_host else None, message.get("fmsControlled") is True
 
 
+_INSTALL_PYTHON = f"""
+set -e
+umask 022
+mkdir -p {_HOME}/.pyfrc/pythons
+cd {_HOME}/.pyfrc/pythons
+[ ! -e {{name}} ] || {{{{ echo there; exit 0; }}}}
+for each in .new.*; do
+    kill -0 "${{{{each##*.}}}}" 2> /dev/null || rm -rf "$each"
+done
+set -- $(df -Pk . | tail -n 1)
+[ "$4" -ge {{kilobytes}} ] || {{{{ echo "full $4"; exit 0; }}}}
+mkdir .new.$$
+cd .new.$$
+echo send
+cat > archive
+echo "{{sha256}}  archive" | sha256sum -c > /dev/null
+tar -xzf archive
+rm archive
+set -- */
+"$1/bin/python3" -c ""
+sync
+[ -e ../{{name}} ] || mv "$1" ../{{name}}
+rm -rf ../.new.$$
+"""
+
+
+def _needed_for_python(archive: Path) -> int:
+    with archive.open("rb") as stream:
+        stream.seek(-4, 2)
+        (unpacked,) = struct.unpack("<I", stream.read())  # gzip's last field
+    return archive.stat().st_size + int(unpacked) * 5 // 4
+
+
 SYSTEMCORE = ControllerKind(
     layout=_LAYOUT,
     python=_PYTHON,
+    find_python=f"p={_PYTHON}",
+    install_python=PythonInstaller(_INSTALL_PYTHON, _USER, _needed_for_python),
     password=_USER,
     shared_hosts=(_NAME, _WIFI, *_USB_CABLE),
     machine="aarch64",
