@@ -17,6 +17,7 @@ IN_2027 = frozenset(
     {
         "collector",
         "crash_reports",
+        "deploy_installs",
         "determinism",
         "failures",
         "failures_at_import",

@@ -119,7 +119,7 @@ def problems(facts: RobotFacts, tmp_path: Path) -> Problems:
             {"robot.py": "import wpilib\n"},
             ("robotpy",),
             "robot.py: the robot has no package robotpy-cli, which starts programs",
-            "robotpy sync",
+            "pyfrc sync",
         ),
     ],
 )
@@ -231,7 +231,7 @@ def test_a_component_s_package_is_known_where_it_is_not_installed(
 def test_a_package_that_the_project_asks_for_has_only_to_be_installed(problems: Problems) -> None:
     packages = RobotPackages(None, ("all",), (), {})
     (found,) = problems({"robot.py": "import commands2\n"}, ("commands2",), packages)
-    assert found.remedy.startswith("Install it: with internet: python -m robotpy sync; then at the robot:")
+    assert found.remedy.startswith("Install it: with internet: pyfrc sync; then at the robot:")
 
 
 def test_a_file_that_is_left_out_of_the_upload(facts: RobotFacts, tmp_path: Path) -> None:

@@ -73,10 +73,10 @@ def obstacles(facts: RobotFacts, controller: ControllerKind) -> Iterator[Obstacl
     if facts.wpilib is None:
         yield Obstacle("there is no wpilib for Python on the robot", prepare, installable=True)
     wrong_python = python_problem(facts.python, ours)
-    if wrong_python is not None and controller.layout.python:  # another version beside it would take its name
-        yield Obstacle(wrong_python, image, certain=False)
-    elif wrong_python is not None:
-        yield Obstacle(wrong_python, prepare, certain=False, installable=True)
+    if wrong_python is not None:
+        # The system's Python is not replaced: the program that is there needs it.
+        stays = bool(controller.layout.python) and facts.image != VIRTUAL_IMAGE
+        yield Obstacle(wrong_python, image if stays else prepare, certain=False, installable=not stays)
     if facts.wpilib not in (None, ours):
         text = f"the robot has wpilib {facts.wpilib}, this computer has {ours}: what passes here may fail there"
         yield Obstacle(text, same_version, certain=False, installable=True)

@@ -3,7 +3,7 @@
 ``python -m tests.roborio``, as root on Linux, starts one to try `pyfrc deploy` on without a robot.
 """
 
-from .machine import PATIENCE, Roborio, missing_here, require_roborio
+from .machine import PATIENCE, Roborio, missing_here, python_package, require_roborio
 from .proxy import Proxy
 
-__all__ = ["PATIENCE", "Proxy", "Roborio", "missing_here", "require_roborio"]
+__all__ = ["PATIENCE", "Proxy", "Roborio", "missing_here", "python_package", "require_roborio"]

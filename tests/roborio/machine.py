@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+import io
 import os
 import shutil
 import socket
 import sys
+import tarfile
 from pathlib import Path
+from random import Random
 
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 from .computer import PATIENCE, Computer, bound, crypted, listener, missing_here
 
-__all__ = ["KILL_SCRIPT", "LETS_PROGRAMS_SURVIVE", "PATIENCE", "TAKES_TWO_SECONDS", "Roborio", "missing_here"]
+__all__ = [
+    "KILL_SCRIPT",
+    "LETS_PROGRAMS_SURVIVE",
+    "PATIENCE",
+    "TAKES_TWO_SECONDS",
+    "Roborio",
+    "missing_here",
+    "python_package",
+]
 
 HERE = Path(__file__).parent
 #: Files to take for ``frcKillRobot.sh``; the first is the default one, which takes no time.
@@ -35,11 +46,46 @@ def require_roborio() -> None:
     require("deploying to a look-alike of a roboRIO", missing_here())
 
 
+def python_package(version: str) -> bytes:
+    """A package for opkg with a Python for a blank look-alike: this machine's, which is there under its own path.
+
+    :param version: its version
+    """
+    library = f"lib/python{sys.version_info.major}.{sys.version_info.minor}"
+    links = []
+    for name, target in (("bin/python3", os.path.realpath(sys.executable)), (library, f"{sys.base_prefix}/{library}")):
+        link = tarfile.TarInfo(f"./usr/local/{name}")
+        link.type, link.linkname = tarfile.SYMTYPE, target
+        links.append((link, b""))
+    more = Random(1).randbytes(200_000)  # so that it takes a while to arrive
+    return _tar(
+        _file("./debian-binary", b"2.0\n"),
+        _file("./control.tar.gz", _tar(_file("./control", f"Package: python314\nVersion: {version}\n".encode()))),
+        _file("./data.tar.gz", _tar(*links, _file("./usr/local/share/python.bin", more))),
+    )
+
+
+def _file(name: str, content: bytes) -> tuple[tarfile.TarInfo, bytes]:
+    member = tarfile.TarInfo(name)
+    member.size = len(content)
+    return member, content
+
+
+def _tar(*members: tuple[tarfile.TarInfo, bytes]) -> bytes:
+    packed = io.BytesIO()
+    with tarfile.open(fileobj=packed, mode="w:gz", compresslevel=1) as tar:
+        for member, content in members:
+            tar.addfile(member, io.BytesIO(content))
+    return packed.getvalue()
+
+
 class Roborio(Computer):
     """A roboRIO look-alike that is switched on, until the end of the ``with`` block.
 
     :param host:           see `Computer` for this parameter, and for others that are not here
     :param wpilib:         the version of `wpilib` on it; none: not installed
+    :param blank:          whether it was just imaged: it has neither Python nor packages. What `python_package` makes
+                           is a Python for it
     :param image:          its image's version; none: no image file, so that it is no roboRIO
     :param password:       of both users
     :param kill_script:    a file to take for ``frcKillRobot.sh``
@@ -56,6 +102,7 @@ class Roborio(Computer):
         host: str | None = None,
         port: int | None = None,
         wpilib: str | None = "2026.2.2",
+        blank: bool = False,
         image: str | None = "FRC_roboRIO_2026_v1.2",
         python: str | Path | None = sys.executable,
         disk_size: str = "64m",
@@ -66,7 +113,7 @@ class Roborio(Computer):
     ) -> None:
         if missing_here():
             require_roborio()  # here, so that no test can go without it
-        self._driver_station = driver_station
+        self._driver_station, self._blank = driver_station, blank
         self._wpilib, self._image, self._password, self._kill_script = wpilib, image, password, kill_script
         super().__init__(host=host, port=port, python=python, disk_size=disk_size, authorized_key=authorized_key)
 
@@ -105,7 +152,9 @@ class Roborio(Computer):
         else:
             metadata.write_text(metadata.read_text().replace("@IMAGE_VERSION@", self._image))
         packages = self.disk / "usr/local/lib/python3.14/site-packages"
-        if self._wpilib is None:
+        if self._blank:
+            shutil.rmtree(packages.parent)
+        elif self._wpilib is None:
             for name in ("wpilib", "wpimath", "robotpy"):
                 shutil.rmtree(packages / name)
         else:
@@ -116,7 +165,7 @@ class Roborio(Computer):
                 about.mkdir()
                 (about / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: {self._wpilib}\n")
         python3 = self.disk / "usr/local/bin/python3"
-        if self.executable is None:
+        if self.executable is None or self._blank:
             python3.unlink()
         else:
             python3.write_text(python3.read_text().replace("@PYTHON@", str(self.executable)))

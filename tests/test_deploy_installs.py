@@ -1,0 +1,257 @@
+"""The first deploy to a blank robot installs Python and packages, later ones what changed; and back again.
+
+With the season's controller.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Generator, Iterator
+from pathlib import Path
+
+import pytest
+from conftest import MakeProject, RobotProject, sampled
+from laptops import IS_ROBORIO, WPILIB, Laptop, blank_computer, prepared_computer, write_python
+from package_index import PackageIndex, package_index
+from roborio import Proxy
+from roborio.computer import Computer
+
+from pyfrc_core.season import CURRENT
+
+ROBOT = """
+    import spinner
+    import wpilib
+
+    print("program {number} with spinner", spinner.VERSION)
+
+
+    class MyRobot(wpilib.TimedRobot):
+        pass
+"""
+PLAIN = """
+    import wpilib
+
+    print("plain program {number}")
+
+
+    class MyRobot(wpilib.TimedRobot):
+        pass
+"""
+#: By day, one test with the roboRIO is enough: what differs is how Python comes.
+nightly = pytest.mark.slow if IS_ROBORIO else lambda test: test
+
+
+@pytest.fixture(scope="session")
+def python(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("python") / "python"
+    write_python(file)
+    return file
+
+
+@pytest.fixture
+def index(tmp_path: Path) -> Iterator[PackageIndex]:
+    with package_index(tmp_path / "index") as index:
+        yield index
+
+
+@pytest.fixture
+def blank() -> Generator[Computer]:
+    with blank_computer() as robot:
+        yield robot
+
+
+@pytest.fixture
+def project(make_project: MakeProject) -> RobotProject:
+    return make_project({"robot.py": ROBOT.format(number=1), "spinner/__init__.py": 'VERSION = "here"\n'})
+
+
+@pytest.fixture
+def laptop(project: RobotProject, tmp_path: Path, index: PackageIndex, python: Path) -> Laptop:
+    return Laptop(tmp_path / "home", project, index, python)
+
+
+def test_from_nothing_to_two_rollbacks(blank: Computer, laptop: Laptop, project: RobotProject) -> None:
+    assert "pyfrc-lock.toml is new: 3 packages" in laptop.sync(spinner="1.0")
+    first = laptop.deploy(blank)
+    assert "there is no Python on it yet" in first
+    assert f"install    Python {CURRENT.downloads.python}, 3 packages of 3 sent" in first
+    blank.said("program 1 with spinner 1.0")
+    again = laptop.deploy(blank)
+    assert "nothing has changed" in again
+    assert "install " not in again
+    project.write({"robot.py": ROBOT.format(number=2)})
+    laptop.deploy(blank)
+    blank.said("program 2 with spinner 1.0")
+    laptop.sync(spinner="2.0")
+    assert "install    1 package of 3 sent" in laptop.deploy(blank)
+    blank.said("program 2 with spinner 2.0")
+    assert laptop.run(blank, "deploy", "--rollback").code == 0
+    blank.said("program 2 with spinner 1.0")
+    assert laptop.run(blank, "deploy", "--rollback").code == 0
+    blank.said("program 1 with spinner 1.0")
+    if IS_ROBORIO:
+        assert not (blank.disk / "usr/local/pyfrc/installing").exists()
+        assert blank.run("find", "/home/lvuser", "!", "-user", "lvuser").stdout == ""
+    else:
+        python = blank.home / ".python/bin/python3"
+        assert python.parent.parent.is_symlink(), "where today's tool looks for it"
+
+
+@nightly
+def test_what_todays_tool_has_installed_is_kept_for_the_releases_that_use_it(
+    laptop: Laptop, project: RobotProject
+) -> None:
+    project.write({"robot.py": PLAIN.format(number=1)})
+    with prepared_computer() as robot:
+        assert "install " not in laptop.deploy(robot), "there is no lock"
+        robot.said("plain program 1")
+        start = (robot.home / "robotCommand").read_text(encoding="utf-8")
+        project.write({"robot.py": ROBOT.format(number=2)})
+        laptop.sync(spinner="1.0")
+        laptop.deploy(robot)
+        robot.said("program 2 with spinner 1.0")
+        assert laptop.run(robot, "deploy", "--rollback").code == 0
+        robot.said("plain program 1")
+        assert (robot.home / "robotCommand").read_text(encoding="utf-8") == start
+        if not IS_ROBORIO:
+            assert (robot.home / "venv").readlink().name == "taken-1"
+
+
+@pytest.mark.skipif(not IS_ROBORIO, reason="the SystemCore's look-alike has another version of Python than the lock")
+@nightly
+def test_what_todays_tool_has_installed_is_used_if_it_is_what_the_lock_wants(
+    laptop: Laptop, project: RobotProject
+) -> None:
+    project.write({"robot.py": PLAIN.format(number=1)})
+    with prepared_computer() as robot:
+        laptop.sync()
+        assert "install " not in laptop.deploy(robot)
+        robot.said("plain program 1")
+        assert not (robot.home / ".pyfrc/environments").exists()
+
+
+@nightly
+def test_todays_tool_after_ours_and_ours_again(blank: Computer, laptop: Laptop) -> None:
+    """It replaces code and start command, and has its packages where it installs them."""
+    laptop.sync(spinner="1.0")
+    laptop.deploy(blank)
+    blank.said("program 1 with spinner 1.0")
+    blank.run("rm", f"{blank.home_directory}/py")
+    blank.put(f"{blank.home_directory}/py/robot.py", "print('theirs', flush=True)\nimport time\ntime.sleep(1000)\n")
+    python = blank.controller.layout.python or f"{blank.home_directory}/venv/bin/python3"
+    start = f"{python} -u -O {blank.home_directory}/py/robot.py\n"
+    blank.put(f"{blank.home_directory}/robotCommand", start, mode=0o755)
+    laptop.deploy(blank)
+    blank.said("program 1 with spinner 1.0")
+    assert laptop.run(blank, "deploy", "--rollback").code == 0
+    blank.said("theirs")
+    assert (blank.home / "robotCommand").read_text(encoding="utf-8") == start
+    assert laptop.run(blank, "deploy", "--rollback", "1").code == 0
+
+
+@nightly
+def test_a_blank_robot_without_a_lock_or_without_the_files(
+    blank: Computer, laptop: Laptop, project: RobotProject
+) -> None:
+    refused = laptop.run(blank, "deploy", "--skip-tests")
+    assert refused.code == 1
+    assert refused.first_error.endswith(f"there is no Python on the robot ({blank.controller.python})")
+    assert "with internet: pyfrc sync; then at the robot: pyfrc deploy" in refused.stderr
+    laptop.sync(spinner="1.0")
+    next(laptop.packages.glob("wpilib-*.whl")).write_bytes(b"")
+    refused = laptop.run(blank, "deploy", "--skip-tests")
+    assert refused.code == 1
+    assert f"wpilib {WPILIB} for the robot has another content than the lock says" in refused.first_error
+    assert list(blank.home.iterdir()) == []
+
+
+@nightly
+def test_a_full_disk_is_said_before_anything_is_installed(laptop: Laptop) -> None:
+    laptop.sync(spinner="1.0")
+    with blank_computer(disk_size="1m" if IS_ROBORIO else "20m") as robot:
+        refused = laptop.run(robot, "deploy", "--skip-tests")
+        assert refused.code == 1
+        assert "the robot's disk is too full to install Python: " in refused.first_error
+        assert not (robot.home / ".pyfrc/releases").exists()
+
+
+def places_of_cuts(count: int) -> list[float]:
+    return [(number + 0.5) / count for number in range(count)]
+
+
+@nightly
+@pytest.mark.parametrize("places", sampled([1, 12], 1))
+def test_a_cut_connection_leaves_the_robot_as_it_was(
+    places: int, laptop: Laptop, project: RobotProject, python: Path
+) -> None:
+    project.write({"robot.py": PLAIN.format(number=1)})
+    laptop.sync(spinner="1.0")
+    with blank_computer() as robot, Proxy((robot.host, robot.port)) as proxy:
+        laptop.deploy(proxy)
+        total = proxy.bytes_to_robot
+    for place in places_of_cuts(places):
+        shutil.rmtree(project.path / ".pyfrc")  # the next robot has another key
+        with blank_computer() as robot:
+            with Proxy((robot.host, robot.port), cut_to_robot=int(total * place)) as proxy:
+                cut = laptop.run(proxy, "deploy", "--skip-tests")
+                assert cut.code != 0, cut.output
+            started = (robot.home / "robotCommand").exists()
+            assert started == (robot.home / "py").exists(), f"after {place} of the bytes"
+            robot.wait_for_end_of_deploy()
+            laptop.deploy(robot)
+            robot.said("plain program 1")
+            remains = [*robot.home.glob(".pyfrc/pythons/.new*"), *robot.disk.glob("usr/local/pyfrc/*")]
+            assert remains == []
+
+
+@pytest.mark.skipif(not IS_ROBORIO, reason="only the roboRIO has opkg")
+@nightly
+def test_an_interrupted_opkg_runs_again(blank: Computer, laptop: Laptop, project: RobotProject) -> None:
+    """Python has its files then, but perhaps not all of them."""
+    project.write({"robot.py": PLAIN.format(number=1)})
+    laptop.sync(spinner="1.0")
+    opkg = blank.disk / "usr/local/bin/opkg"
+    works = opkg.read_text(encoding="utf-8")
+    blank.put("usr/local/bin/opkg", works.replace('echo "$name - ', 'echo " * power is gone"; exit 255 # '), mode=0o755)
+    failed = laptop.run(blank, "deploy", "--skip-tests")
+    assert failed.code == 1
+    assert "Python could not be installed on the robot: * power is gone" in failed.first_error
+    assert (blank.disk / "usr/local/bin/python3").is_symlink()
+    blank.put("usr/local/bin/opkg", works, mode=0o755)
+    assert "there is no Python on it yet" in laptop.deploy(blank)
+    blank.said("plain program 1")
+
+
+@pytest.mark.skipif(not IS_ROBORIO, reason="a SystemCore does not say which image it has")
+@nightly
+def test_nothing_is_installed_on_an_image_of_another_season(laptop: Laptop) -> None:
+    laptop.sync(spinner="1.0")
+    with blank_computer(image="FRC_roboRIO_2025_v2.0") as robot:
+        refused = laptop.run(robot, "deploy", "--skip-tests")
+        assert refused.code == 1
+        assert "the robot's image is of 2025 (2025_v2.0)" in refused.first_error
+        assert not (robot.disk / "usr/local/bin/python3").is_symlink()
+
+
+@nightly
+def test_two_laptops_with_one_lock_give_the_same_packages(
+    laptop: Laptop, project: RobotProject, tmp_path: Path, index: PackageIndex, python: Path
+) -> None:
+    """Byte for byte, and under the same name; the second one has a cache of its own."""
+    project.write({"robot.py": PLAIN.format(number=1)})
+    seen = []
+    for each in (laptop, Laptop(tmp_path / "other", project, index, python)):
+        each.sync(spinner="1.0")
+        with blank_computer() as robot:
+            each.deploy(robot)
+            place = robot.home / ".pyfrc/environments"
+            seen.append(
+                {
+                    file.relative_to(place).as_posix(): file.read_bytes()
+                    for file in place.rglob("*")
+                    if file.is_file() and not file.is_symlink() and file.suffix != ".pyc"
+                }
+            )
+        shutil.rmtree(project.path / ".pyfrc")  # the next robot has another key
+    assert seen[0] == seen[1]
+    assert len(seen[0]) > 5
