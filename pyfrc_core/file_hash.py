@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import stat
+from contextlib import nullcontext
 from hashlib import sha256
 from pathlib import Path
 from typing import BinaryIO
@@ -29,11 +30,16 @@ def _without_waiting(file: str, flags: int) -> int:
     return os.open(file, flags | getattr(os, "O_NONBLOCK", 0))
 
 
-def hash_file(file: Path) -> tuple[str, int]:
-    """Return the SHA-256 of a file's content in hexadecimal, and its size in bytes."""
+def hash_file(file: Path, copy: Path | None = None) -> tuple[str, int]:
+    """Return the SHA-256 of a file's content in hexadecimal, and its size in bytes.
+
+    :param copy: a file that gets the same content
+    """
     digest, size = sha256(), 0
-    with open_file(file) as stream:
+    with open_file(file) as stream, nullcontext() if copy is None else copy.open("wb") as target:
         while piece := stream.read(_PIECE):
             digest.update(piece)
             size += len(piece)
+            if target is not None:
+                target.write(piece)
     return digest.hexdigest(), size

@@ -15,6 +15,7 @@ from conftest import Result, RobotProject
 from package_index import ANY_TAGS, DOWNLOADS, ROBOT_TAGS, PackageIndex
 from roborio import Proxy, Roborio, python_package, require_roborio
 from roborio.computer import Computer
+from started_commands import StartedCommand
 from systemcore import Systemcore, require_systemcore
 
 from pyfrc_core.season import CURRENT
@@ -48,7 +49,12 @@ def blank_computer(**options: Any) -> Computer:
 def prepared_computer() -> Computer:
     """One that today's tool has prepared, with WPILib and nothing else."""
     require_computer()
-    return Roborio(wpilib=WPILIB) if IS_ROBORIO else Systemcore(wpilib=WPILIB, disk_size="400m")
+    if not IS_ROBORIO:
+        return Systemcore(wpilib=WPILIB, disk_size="400m")
+    robot = Roborio(wpilib=WPILIB)
+    # Environments are made with this machine's Python, under its true version.
+    (robot.disk / "usr/local/lib/python3.14/site-packages/sitecustomize.py").unlink()
+    return robot
 
 
 def write_python(file: Path) -> None:
@@ -124,6 +130,10 @@ class Laptop:
         done = self._project.run("sync", env=self._environment)
         assert done.code == 0, done.output
         return done.stdout
+
+    def start(self, robot: Computer, *command: str) -> StartedCommand:
+        """Start a command about a robot, and let it go on."""
+        return self._project.start(*command, "--robot", robot.where, env=self._environment, apart=True)
 
     def run(self, robot: Computer | Proxy, *command: str) -> Result:
         """Run a command about a robot: in a new interpreter where WPILib has threads that would end a fork of it."""

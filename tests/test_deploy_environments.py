@@ -16,8 +16,9 @@ import pytest
 from conftest import sampled
 from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
 
+from pyfrc_core.deploy.agent.robot_paths import Lock
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
-from pyfrc_core.deploy.errors import DeployError, RefusedError
+from pyfrc_core.deploy.errors import DeployError, OtherComputerError, RefusedError
 from pyfrc_core.deploy.manifest import Entry, Manifest
 from pyfrc_core.deploy.targets import ControllerKind
 from pyfrc_core.deploy.targets.roborio import ROBORIO
@@ -257,6 +258,13 @@ def test_too_little_disk_space_is_said_before_anything_is_sent(
         session.install(FIRST, PYTHON, packages.wheels[FIRST], [1 << 50, 1])
     assert "Nothing was changed" in str(caught.value.remedy)
     assert not (robot.home / ".pyfrc/wheels").exists()
+
+
+def test_while_another_computer_installs_it_is_named(directory: Path, packages: Packages, agents: Agents) -> None:
+    robot = new_robot(directory / "robot")
+    with Lock(robot.paths, "ann@laptop"), pytest.raises(OtherComputerError, match="ann@laptop is deploying to this"):
+        install(robot, agents, packages, FIRST)
+    assert install(robot, agents, packages, FIRST) == 2
 
 
 class Scenario:

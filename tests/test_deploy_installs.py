@@ -5,6 +5,8 @@ With the season's controller.
 
 from __future__ import annotations
 
+import os
+import select
 import shutil
 from collections.abc import Generator, Iterator
 from pathlib import Path
@@ -13,7 +15,7 @@ import pytest
 from conftest import MakeProject, RobotProject, sampled
 from laptops import IS_ROBORIO, WPILIB, Laptop, blank_computer, prepared_computer, write_python
 from package_index import PackageIndex, package_index
-from roborio import Proxy
+from roborio import PATIENCE, Proxy
 from roborio.computer import Computer
 
 from pyfrc_core.season import CURRENT
@@ -137,13 +139,15 @@ def test_todays_tool_after_ours_and_ours_again(blank: Computer, laptop: Laptop) 
     laptop.deploy(blank)
     blank.said("program 1 with spinner 1.0")
     blank.run("rm", f"{blank.home_directory}/py")
-    blank.put(f"{blank.home_directory}/py/robot.py", "print('theirs', flush=True)\nimport time\ntime.sleep(1000)\n")
+    complete = "********** Robot program startup complete **********"
+    code = f"import time\nprint('theirs\\n{complete}', flush=True)\ntime.sleep(1000)\n"
+    blank.put(f"{blank.home_directory}/py/robot.py", code)
     python = blank.controller.layout.python or f"{blank.home_directory}/venv/bin/python3"
     start = f"{python} -u -O {blank.home_directory}/py/robot.py\n"
     blank.put(f"{blank.home_directory}/robotCommand", start, mode=0o755)
     laptop.deploy(blank)
     blank.said("program 1 with spinner 1.0")
-    assert laptop.run(blank, "deploy", "--rollback").code == 0
+    assert laptop.run(blank, "deploy", "--rollback", "2").code == 0
     blank.said("theirs")
     assert (blank.home / "robotCommand").read_text(encoding="utf-8") == start
     assert laptop.run(blank, "deploy", "--rollback", "1").code == 0
@@ -220,6 +224,30 @@ def test_an_interrupted_opkg_runs_again(blank: Computer, laptop: Laptop, project
     blank.put("usr/local/bin/opkg", works, mode=0o755)
     assert "there is no Python on it yet" in laptop.deploy(blank)
     blank.said("plain program 1")
+
+
+@pytest.mark.skipif(not IS_ROBORIO, reason="only the roboRIO has opkg")
+@nightly
+def test_two_first_installations_at_once(blank: Computer, laptop: Laptop, project: RobotProject) -> None:
+    """The second one is done while the first one waits for opkg, which then has nothing more to do."""
+    project.write({"robot.py": PLAIN.format(number=1)})
+    laptop.sync(spinner="1.0")
+    opkg = (blank.disk / "usr/local/bin/opkg").read_text(encoding="utf-8")
+    waits = "if mkdir /usr/local/first 2> /dev/null; then echo > /usr/local/here; cat /usr/local/go; fi\n"
+    blank.put("usr/local/bin/opkg", opkg.replace("control=$(tar", f"{waits}control=$(tar", 1), mode=0o755)
+    for name in ("here", "go"):
+        os.mkfifo(blank.disk / "usr/local" / name)
+    here = os.open(blank.disk / "usr/local/here", os.O_RDONLY | os.O_NONBLOCK)
+    with laptop.start(blank, "deploy", "--skip-tests") as first:
+        assert select.select([here], [], [], PATIENCE)[0], "the first one has not come to opkg"
+        os.close(here)
+        laptop.deploy(blank)
+        blank.said("plain program 1")
+        (blank.disk / "usr/local/go").write_text("", encoding="utf-8")
+        printed, errors = first.rest()
+        assert first.wait() == 0, printed + errors
+    assert "0 packages of 3 sent" in printed
+    assert not (blank.disk / "usr/local/pyfrc/installing").exists()
 
 
 @pytest.mark.skipif(not IS_ROBORIO, reason="a SystemCore does not say which image it has")

@@ -69,8 +69,8 @@ def test_a_file_larger_than_memory_is_hashed_in_pieces(tmp_path: Path) -> None:
 
 def test_what_no_tool_uploads_is_left_out(tmp_path: Path) -> None:
     make(tmp_path, "robot.py", "data/zip.py", "tests/test_it.py")
-    left_out = ("a.pyc", "b.whl", "c.ipk", "d.zip", "e.gz", "f.wpilog", ".hidden", "deploy.json")
-    make(tmp_path, *left_out, *(f"data/{name}" for name in left_out if name != "deploy.json"))
+    left_out = ("a.pyc", "b.whl", "c.ipk", "d.zip", "e.gz", "f.wpilog", ".hidden")
+    make(tmp_path, *left_out, *(f"data/{name}" for name in left_out), "deploy.json", "pyfrc-lock.toml")
     make(tmp_path, *(f"{name}/x.py" for name in (".git", "__pycache__", "venv", "ctre_sim", "data/__pycache__")))
     make(tmp_path, "data/venv")  # a file of this name is one of the user's
     assert paths(tmp_path) == ["data/venv", "data/zip.py", "robot.py", "tests/test_it.py"]

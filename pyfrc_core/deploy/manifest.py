@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from ..file_hash import hash_file
 from ..project.environments import is_environment
+from ..sync.lock import LOCK_FILE
 from .errors import RefusedError
 
 
@@ -114,8 +115,8 @@ def _fits(rule: _Rule, file: Path) -> bool:
 #: Other tools exclude these as well.
 _DIRECTORIES_LEFT_OUT = {"__pycache__", "venv", "ctre_sim"}
 _SUFFIXES_LEFT_OUT = (".pyc", ".whl", ".ipk", ".zip", ".gz", ".wpilog")
-#: Each deploy writes this file on the robot. In a project it can only be a copy.
-_WRITTEN_BY_DEPLOYS = "deploy.json"
+#: Each deploy writes the first on the robot: in a project it can only be a copy. The other is for this computer.
+_FILES_LEFT_OUT = {"deploy.json", LOCK_FILE}
 
 #: Larger files, in bytes, need --large, since they are usually in the project by mistake.
 LARGE = 250_000
@@ -215,7 +216,7 @@ class _Walk:
     def _within(self, directory: Path, prefix: str, above: tuple[Path, ...]) -> Iterator[tuple[str, Path]]:
         for item in os.scandir(directory):
             path = prefix + item.name
-            if item.name.startswith(".") or path == _WRITTEN_BY_DEPLOYS or is_excluded(path, self._exclude):
+            if item.name.startswith(".") or path in _FILES_LEFT_OUT or is_excluded(path, self._exclude):
                 continue
             # Checked before the link target: an excluded link may lead outside of the project.
             is_directory = Path(item.path).is_dir()

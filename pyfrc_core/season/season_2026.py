@@ -37,7 +37,7 @@ SEASON_2026 = Season(
         commands="robotpy-commands-v2~=2026.2",
         utilities="robotpy-wpilib-utilities~=2026.1",
     ),
-    downloads=RobotDownloads(  # as robotpy-installer 2026.0.2 asks for them
+    downloads=RobotDownloads(  # as robotpy-installer 2026.0.2 asks for them; never seen on a roboRIO
         python="3.14.2",
         python_url="https://github.com/robotpy/roborio-python/releases/download/2026-3.14.2-r1/"
         "python314_3.14.2-r1_cortexa9-vfpv3.ipk",

@@ -10,13 +10,13 @@ from ..errors import PyfrcError, UsageError
 from ..file_hash import hash_file
 from ..season import Season
 from ..wording import size_text
-from .cache import cached_file
+from .cache import cache_of
 from .download import cannot_write
 from .lock import LOCK_FILE, Lock, LockedFile, load_lock, save_lock
 
 
 def carry(lock: Lock, season: Season, to: Path) -> int:
-    """Copy the lock and all that it names from the cache into a directory, and return how many files were copied.
+    """Copy the lock and all that it names from the cache, which has it, into a directory. Return how many were copied.
 
     Files that are there already are kept.
 
@@ -26,13 +26,13 @@ def carry(lock: Lock, season: Season, to: Path) -> int:
         to.mkdir(parents=True, exist_ok=True)
     except FileExistsError:
         raise UsageError(f"--to {to} is a file", remedy="Name a directory.") from None
-    missing = [each for each in lock.files if find_in([to], each) is None]
+    cache, missing = cache_of(season), [each for each in lock.files if find_in([to], each) is None]
     needed, free = sum(each.size for each in missing), shutil.disk_usage(to).free
     if needed > free:
         text = f"{to} has {size_text(free)} free, and {size_text(needed)} are needed"
         raise PyfrcError(text, remedy="Free some space there, or take another directory.")
     for each in missing:
-        take(each, cached_file(each, season).parent, to / each.file)
+        take(each, cache.path_of(each).parent, to / each.file)
     save_lock(to / LOCK_FILE, lock)
     return len(missing)
 
@@ -70,8 +70,7 @@ def take(locked: LockedFile, source: Path, to: Path) -> None:
     part = to.with_name(f".{to.name}.copy")
     try:
         to.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(source / locked.file, part)
-        if hash_file(part) != (locked.sha256, locked.size):
+        if hash_file(source / locked.file, part) != (locked.sha256, locked.size):
             raise PyfrcError(f"{locked.file} in {source} changes while it is read", remedy="Check the USB stick.")
         part.replace(to)
     except OSError as error:
