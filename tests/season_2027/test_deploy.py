@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from conftest import MakeProject, Result, RobotProject
 from driver_stations import deploy_on_field, driver_station
+from roborio import Proxy
 from skips import missing_programs, require
 from systemcore import Systemcore, require_systemcore
 
@@ -137,6 +138,31 @@ def test_a_disk_that_cannot_be_written(project: RobotProject, robot: Systemcore)
     assert result.code == 1, result.output
     assert "on the robot: sudo chown -R systemcore /home/systemcore/.pyfrc" in result.stderr
     assert info(project, robot)["running"]
+
+
+def test_a_disk_that_has_become_read_only(project: RobotProject, robot: Systemcore) -> None:
+    assert deploy(project, robot).code == 0
+    project.write({"robot.py": ROBOT.format(version=2)})
+    robot.make_read_only()
+    result = deploy(project, robot)
+    assert result.code == 1, result.output
+    assert "the robot's disk cannot be written: it is read-only, as after an error" in result.stderr
+    known = info(project, robot)
+    assert (known["current"], known["running"]) == (1, True)
+    robot.power_off()
+    robot.power_on()
+    robot.said("this is version 1")
+    assert deploy(project, robot).code == 0
+    robot.said("this is version 2")
+
+
+def test_a_slow_link(project: RobotProject, robot: Systemcore) -> None:
+    """As a bad radio: 0.1 s for a round trip, 25 kB in a second."""
+    with Proxy((robot.host, robot.port), round_trip=0.1, rate=25_000) as proxy:
+        where = f"{proxy.host}:{proxy.port}"
+        result = project.run("deploy", "--skip-tests", "--robot", where, cold=True)
+    assert (result.code, "the program runs" in result.stdout) == (0, True), result.output
+    robot.said("this is version 1")
 
 
 @pytest.mark.parametrize("clock", ["@0", "@4000000000"], ids=["1970", "2096"])
