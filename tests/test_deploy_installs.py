@@ -12,7 +12,7 @@ from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import pytest
-from conftest import MakeProject, RobotProject, sampled
+from conftest import RobotProject, new_project, sampled
 from laptops import IS_ROBORIO, WPILIB, Laptop, blank_computer, prepared_computer, write_python
 from package_index import PackageIndex, package_index
 from roborio import PATIENCE, Proxy
@@ -63,8 +63,9 @@ def blank() -> Generator[Computer]:
 
 
 @pytest.fixture
-def project(make_project: MakeProject) -> RobotProject:
-    return make_project({"robot.py": ROBOT.format(number=1), "spinner/__init__.py": 'VERSION = "here"\n'})
+def project(tmp_path: Path) -> RobotProject:
+    files = {"robot.py": ROBOT.format(number=1), "spinner/__init__.py": 'VERSION = "here"\n'}
+    return new_project(tmp_path, files, as_written=True)  # the look-alike of no season has more than WPILib's base
 
 
 @pytest.fixture
