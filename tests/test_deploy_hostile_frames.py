@@ -313,7 +313,7 @@ def test_wheels_that_were_not_offered(need: dict[str, Any], project: Manifest) -
     robot = FakeRobot(HELLO, wire.message_frame(need))
     session = AgentClient.start(robot)
     with pytest.raises(DeployError, match="not from pyfrc's agent"):
-        session.install("a" * 16, "b" * 16, project, 1)
+        session.install("a" * 16, "b" * 16, project, [1] * len(project.entries))
 
 
 def test_a_phase_that_is_not_known_is_one_of_a_later_agent(project: Manifest) -> None:

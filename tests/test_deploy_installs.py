@@ -120,7 +120,7 @@ def test_what_todays_tool_has_installed_is_kept_for_the_releases_that_use_it(
             assert (robot.home / "venv").readlink().name == "taken-1"
 
 
-@pytest.mark.skipif(not IS_ROBORIO, reason="the SystemCore's look-alike has another version of Python than the lock")
+@pytest.mark.season_2026
 @nightly
 def test_what_todays_tool_has_installed_is_used_if_it_is_what_the_lock_wants(
     laptop: Laptop, project: RobotProject
@@ -209,7 +209,7 @@ def test_a_cut_connection_leaves_the_robot_as_it_was(
             assert remains == []
 
 
-@pytest.mark.skipif(not IS_ROBORIO, reason="only the roboRIO has opkg")
+@pytest.mark.season_2026
 @nightly
 def test_an_interrupted_opkg_runs_again(blank: Computer, laptop: Laptop, project: RobotProject) -> None:
     """Python has its files then, but perhaps not all of them."""
@@ -227,7 +227,7 @@ def test_an_interrupted_opkg_runs_again(blank: Computer, laptop: Laptop, project
     blank.said("plain program 1")
 
 
-@pytest.mark.skipif(not IS_ROBORIO, reason="only the roboRIO has opkg")
+@pytest.mark.season_2026
 @nightly
 def test_two_first_installations_at_once(blank: Computer, laptop: Laptop, project: RobotProject) -> None:
     """The second one is done while the first one waits for opkg, which then has nothing more to do."""
@@ -251,7 +251,7 @@ def test_two_first_installations_at_once(blank: Computer, laptop: Laptop, projec
     assert not (blank.disk / "usr/local/pyfrc/installing").exists()
 
 
-@pytest.mark.skipif(not IS_ROBORIO, reason="a SystemCore does not say which image it has")
+@pytest.mark.season_2026
 @nightly
 def test_nothing_is_installed_on_an_image_of_another_season(laptop: Laptop) -> None:
     laptop.sync(spinner="1.0")
