@@ -133,6 +133,7 @@ def test_what_todays_tool_has_installed_is_used_if_it_is_what_the_lock_wants(
         assert not (robot.home / ".pyfrc/environments").exists()
 
 
+@pytest.mark.season_2026
 @nightly
 def test_todays_tool_after_ours_and_ours_again(blank: Computer, laptop: Laptop) -> None:
     """It replaces code and start command, and has its packages where it installs them."""

@@ -149,7 +149,7 @@ def main() -> None:
                 connection, _ = SSH.accept()
                 with connection:
                     connection.setblocking(True)
-                    server = [CHROOT, ROOT, "/usr/sbin/sshd", "-i", "-E", "/var/sshd.log", "-f", "/etc/ssh/sshd_config"]
+                    server = [CHROOT, ROOT, "/usr/sbin/sshd", "-i", "-E", "/run/sshd.log", "-f", "/etc/ssh/sshd_config"]
                     subprocess.Popen(server, stdin=connection, stdout=connection, stderr=subprocess.DEVNULL)
             elif key.data == "console":
                 listeners.append(key.fileobj.accept()[0])
