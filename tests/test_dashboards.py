@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
-from pyfrc_core.config.dashboards import DASHBOARDS, load_dashboards, save_dashboard
+from pyfrc_core.config.dashboards import DASHBOARDS, Kind, Widget, load_dashboards, save_dashboard
 from pyfrc_core.errors import SettingsError
 
 WIDGET = {"kind": "number", "topic": "/SmartDashboard/kP", "x": 0, "y": 0, "w": 2, "h": 1}
@@ -78,3 +79,17 @@ def test_a_mistake_in_the_file_has_its_line(root: Path, now: str, then: str, mes
     with pytest.raises(SettingsError):  # nor is it overwritten
         save_dashboard(root, "Other", {"widgets": []})
     assert (root / DASHBOARDS).read_text("utf-8") == text
+
+
+def test_the_example_of_the_documentation(tmp_path: Path) -> None:
+    text = (Path(__file__).parents[1] / "docs" / "dashboards.md").read_text("utf-8")
+    (example,) = re.findall("^```json\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+    (tmp_path / "sim").mkdir()
+    (tmp_path / DASHBOARDS).write_text(example, "utf-8")
+    (dashboard,) = load_dashboards(tmp_path).values()
+    assert [widget.kind for widget in dashboard.widgets] == ["time", "gauge", "graph", "field"]
+    assert set(re.findall("`([a-z]+)`", next(line for line in text.splitlines() if line.startswith("| `kind`")))) - {
+        "kind"
+    } == set(get_args(Kind))
+    rows = re.findall("^[|] (`.*?`) [|]", text[text.index("| key of a widget") :], re.MULTILINE)
+    assert {key for row in rows for key in re.findall("`([a-z]+)`", row)} == set(Widget.model_fields)

@@ -64,6 +64,7 @@ def greeting(source: Source, client: int, read_only: bool, watching: bool = Fals
             "dashboard": {
                 "tables": [f"nt:{table}" for table in dashboards.tables],
                 "robot": re.sub(r"^nt:.*:/", "nt:/", dashboards.robot_on_field),
+                "choice": dashboards.choice,
                 "publishing": dashboards.publishing,
             },
             "speeds": {"slowest": SLOWEST, "fastest": FASTEST},

@@ -12,15 +12,15 @@ import { Icon, Live, html } from "#js/view.js";
 
 // The share of the speed slider that has speeds: beyond the fastest comes "as fast as possible".
 const UNLIMITED = 0.94;
-const LIVE_INTERVAL = 100; // milliseconds: no one reads faster
+const LIVE_INTERVAL = 200; // milliseconds: the clock goes in step with the timeline, in the same frame of the screen
+const FIGURES_INTERVAL = 500;
 
 export class TimeBar extends Live {
-  parts = ["t", "status", "shown", "hello", "branches", "compared", "compared-series", "connection"];
+  parts = ["status", "shown", "hello", "branches", "compared", "compared-series", "connection"];
 
   render() {
     const { status, past } = model;
     const locked = !model.mayDrive;
-    this.interval = past ? 0 : LIVE_INTERVAL;
     const running = status.wants_to_run;
     return html`<footer class=${past ? "timebar past" : "timebar"}>
       <div class="transport">
@@ -29,7 +29,7 @@ export class TimeBar extends Live {
           onClick=${() => command("toggle")}><${Icon} name=${running ? "pause" : "play"} /></button>`}
         <button class="quiet" title=${past || !model.isDriven ? "Look at the packet after" : "Step by one packet: F6"} aria-label="Step"
           disabled=${locked && !past} onClick=${() => (past ? lookByPackets(1) : command("step", { packets: 1 }))}><${Icon} name="step" /></button>
-        <time class="clock" title="Robot time">${clock(past ? past.t : model.t)}</time>
+        <${Clock} />
         ${past
           ? html`<span class="past-actions">
               ${model.hello.source.rewinds && html`<button class="primary" disabled=${locked} onClick=${driveOn} title="Go back to this moment. What came later is kept as a branch.">Drive on from here</button>`}
@@ -51,6 +51,19 @@ export class TimeBar extends Live {
   }
 }
 
+class Clock extends Live {
+  parts = ["t", "shown"];
+
+  shouldComponentUpdate(_, state) {
+    return state !== this.state;
+  }
+
+  render() {
+    this.interval = model.past ? 0 : LIVE_INTERVAL;
+    return html`<time class="clock" title="Robot time">${clock(model.past?.t ?? model.t)}</time>`;
+  }
+}
+
 // Whether what is shown is what the robot does now.
 function Present() {
   const text = model.connection !== "open" ? "No connection" : model.status.state === "failed" ? "Ended" : "Live";
@@ -63,8 +76,21 @@ async function mark() {
   if (text) command("mark", { t, text });
 }
 
-function Figures() {
-  const { status } = model;
+// How this computer keeps up. They change with every packet, and are read from time to time.
+class Figures extends Live {
+  parts = ["status"];
+  interval = FIGURES_INTERVAL;
+
+  shouldComponentUpdate(_, state) {
+    return state !== this.state;
+  }
+
+  render() {
+    return figures(model.status);
+  }
+}
+
+function figures(status) {
   const milliseconds = (seconds) => `${((seconds ?? 0) * 1000).toFixed(1)} ms`;
   const reached = status.state === "running" ? `${(status.reached ?? 0).toFixed(status.speed === 0 ? 0 : 2)}×` : "–";
   return html`<dl class="figures">

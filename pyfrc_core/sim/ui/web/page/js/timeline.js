@@ -1,7 +1,7 @@
 // The timeline: modes as colours, marks, and the moment that the panels show.
 import { ElementSize, Picture, font, sizeCanvas } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
-import { clock } from "#js/format.js";
+import { clock, clockTick } from "#js/format.js";
 import { gapsOf, hatch } from "#js/gaps.js";
 import { model } from "#js/model.js";
 import { isForgotten, length, live, look, lookBy, lookByPackets } from "#js/past.js";
@@ -15,7 +15,7 @@ const NEAR = 5; // pixels between the pointer and a mark
 const MOST_NAMED = 5; // marks beside the pointer
 const HEIGHT = 46;
 const EDGE = 8; // pixels at both ends
-const LIVE_INTERVAL = 100; // milliseconds: the present moves slowly
+const LIVE_INTERVAL = 200; // milliseconds: the present moves slowly
 const SHORTEST = 10; // seconds on the timeline at least, until it is over
 
 export class Timeline extends Live {
@@ -36,6 +36,11 @@ export class Timeline extends Live {
     unwatch("sim.mode");
   }
 
+  // It listens itself; the bar around it renders more often.
+  shouldComponentUpdate(_, state) {
+    return state !== this.state;
+  }
+
   // Painted again only if something has moved by about a pixel.
   componentDidUpdate() {
     if (!this.size.width) return;
@@ -47,9 +52,9 @@ export class Timeline extends Live {
 
   render(_, { hover }) {
     this.interval = model.past ? 0 : LIVE_INTERVAL;
-    const t = model.past?.t ?? model.t;
+    const t = model.past?.t ?? Math.floor(model.t);
     return html`<div class="timeline" role="slider" tabindex="0" aria-label="Timeline" aria-valuemin="0"
-        aria-valuemax=${length().toFixed(2)} aria-valuenow=${t.toFixed(2)} aria-valuetext=${model.past ? clock(t) : `live, ${clock(t)}`}
+        aria-valuemax=${Math.ceil(length())} aria-valuenow=${t.toFixed(2)} aria-valuetext=${model.past ? clock(t) : `live, ${clockTick(t)}`}
         onPointerDown=${this.begin} onPointerMove=${this.move} onPointerUp=${this.end} onPointerLeave=${this.leave} onKeyDown=${this.key}>
       <canvas ref=${this.canvas}></canvas>
       ${hover && html`<div class="timeline-tip" style=${{ left: `${hover.left}px` }}>

@@ -50,7 +50,7 @@ export class ChooserWidget extends TableWidget {
     const chooser = model.past ? null : model.choosers.find((each) => each.name === topicOf(path));
     const options = chooser?.options ?? plain(values.get(`${path}/options`)) ?? [];
     const active = chooser?.active ?? plain(values.get(`${path}/active`)) ?? "";
-    const choose = (option) => (chooser ? command("choose", { chooser: chooser.name, option }) : write({ [`${path}/selected`]: option }));
+    const choose = (option) => (chooser ? command("choose", { chooser: chooser.name, option }) : write({ [`${path}/${model.hello.options.dashboard.choice}`]: option }));
     return html`<div class="chooser-widget"><select aria-label=${name} value=${active} disabled=${!model.mayWrite} onChange=${(event) => choose(event.target.value)}>
       ${options.map((option) => html`<option key=${option} value=${option} selected=${option === active}>${option}</option>`)}</select></div>`;
   }

@@ -36,18 +36,21 @@ class ValueWidget extends Component {
   }
 }
 
+const SMALL = 0.1; // of which two decimals would show too little
 const NARROW = 0.48; // of a digit's width: a point or a sign
 const UNIT_SIZE = 0.6; // of a digit's width: a letter of the unit
 
 // The text of a number whose digits stay where they are: with as many decimals as its values so far need.
 class SteadyNumber {
-  #decimals = 0;
+  #isWhole = true;
+  #largest = 0;
   #width = 1;
 
   text(value, decimals) {
     if (typeof value !== "number") return valueText(value);
-    if (!Number.isInteger(value)) this.#decimals = Math.max(this.#decimals, Math.abs(value) < 0.1 ? 3 : 2);
-    const text = numberText(value, decimals ?? this.#decimals);
+    this.#isWhole &&= Number.isInteger(value);
+    if (Number.isFinite(value)) this.#largest = Math.max(this.#largest, Math.abs(value));
+    const text = numberText(value, decimals ?? (this.#isWhole ? 0 : this.#largest < SMALL ? 4 : 2));
     const digits = text.replace(/\D/g, "").length;
     this.#width = Math.max(this.#width, digits + NARROW * (text.length - digits));
     return text;
