@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from browser_pages import Seen, page_of, person_at_page, shared_browser, shared_server  # noqa: F401 - `person`
 
 from pyfrc_core.config.dashboards import DASHBOARDS
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator
 
 TABLE = "/SmartDashboard/"
 
@@ -39,7 +42,16 @@ def written(person: Seen, name: str) -> list[Any]:
     return [step.writes[path] for step in person.simulation.script().steps if path in step.writes]
 
 
-def shown(person: Seen, kind: str) -> Any:
+def put(person: Seen, row: Locator, grid: Locator, place: tuple[float, float]) -> None:
+    """Drag a row of NetworkTables to a place on the grid, where the pointer must move twice to be over it."""
+    row.hover()
+    person.page.mouse.down()
+    for _ in range(2):
+        grid.hover(position={"x": place[0], "y": place[1]})
+    person.page.mouse.up()
+
+
+def shown(person: Seen, kind: str) -> Locator:
     return person.page.locator(f".widget[data-kind={kind}]")
 
 
@@ -50,8 +62,10 @@ def test_a_team_makes_a_dashboard(file: Path, person: Seen) -> None:
     page.keyboard.press("Enter")  # it is called "Drive"
     grid = page.locator(".grid")
     # A value and a table from NetworkTables, and what the search offers.
-    person.row(f"nt:{TABLE}kP").drag_to(grid, target_position={"x": 400, "y": 300})
-    page.locator(".nt-row.folder", has_text="Turn").drag_to(grid, target_position={"x": 20, "y": 20})
+    put(person, person.row(f"nt:{TABLE}kP"), grid, (400, 300))
+    shown(person, "number").wait_for()
+    put(person, page.locator(".nt-row.folder", has_text="Turn"), grid, (20, 20))
+    shown(person, "pid").wait_for()
     person.button("Add widget").click()
     page.get_by_label("Search all values").fill("flag")
     page.keyboard.press("Enter")

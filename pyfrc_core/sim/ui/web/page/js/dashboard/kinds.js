@@ -1,7 +1,7 @@
 // What a widget may be: its title, its first size in cells, the settings that it has, and what draws it. What is
 // published decides which kinds are suggested.
 import { ChooserWidget, CommandWidget, AlertsWidget, PidWidget, ValuesWidget } from "#js/dashboard/published_widgets.js";
-import { FieldWidget, GraphWidget, MechanismWidget, SwerveWidget } from "#js/dashboard/panel_widgets.js";
+import { CameraWidget, FieldWidget, GraphWidget, MechanismWidget, SwerveWidget } from "#js/dashboard/panel_widgets.js";
 import { Gauge, InputBox, Lamp, NumberText, Switch, Text } from "#js/dashboard/value_widgets.js";
 import { MatchTime, RobotState } from "#js/dashboard/match_widgets.js";
 import { typeOf } from "#js/dashboard/topics.js";
@@ -28,8 +28,10 @@ export const KINDS = {
   state: { title: "Robot's mode", size: [3, 1], component: RobotState, alone: true },
   alerts: { title: "Alerts", size: [3, 2], component: AlertsWidget },
   command: { title: "Command", size: [2, 1], component: CommandWidget },
+  camera: { title: "Camera", size: [4, 3], component: CameraWidget },
 };
 
+const CAMERA = /^nt:\/CameraPublisher\/[^/]+$/; // the table of one camera
 const BY_TYPE = {
   "String Chooser": ["chooser"],
   Selectable: ["chooser"],
@@ -48,10 +50,12 @@ const BY_STRUCT = [
   [/^struct:Pose[23]d/, ["field", "values"]],
 ];
 
-// The structs that widgets show, such as an array of module states: { path, name, type }.
-export function drawnStructs() {
+// The tables of cameras, and the structs that widgets show, such as an array of module states: { path, name, type }.
+export function otherTables() {
+  const streams = [...model.values.keys()].filter((path) => path.startsWith("nt:/CameraPublisher/") && path.endsWith("/streams"));
+  const cameras = streams.map((path) => path.slice(0, -"/streams".length)).map((path) => ({ path, name: path.split("/").pop(), type: "Camera" }));
   const paths = Object.keys(model.types).filter((path) => path.startsWith("nt:/") && BY_STRUCT.some(([pattern]) => pattern.test(model.types[path])));
-  return paths.map((path) => ({ path, name: path.split("/").pop(), type: model.types[path].replace("struct:", "") }));
+  return [...cameras, ...paths.map((path) => ({ path, name: path.split("/").pop(), type: model.types[path].replace("struct:", "") }))];
 }
 
 // The kinds that suit what is published at a path, the best first; all while that is not known.
@@ -62,6 +66,7 @@ export function kindsFor(path) {
   if (typeof value === "number") return /match ?_?time/i.test(path) ? ["time", "number", "gauge"] : ["number", "gauge", "graph", "input", "time"];
   if (typeof value === "string") return ["text", "input", "graph"];
   if (value !== undefined) return ["text", "input"];
+  if (CAMERA.test(path)) return ["camera"];
   const struct = BY_STRUCT.find(([pattern]) => pattern.test(type));
   if (struct) return struct[1];
   if (type) return BY_TYPE[type] ?? ["values"];

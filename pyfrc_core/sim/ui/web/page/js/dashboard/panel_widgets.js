@@ -1,5 +1,6 @@
 // Widgets that are the page's own panels without their tools.
 import { pathOf } from "#js/dashboard/topics.js";
+import { Camera } from "#js/panels/cameras.js";
 import { FieldPanel } from "#js/panels/field.js";
 import { MechanismPanel } from "#js/panels/mechanism.js";
 import { PlotPanel } from "#js/panels/plot.js";
@@ -22,6 +23,11 @@ export function FieldWidget({ widget }) {
 
 export function MechanismWidget({ widget }) {
   return html`<${MechanismPanel} only=${widget.topic && pathOf(widget.topic)} />`;
+}
+
+// The topic is the camera's table, /CameraPublisher/NAME.
+export function CameraWidget({ widget }) {
+  return html`<${Camera} name=${widget.topic.split("/").pop()} />`;
 }
 
 export function SwerveWidget({ widget }) {

@@ -2,7 +2,7 @@
 import { dashboards } from "#js/dashboard/dashboards.js";
 import { WidgetFrame } from "#js/dashboard/frame.js";
 import { firstFree, nearestFree } from "#js/dashboard/grid.js";
-import { KINDS, drawnStructs, firstSettings, kindsFor } from "#js/dashboard/kinds.js";
+import { KINDS, otherTables, firstSettings, kindsFor } from "#js/dashboard/kinds.js";
 import { topicOf } from "#js/dashboard/topics.js";
 import { askText, askWhether } from "#js/dialog.js";
 import { Dropdown } from "#js/dropdown.js";
@@ -119,7 +119,7 @@ export class DashboardPanel extends Live {
 
   // What "Add widget" offers besides values: tables of the robot, and what needs no topic.
   offered() {
-    const tables = [...sendables(model.values), ...drawnStructs()].filter(({ path }) => KINDS[kindsFor(path)[0]]);
+    const tables = [...sendables(model.values), ...otherTables()].filter(({ path }) => KINDS[kindsFor(path)[0]]);
     const alone = Object.entries(KINDS).filter(([, kind]) => kind.alone);
     return [
       ...tables.map(({ path, name, type }) => ({ key: path, name, note: type, add: () => this.add(path) })),
