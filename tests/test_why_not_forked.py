@@ -149,7 +149,8 @@ def test_a_thread_of_a_test_file_is_named_with_its_line(make_project: MakeProjec
 
 
 def test_where_nothing_is_forked_interpreters_are_used_again(make_project: MakeProject) -> None:
-    explained, outcomes = run(make_project({"robot.py": ROBOT, "tests/test_a.py": TESTS}), "-p", "no_fork")
+    robot = ROBOT.replace("pass", "motor = wpilib.PWMSparkMax(3)")
+    explained, outcomes = run(make_project({"robot.py": robot, "tests/test_a.py": TESTS}), "-p", "no_fork")
     assert explained == []
     assert outcomes == {"test_forked": "FAILED", "test_another": "PASSED"}
 

@@ -112,6 +112,12 @@ class PyFrcPlugin(WatchedTests):
         self._physics_module  # noqa: B018
         return self._robot_class
 
+    def forget_robot(self) -> None:
+        """Let go of the project's code, after the last test."""
+        self._robot_class = None
+        for name in ("_physics_module", "invariants"):
+            vars(self).pop(name, None)
+
     @cached_property
     def _physics_module(self) -> PhysicsModule | None:
         if not self.project.physics_file.is_file():

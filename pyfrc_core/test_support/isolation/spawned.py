@@ -104,4 +104,6 @@ def run_in_interpreter(job: TestJob, send: Send, log: CrashLog) -> int:
     plugin = PyFrcPlugin(
         None, project.main_file, project.root, project=project, options=job.options, published=job.published
     )
-    return int(pytest.main(job.args, plugins=[plugin, OnlyOneTest(job, plugin, send, log)]))
+    status = pytest.main(job.args, plugins=[plugin, OnlyOneTest(job, plugin, send, log)])
+    plugin.forget_robot()  # pytest's import hook, which has the plugins, stays with each module that it has imported
+    return int(status)
