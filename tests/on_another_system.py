@@ -1,4 +1,7 @@
-"""Run tests in an environment that is like another system's: ``on_another_system.py windows [options of pytest]``."""
+"""Run tests in an environment that is like another system's: ``on_another_system.py windows [options of pytest]``.
+
+With ``--by-day``, only the files that the gate runs before each change.
+"""
 
 from __future__ import annotations
 
@@ -38,6 +41,9 @@ FILES = {
     "macos": ("core/test_processes.py", "test_project.py", "test_sim_channel.py", "test_virtual_robot.py"),
 }
 
+#: Those of them that the gate runs by day: processes, pipes, files and letters.
+BY_DAY = ("core/test_processes.py", "test_odd_letters.py", "test_project.py", "test_sim_channel.py")
+
 #: Tests in these files that take long, and show no more than others do there.
 LONG = (
     "test_isolation.py::test_another_isolation_gives_the_same",
@@ -50,11 +56,15 @@ LONG = (
 def main() -> int:
     """Run the tests, and return pytest's exit code."""
     system, *arguments = sys.argv[1:]
+    files = FILES[system]
+    if "--by-day" in arguments:
+        arguments.remove("--by-day")
+        files = tuple(name for name in files if name in BY_DAY)
     with tempfile.TemporaryDirectory(prefix="pyfrc-tests-") as directory:
         environment = environment_of(system, Path(directory).resolve(), os.environ)
         environment.pop("PYFRC_NO_SKIPS", None)  # what is about Linux alone is skipped
         if not any(argument.partition("::")[0].endswith(".py") for argument in arguments):
-            arguments += [f"tests/{name}" for name in FILES[system]]
+            arguments += [f"tests/{name}" for name in files]
             arguments += [f"--deselect=tests/{name}" for name in LONG]
         return subprocess.call([sys.executable, "-m", "pytest", *arguments], cwd=_ROOT, env=environment)
 

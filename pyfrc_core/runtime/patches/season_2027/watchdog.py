@@ -11,10 +11,9 @@ from ....wpi.season_2027 import watchdogs
 from ..expiry import Expiry
 
 _ERROR_CODE = 1
-_WPILibs = wpilib.Watchdog
 
 
-class Watchdog(_WPILibs):
+class Watchdog(wpilib.Watchdog):
     """Calls a function when it has not been fed in time: `wpilib.Watchdog`, expiring in robot time.
 
     :param timeout: seconds within which it has to be fed
