@@ -121,7 +121,7 @@ def test_lines_in_threads_and_isolated_tests_count(project: RobotProject, isolat
     assert functions_run(report) == expected
 
 
-@pytest.mark.parametrize("isolation", ["auto", "reuse", "spawn"])
+@pytest.mark.parametrize("isolation", sampled(["auto", "reuse", "spawn"], "auto"))
 def test_lines_that_only_a_fuzz_match_runs_count(project: RobotProject, isolation: str) -> None:
     report = measured(project, "fuzz", "--runs", "2", "-j", "2", "--isolation", isolation)
     assert functions_run(report) == {"in_a_thread", "in_a_notifier", "in_autonomous", "with_button_pressed"}

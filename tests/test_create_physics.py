@@ -384,6 +384,7 @@ def test_the_width_is_that_of_the_robots_code(make_project: MakeProject, code: s
     assert f"TRACK_WIDTH = {width}  # from" in (project.path / "physics.py").read_text()
 
 
+@pytest.mark.slow
 def test_names_and_inversion_tell_where_no_stick_does(make_project: MakeProject) -> None:
     """A climber has sides too, a conveyor runs by itself, and a loop that sleeps takes its time: none of it matters."""
     project = make_project(
@@ -436,6 +437,7 @@ EMPTY = {
 }
 
 
+@pytest.mark.slow
 def test_a_robot_with_nothing_at_all(make_project: MakeProject) -> None:
     project = make_project(EMPTY)
     assert "no drivetrain recognised" in create(project)
@@ -530,9 +532,7 @@ FAILING = {
 
 @pytest.mark.parametrize(
     ("code", "message"),
-    sampled(
-        FAILING.values(), *(FAILING[each] for each in ("in robotInit", "by hanging", "by ending the process", "in C"))
-    ),
+    sampled(FAILING.values(), *(FAILING[each] for each in ("in robotInit", "in C"))),
     ids=FAILING.keys(),
 )
 def test_a_robot_that_fails_is_told_by_its_line(make_project: MakeProject, code: str, message: str) -> None:
@@ -549,6 +549,7 @@ def test_a_robot_that_fails_is_told_by_its_line(make_project: MakeProject, code:
     assert not list(project.temporary.iterdir())
 
 
+@pytest.mark.slow
 def test_a_robot_that_fails_when_driven_still_gets_its_files(make_project: MakeProject) -> None:
     """Then the names are enough."""
     project = make_project(
@@ -633,7 +634,7 @@ SWERVE = {
 }
 
 
-@pytest.mark.parametrize("init", SWERVE.values(), ids=SWERVE.keys())
+@pytest.mark.parametrize("init", sampled(SWERVE.values(), next(iter(SWERVE.values()))), ids=SWERVE.keys())
 def test_swerve_is_recognised_and_left_to_the_team(make_project: MakeProject, init: str) -> None:
     module = """
 class Module:

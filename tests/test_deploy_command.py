@@ -219,6 +219,7 @@ def test_a_first_program_that_dies_has_nothing_to_go_back_to(robot: Roborio, mak
     assert "There is no earlier program to go back to" in result.stderr
 
 
+@pytest.mark.slow
 def test_the_program_of_another_tool_is_kept_for_a_rollback(robot: Roborio, make_project) -> None:
     robot.put("home/lvuser/py/robot.py", ROBOT.format(number=77))
     robot.put("home/lvuser/py/deploy.json", '{"deploy-user": "kim", "deploy-host": "pit", "deploy-date": "yesterday"}')
@@ -305,6 +306,7 @@ def test_without_tests_the_ready_made_ones_are_suggested(robot: Roborio, make_pr
     assert " passed in " in result.stdout
 
 
+@pytest.mark.slow
 def test_another_main_file_has_to_be_meant(robot: Roborio, make_project) -> None:
     project = make_project({"our_robot.py": ROBOT.format(number=5)})
     result = deploy(project, robot, "--main", "our_robot.py")
@@ -326,10 +328,20 @@ OURS = version("wpilib")
     [
         ({"password": "secret"}, "refuses lvuser with an empty password", "passwd -d lvuser"),
         ({"image": None}, "this is not a roboRIO", "--robot HOST"),
-        ({"python": None}, "there is no Python on the robot", "pyfrc sync; then at the robot: pyfrc deploy"),
+        pytest.param(
+            {"python": None},
+            "there is no Python on the robot",
+            "pyfrc sync; then at the robot: pyfrc deploy",
+            marks=pytest.mark.slow,
+        ),
         pytest.param({"wpilib": None}, "there is no wpilib", "at the robot: pyfrc deploy", marks=pytest.mark.slow),
         ({"wpilib": "2026.1.1"}, f"the robot has wpilib 2026.1.1, this computer has {OURS}", "--no-version-check"),
-        ({"image": "FRC_roboRIO_2024_v2.1"}, "the robot's image is of 2024", "roboRIO Imaging Tool"),
+        pytest.param(
+            {"image": "FRC_roboRIO_2024_v2.1"},
+            "the robot's image is of 2024",
+            "roboRIO Imaging Tool",
+            marks=pytest.mark.slow,
+        ),
         pytest.param(
             {"image": "FRC_roboRIO_2026_v1.1"},
             "the robot's image is 2026_v1.1",
@@ -373,6 +385,7 @@ def user_keys(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_the_ssh_agents_keys_are_offered_with_the_option(new_robot, make_project, user_keys: Path) -> None:
     robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
     project = make_project(program())

@@ -25,6 +25,7 @@ def home(tmp_path: Path) -> Path:
     return directory
 
 
+@pytest.mark.slow
 def test_everything_but_a_deploy_goes_from_anywhere(robot: Roborio, home: Path, make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT_PY})
 

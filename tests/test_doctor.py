@@ -232,6 +232,7 @@ def test_without_a_project_the_rest_is_looked_at(make_project) -> None:
     assert "not searched" in found["robot"][0]["text"]
 
 
+@pytest.mark.slow
 def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
     found = results_of(make_project({}).run("doctor", "--no-robot", "--json", "--project", "nowhere"))
     assert found["project"][0]["status"] == "problem"
@@ -249,7 +250,13 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
             "pyproject.toml:2: unknown key 'tool.pyfrc.mian'",
             "main",
         ),
-        ({"pyproject.toml": "[tool.robotpy]\nrequires = ['no-such>=1']\n"}, "project", "not installed", "no-such>=1"),
+        pytest.param(
+            {"pyproject.toml": "[tool.robotpy]\nrequires = ['no-such>=1']\n"},
+            "project",
+            "not installed",
+            "no-such>=1",
+            marks=pytest.mark.slow,
+        ),
         (
             {"pyproject.toml": "[tool.robotpy]\nrequires = ['click>99']\n"},
             "project",
@@ -257,7 +264,13 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
             "click>99",
         ),
         ({"sim/config.json": '{"pyfrc": {"robot": {"w": "wide"}}}'}, "sim/config.json", "robot.w", ""),
-        ({"wpilib/__init__.py": ""}, "project", "wpilib/__init__.py hides a library", "another name"),
+        pytest.param(
+            {"wpilib/__init__.py": ""},
+            "project",
+            "wpilib/__init__.py hides a library",
+            "another name",
+            marks=pytest.mark.slow,
+        ),
         pytest.param({"random.py": ""}, "project", "random.py hides a library", "another name", marks=pytest.mark.slow),
         (
             {"physics.py": "class PhysicsEngine:"},
@@ -294,6 +307,7 @@ def test_what_is_wrong_in_a_project(files: dict[str, str], topic: str, said: str
     assert remedy in wrong[0]["remedy"]
 
 
+@pytest.mark.slow
 def test_what_a_project_could_have_besides(make_project) -> None:
     files = {"robot.py": ROBOT, "pyproject.toml": "[tool.robotpy]\nrobotpy_version = '2026.1.1'\nrobotpy_extras = []\n"}
     found = results_of(make_project(files).run("doctor", "--no-robot", "--json"))

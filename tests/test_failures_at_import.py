@@ -67,9 +67,7 @@ LOOPS_WHILE_IMPORTED = """
 
 @pytest.mark.parametrize(
     "command",
-    sampled(
-        ["test", "fuzz --runs 1", "sim --ui none", "create-physics", "replay script.jsonl"], "test", "sim --ui none"
-    ),
+    sampled(["test", "fuzz --runs 1", "sim --ui none", "create-physics", "replay script.jsonl"], "test"),
 )
 def test_an_endless_loop_in_a_file_that_is_imported_is_told_with_its_line(
     make_project: MakeProject, command: str
@@ -157,6 +155,7 @@ WHICH_ROBOT = """
 """
 
 
+@pytest.mark.slow
 def test_two_robot_classes_ask_for_a_choice(make_project: MakeProject) -> None:
     project = make_project({"robot.py": TWO_ROBOTS, "tests/test_which.py": WHICH_ROBOT})
     undecided = project.run("test")

@@ -79,6 +79,7 @@ def test_a_refactoring_does_the_same(repository) -> None:
     assert "16 matches, 0.02 h of robot time: the outputs are those of " in result.stdout
 
 
+@pytest.mark.slow
 def test_where_processes_cannot_be_forked_new_ones_find_the_same(repository) -> None:
     repository.write({"robot.py": "raise_at_import = 1 / 0\n"})
     git(repository, "commit", "-am", "Broken")

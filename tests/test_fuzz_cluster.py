@@ -255,6 +255,7 @@ def test_a_scheduler_that_is_lost(own_cluster: Cluster, make_shared_project) -> 
     assert list(project.path.rglob("tests/fuzz/*.jsonl"))
 
 
+@pytest.mark.slow
 def test_a_scheduler_without_workers(scheduler: Cluster, without_workers: Result) -> None:
     result = without_workers
     assert (result.code, result.first_error) == (1, f"the scheduler at {scheduler.address} has no workers")

@@ -212,8 +212,8 @@ def test_modes_come_as_from_a_driver_station(matches: list[Written]) -> None:
     "where",
     [
         "self.stick = wpilib.Joystick(3)",
-        "self.held = {'sticks': [wpilib.Joystick(3)]}",
-        "stick = wpilib.Joystick(3); self.read = lambda: stick.getY()",
+        pytest.param("self.held = {'sticks': [wpilib.Joystick(3)]}", marks=pytest.mark.slow),
+        pytest.param("stick = wpilib.Joystick(3); self.read = lambda: stick.getY()", marks=pytest.mark.slow),
         "import commands2.button; self.stick = commands2.button.CommandXboxController(3)",
     ],
 )
@@ -326,6 +326,7 @@ def test_the_shortest_way_to_a_failure_is_kept_and_replayed(make_project) -> Non
     assert (project.path / ".pyfrc/.gitignore").read_text() == "*\n"
 
 
+@pytest.mark.slow
 def test_where_each_process_is_a_new_one_the_whole_match_is_kept(make_project) -> None:
     project = make_project(
         {
@@ -348,6 +349,7 @@ def test_where_each_process_is_a_new_one_the_whole_match_is_kept(make_project) -
     assert failure[0] in project.run("replay", file).output
 
 
+@pytest.mark.slow
 def test_a_robot_without_a_fault_passes_and_leaves_nothing(make_project) -> None:
     project = make_project({"robot.py": EVERYTHING, "tests/pyfrc_test.py": "from pyfrc.tests import *\n"})
     result = project.run("test", "--", "-v")

@@ -292,7 +292,7 @@ def test_several_at_a_time_give_the_same_in_the_same_order(everything: RobotProj
             ("test_parametrised", "test_of_module", "test_second_on", "test_unexpectedly", "test_skip", "OldStyle"),
         ),
         # Used again, each is as good as new.
-        ("reuse", ()),
+        pytest.param("reuse", (), marks=pytest.mark.slow),
         # Together in one process, one crash is everybody's, and so is what a module keeps.
         ("none", ("test_crashes", "test_modules_are_new")),
     ],
@@ -305,6 +305,7 @@ def test_another_isolation_gives_the_same(everything: RobotProject, isolation: s
     assert short(result.outcomes()) == expected
 
 
+@pytest.mark.slow
 def test_plain_pytest_gives_the_same(everything: RobotProject) -> None:
     result = everything.pytest("-v")
     assert result.code == 1, result.output
@@ -799,7 +800,7 @@ def covered(result: Result) -> dict[str, str]:
     [
         pytest.param("fork", MEASURED_ROBOT, marks=needs_fork, id="fork"),
         pytest.param("auto", ROBOT_WITH_DEVICE_IN_CLASS, id="device-in-class", marks=pytest.mark.slow),
-        pytest.param("spawn", MEASURED_ROBOT, id="spawn"),
+        pytest.param("spawn", MEASURED_ROBOT, id="spawn", marks=pytest.mark.slow),
         pytest.param("none", MEASURED_ROBOT, id="none", marks=pytest.mark.slow),
     ],
 )

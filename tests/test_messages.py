@@ -81,6 +81,7 @@ def test_a_component_that_asks_for_what_is_not_there(make_project: MakeProject) 
     assert "self.arm_motr" in first[1]
 
 
+@pytest.mark.slow
 def test_a_component_that_is_assigned_instead_of_declared(make_project: MakeProject) -> None:
     components = ARM.replace("    motr: object\n", "") + CLAW
     robot = MAGIC.replace("arm: Arm\n", "claw: Claw\n        arm = Arm\n").replace("import Arm", "import Arm, Claw")

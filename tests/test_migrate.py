@@ -8,7 +8,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject, RobotProject, sampled
 from skips import missing_programs, require
 
 pytest.importorskip("libcst")
@@ -131,7 +131,7 @@ def test_a_second_run_changes_nothing(project: RobotProject) -> None:
     assert {file: file.read_bytes() for file in project.path.rglob("*") if file.is_file()} == before
 
 
-@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+@pytest.mark.parametrize("newline", sampled(["\n", "\r\n"], "\r\n"))
 @pytest.mark.parametrize("option", ["--check", "--diff"])
 def test_nothing_is_written_on_wish(project: RobotProject, option: str, newline: str) -> None:
     (project.path / "robot.py").write_text(text(project, "robot.py"), "utf-8", newline=newline)
@@ -193,6 +193,7 @@ def test_line_ends_tabs_and_encoding_stay(make_project: MakeProject) -> None:
     assert (project.path / "robot.py").read_bytes() == "\r\n".join(lines).replace("P", "_p", 1).encode()
 
 
+@pytest.mark.slow
 def test_other_environments_and_hidden_directories_are_left_alone(project: RobotProject) -> None:
     old = "import wpilib.drive\n"
     project.write({"venv/lib/a.py": old, "mine/pyvenv.cfg": "", "mine/lib/b.py": old, ".hidden/c.py": old})
@@ -201,6 +202,7 @@ def test_other_environments_and_hidden_directories_are_left_alone(project: Robot
         assert text(project, name) == old
 
 
+@pytest.mark.slow
 def test_code_in_a_directory_of_its_own(make_project: MakeProject) -> None:
     project = make_project(
         {

@@ -47,6 +47,7 @@ def test_the_simulator_warns_once(forgetful: RobotProject) -> None:
     assert result.stdout.count(SENTENCE) == 1
 
 
+@pytest.mark.slow
 def test_robots_that_refresh_are_not_warned_of(make_project: MakeProject) -> None:
     """Neither in tests nor in the simulator."""
     refresh = "wpilib.DriverStation.refreshData()"

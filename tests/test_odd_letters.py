@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from conftest import MakeProject
+from conftest import MakeProject, sampled
 
 ROBOT = r"""
     import wpilib
@@ -37,7 +37,7 @@ PRINTS = r"""
 """
 
 
-@pytest.mark.parametrize("isolation", ["reuse", "spawn"])
+@pytest.mark.parametrize("isolation", sampled(["reuse", "spawn"], "reuse"))
 def test_a_robot_may_print_any_letter_in_a_new_interpreter(isolation: str, make_project: MakeProject) -> None:
     """Its output is a file there, which has Windows' encoding by default."""
     project = make_project({"robot.py": PRINTS})

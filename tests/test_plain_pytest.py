@@ -53,9 +53,7 @@ def passed_as_without_pyfrc(result: Result) -> bool:
     return result.code == 0 and "3 passed" in result.stdout and "pyfrc:" not in result.stdout
 
 
-@pytest.mark.parametrize(
-    "mark", sampled(["pyproject.toml", "setup.py", "setup.cfg", ".git/HEAD"], "pyproject.toml", ".git/HEAD")
-)
+@pytest.mark.parametrize("mark", sampled(["pyproject.toml", "setup.py", "setup.cfg", ".git/HEAD"], "pyproject.toml"))
 @pytest.mark.parametrize("named", [False, True])
 def test_another_project_below_a_robot_is_left_alone(make_project: MakeProject, mark: str, named: bool) -> None:
     project = make_project({"robot.py": ROBOT, f"scouting/{mark}": "", "scouting/tests/test_app.py": APPLICATION})
@@ -79,6 +77,7 @@ def test_a_robot_file_without_a_robot_class_is_left_alone(make_project: MakeProj
     assert passed_as_without_pyfrc(project.pytest(cwd=project.path / "app"))
 
 
+@pytest.mark.slow
 def test_settings_above_a_robot_in_a_subdirectory_are_no_robot(make_project: MakeProject) -> None:
     settings = "[tool.pyfrc.test]\nseed = 1\n"
     project = make_project({"pyproject.toml": settings, "robot/robot.py": ROBOT, "test_app.py": APPLICATION})
@@ -145,6 +144,7 @@ def test_beside_an_unknown_season_it_is_as_if_not_installed(
     assert lines == ([] if "-q" in args else wanted)
 
 
+@pytest.mark.slow
 def test_packages_that_do_not_fit_do_not_end_pytest(make_project: MakeProject, tmp_path: Path) -> None:
     project = make_project({"robot.py": ROBOT, "tests/test_a.py": "def test_plain():\n    pass\n"})
     (tmp_path / "site/hal").mkdir(parents=True)

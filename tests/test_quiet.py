@@ -114,6 +114,7 @@ def test_tests_print_as_pytest_does_with_it(project: RobotProject) -> None:
     assert "tests/test_it.py::test_it PASSED" in project.run("test", "-v").stdout
 
 
+@pytest.mark.slow
 def test_a_measurement_is_a_report_and_does_not_say_where_the_others_are(project: RobotProject) -> None:
     measured = project.run("coverage", "-q", "--xml", "coverage.xml", "replay", "ran.jsonl")
     assert measured.code == 0, measured.output

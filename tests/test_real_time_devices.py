@@ -279,6 +279,7 @@ MEETING = {
 }
 
 
+@pytest.mark.slow
 def test_one_more_test_runs_at_a_time_than_there_are_processors(with_phoenix: PhoenixProject) -> None:
     """Each of these two waits for the other, in real time."""
     with_phoenix.project.write(MEETING)
@@ -289,6 +290,7 @@ def test_one_more_test_runs_at_a_time_than_there_are_processors(with_phoenix: Ph
 # -- the commands say it once ------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_recorded_test_run_says_it_once(with_phoenix: PhoenixProject) -> None:
     """Once for all tests, and not when nothing is recorded."""
     assert with_phoenix.output("test", "--record", "recorded").count(SENTENCE) == 1
@@ -303,6 +305,7 @@ def test_a_replay_says_it_and_compares_the_rest(with_phoenix: PhoenixProject) ->
     assert "The trace equals the recorded one." in output
 
 
+@pytest.mark.slow
 def test_a_replay_that_differs_is_no_failure(with_phoenix: PhoenixProject) -> None:
     """What the devices do may reach everything else."""
     robot = with_phoenix.path / "robot.py"

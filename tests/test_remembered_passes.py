@@ -7,6 +7,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from conftest import sampled
 
 ROBOT = """
     import wpilib
@@ -167,6 +168,7 @@ def test_a_new_test_runs_and_a_new_module_runs_everything(project) -> None:
     assert ran(project) == ALL | {"more"}
 
 
+@pytest.mark.slow
 def test_a_library_beside_the_project_counts(make_project, tmp_path: Path) -> None:
     library = tmp_path / "library"
     library.mkdir()
@@ -207,6 +209,7 @@ def test_what_does_not_go_together(make_project, options: list[str], expected: s
     assert expected in result.output
 
 
+@pytest.mark.slow
 def test_a_spoiled_memory_is_ignored(project) -> None:
     for content in ("", "{}", "[1]", '{"format": 2, "tests": [7]}', '{"format": 1, "reads": [[1]]}'):
         (project.path / ".pyfrc/passes.json").write_text(content)
@@ -248,7 +251,7 @@ def small_project(make_project, name: str, text: str):
     return make_project({**files, "tests/test_saves.py": SAVES.format(name=name, text=text)})
 
 
-@pytest.mark.parametrize("name", ["robot.py", "parts/arm.py", "parts/new.py"])
+@pytest.mark.parametrize("name", sampled(["robot.py", "parts/arm.py", "parts/new.py"], "parts/arm.py"))
 def test_a_source_that_is_saved_while_the_tests_run_is_not_deployed_untested(make_project, name: str) -> None:
     made = small_project(make_project, name, repr(SMALL + "# saved\n"))
     result = made.run(*NO_ROBOT)
@@ -260,6 +263,7 @@ def test_a_source_that_is_saved_while_the_tests_run_is_not_deployed_untested(mak
     assert again.first_error.startswith("no robot found"), "the tests write the same again"
 
 
+@pytest.mark.slow
 def test_what_the_tests_write_themselves_prevents_no_deploy(make_project) -> None:
     made = small_project(make_project, "log.txt", "file.read_text() + 'a run'")
     result = made.run(*NO_ROBOT)

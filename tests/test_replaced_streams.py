@@ -64,7 +64,7 @@ AT_IMPORT = [(what, True) for what in REPLACES if what not in ("none", "closed")
 
 @pytest.mark.parametrize(
     ("what", "at_import"),
-    sampled([*((what, False) for what in REPLACES), *AT_IMPORT], ("none", False), ("closed", False), AT_IMPORT[0]),
+    sampled([*((what, False) for what in REPLACES), *AT_IMPORT], ("closed", False), AT_IMPORT[0]),
 )
 def test_tests_and_replays(make_project: MakeProject, what: str, at_import: bool) -> None:
     project = make(make_project, what, at_import)
@@ -80,7 +80,9 @@ def test_tests_and_replays(make_project: MakeProject, what: str, at_import: bool
 
 
 @pytest.mark.parametrize("what", sampled(REPLACES, "closed"))
-@pytest.mark.parametrize("options", [["--no-isolation"], ["--no-isolation", "--", "-s"], ["--", "-s"]])
+@pytest.mark.parametrize(
+    "options", sampled([["--no-isolation"], ["--no-isolation", "--", "-s"], ["--", "-s"]], ["--no-isolation"])
+)
 def test_other_ways_to_run_tests(make_project: MakeProject, what: str, options: list[str]) -> None:
     result = make(make_project, what).run("test", "--builtin", *options)
     assert result.code == 0, result.output
@@ -128,7 +130,7 @@ CAPTURED = """
 """
 
 
-@pytest.mark.parametrize("options", [[], ["--no-isolation"]])
+@pytest.mark.parametrize("options", sampled([[], ["--no-isolation"]], []))
 def test_what_a_robot_prints_is_in_the_fixtures_of_pytest(make_project: MakeProject, options: list[str]) -> None:
     robot = "import wpilib\n\nclass Robot(wpilib.TimedRobot):\n    def teleopInit(self):\n"
     robot += "        print('printed in teleop')\n"

@@ -9,6 +9,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
+from conftest import sampled
 from sim_robots import run, settle
 from wpiutil.log import DataLogReader
 
@@ -88,7 +89,7 @@ def test_the_log_of_a_headless_match(make_project) -> None:
     assert (made.path / ".pyfrc" / ".gitignore").read_text() == "*\n"
 
 
-@pytest.mark.parametrize("end", ["1 / 0", "os._exit(3)", "exit()"])
+@pytest.mark.parametrize("end", sampled(["1 / 0", "os._exit(3)", "exit()"], "1 / 0"))
 def test_the_log_of_a_robot_that_fails(end: str, make_project) -> None:
     made = make_project(robot(f"{end} if count == 333 else None"))
     result = made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "20")
@@ -96,6 +97,7 @@ def test_the_log_of_a_robot_that_fails(end: str, make_project) -> None:
     assert turns(named(result.output, made)) == list(range(1, 334))
 
 
+@pytest.mark.slow
 def test_processes_that_robot_code_forks_leave_the_log_to_the_robot(make_project) -> None:
     """They end with `os._exit`, or by SIGTERM: both would complete the log of the robot's own process."""
     forking = """
@@ -131,7 +133,7 @@ def test_the_log_of_a_robot_that_is_killed(make_project) -> None:
     assert 100 <= len(turns(named(result.output, made))) <= 333
 
 
-@pytest.mark.parametrize("fork", [None, False])
+@pytest.mark.parametrize("fork", sampled([None, False], None))
 def test_time_that_is_turned_back(fork: bool | None, make_project) -> None:
     """Each run has a log of its own, which has all that was seen of it when its process is killed."""
     made = make_project(robot())
@@ -173,7 +175,7 @@ TESTS = """
 """
 
 
-@pytest.mark.parametrize("isolation", [[], ["--no-isolation"]])
+@pytest.mark.parametrize("isolation", sampled([[], ["--no-isolation"]], []))
 def test_each_test_has_a_log(isolation: list[str], make_project) -> None:
     settings = "[tool.pyfrc.test]\nhang_seconds = 0.2\n"
     files = robot() | {"tests/match_test.py": TESTS, "pyproject.toml": settings}
@@ -189,6 +191,7 @@ def test_each_test_has_a_log(isolation: list[str], make_project) -> None:
         assert "data log" not in made.run("test", "--", "-k", "nothing").stdout
 
 
+@pytest.mark.slow
 def test_a_log_that_is_started_at_import(make_project) -> None:
     made = make_project({"robot.py": "import wpilib\nwpilib.DataLogManager.start()\n" + dedent(robot()["robot.py"])})
     made.write({"tests/match_test.py": TESTS})
@@ -267,6 +270,7 @@ def test_what_a_sysid_routine_writes_is_in_the_runs_log(make_project) -> None:
     assert list(made.path.rglob("*.wpilog")) == [file]
 
 
+@pytest.mark.slow
 def test_a_directory_that_there_cannot_be(make_project) -> None:
     made = make_project(robot() | {".pyfrc": "a file"})
     result = made.run("sim", "--ui", "none", "--mode", "disabled", "--seconds", "2")

@@ -70,9 +70,7 @@ def text(*lines: object, header: object = HEADER) -> str:
 # -- recordings ----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "name", sampled(sorted(path.parent.name for path in ROBOTS.glob("*/robot.py")), "command", "sleeper", "worker")
-)
+@pytest.mark.parametrize("name", sampled(sorted(path.parent.name for path in ROBOTS.glob("*/robot.py")), "command"))
 def test_a_recordings_replay_does_the_same(name: str, make_project) -> None:
     """For each sample robot, the one of its own tests with the most inputs, but not a whole match."""
     project = make_project({})

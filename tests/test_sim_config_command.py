@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from conftest import MakeProject
+from conftest import MakeProject, sampled
 
 ROBOT = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
 
@@ -101,7 +101,9 @@ def test_strict_makes_warnings_fail(make_project: MakeProject) -> None:
     assert many.stdout.endswith("sim/config.json: no mistakes, but more than 20 warnings\n")
 
 
-@pytest.mark.parametrize("place", ["config.json", "tests/sim/config.json", "Sim/config.json", "sim/Config.json"])
+@pytest.mark.parametrize(
+    "place", sampled(["config.json", "tests/sim/config.json", "Sim/config.json", "sim/Config.json"], "Sim/config.json")
+)
 def test_a_file_in_the_wrong_place_is_told(make_project: MakeProject, place: str) -> None:
     project = make_project({"robot.py": ROBOT, place: '{"pyfrc": {}}'})
     if (project.path / "sim/config.json").exists():

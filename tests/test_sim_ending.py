@@ -14,7 +14,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
-from conftest import RobotProject
+from conftest import RobotProject, sampled
 from sim_robots import FILES, PATIENCE, wait
 from started_commands import StartedCommand
 
@@ -23,8 +23,8 @@ from pyfrc_core.project import Project
 from pyfrc_core.sim import SimOptions, Simulation
 
 SIGNALS = [
-    pytest.param(name, marks=pytest.mark.skipif(not hasattr(signal, name), reason="this system has no such signal"))
-    for name in ("SIGINT", "SIGTERM", "SIGHUP")
+    pytest.param(name, marks=[pytest.mark.skipif(not hasattr(signal, name), reason="this system has none"), *marks])
+    for name, *marks in (("SIGINT",), ("SIGTERM", pytest.mark.slow), ("SIGHUP", pytest.mark.slow))
 ]
 
 #: Says when it is enabled for the tenth time.
@@ -72,7 +72,7 @@ def running(project: RobotProject, *arguments: str) -> Iterator[Running]:
         yield Running(command)
 
 
-@pytest.mark.parametrize("call", ["exit()", "sys.exit()", "raise SystemExit(3)"])
+@pytest.mark.parametrize("call", sampled(["exit()", "sys.exit()", "raise SystemExit(3)"], "exit()"))
 def test_a_robot_that_calls_exit(call: str, make_project) -> None:
     head = "import sys\nimport wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n"
     made = make_project({"robot.py": f"{head}    def teleopPeriodic(self):\n        {call}\n"})
@@ -131,6 +131,7 @@ def test_what_was_driven_is_written_however_it_ends(name: str, make_project) -> 
 
 
 @pytest.mark.season_2026
+@pytest.mark.slow
 def test_the_data_log_of_a_robot_that_dies_at_once(make_project) -> None:
     """What WPILib holds back for one large write is lost with the process."""
     from wpiutil.log import DataLogReader
@@ -159,6 +160,7 @@ def test_the_data_log_of_a_robot_that_dies_at_once(make_project) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no file is too large there")
+@pytest.mark.slow
 def test_a_data_log_for_which_there_is_no_room(make_project) -> None:
     """Files that may not grow any further stand for a disk that is full."""
     made = make_project(FILES)
@@ -228,6 +230,7 @@ def test_new_code_goes_as_far_as_the_old_one_was_to(make_project) -> None:
         assert simulation.snapshot.time == 0.5
 
 
+@pytest.mark.slow
 def test_a_port_that_is_taken_is_said(make_project) -> None:
     with socket.socket() as other:
         other.bind(("", 0))

@@ -19,6 +19,7 @@ from typing import Any
 
 import ntcore
 import pytest
+from conftest import sampled
 from ports import lasting_port
 from sim_robots import FILES, PATIENCE, run, settle, wait
 from spelling import spelled
@@ -114,6 +115,7 @@ def test_one_packet_is_a_fiftieth_of_a_second(simulation: Simulation) -> None:
     wait(simulation, lambda: simulation.snapshot.time == 1.0 and simulation.status.state == "paused")
 
 
+@pytest.mark.slow
 def test_a_button_that_is_pressed_for_less_than_a_packet_is_seen_in_one(simulation: Simulation) -> None:
     def after_a_packet() -> tuple[bool, int]:
         then = simulation.snapshot.time + 0.02
@@ -208,6 +210,7 @@ def test_putting_the_robot_elsewhere(simulation: Simulation) -> None:
 
 
 @pytest.mark.season_2026  # where its dashboard has the field
+@pytest.mark.slow
 def test_putting_a_robot_elsewhere_that_shows_a_field_of_its_own(make_project) -> None:
     robot = """
         import wpilib
@@ -348,6 +351,7 @@ def test_new_code_is_brought_to_the_same_moment(simulation: Simulation, project:
     assert simulation.snapshot.scene.robot == pytest.approx(before.scene.robot)
 
 
+@pytest.mark.slow
 def test_a_file_that_is_saved_twice_in_a_second(project: Project, monkeypatch) -> None:
     """Python would take the first one's compiled form for the second's: time, in seconds, and size are the same."""
     monkeypatch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)
@@ -366,6 +370,7 @@ def test_a_file_that_is_saved_twice_in_a_second(project: Project, monkeypatch) -
     assert reached[1] > reached[0] + 1
 
 
+@pytest.mark.slow
 def test_new_code_gets_what_was_commanded_in_a_pause(simulation: Simulation) -> None:
     run(simulation, 0.1)
     drive_forward(simulation)
@@ -492,7 +497,7 @@ def test_dashboards_see_the_robot_and_are_recorded(project: Project) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux has a second address that is this computer's alone")
-@pytest.mark.parametrize("shared", [False, True])
+@pytest.mark.parametrize("shared", sampled([False, True], False))
 def test_other_computers_reach_networktables_only_if_they_are_shared(shared: bool, project: Project) -> None:
     port = lasting_port()
     with Simulation(project, replace(STILL, nt_port=port, nt_shared=shared)) as simulation:
@@ -520,6 +525,7 @@ def stands(simulation: Simulation) -> bool:
     return before.scene.robot == now.scene.robot and now.values["pwm[0].value"] == 0
 
 
+@pytest.mark.slow
 def test_a_moment_that_is_left_releases_what_was_held(simulation: Simulation) -> None:
     drive_forward(simulation)
     run(simulation, 1)
@@ -531,6 +537,7 @@ def test_a_moment_that_is_left_releases_what_was_held(simulation: Simulation) ->
     assert stands(simulation)
 
 
+@pytest.mark.slow
 def test_a_script_that_has_ended_holds_nothing(project: Project) -> None:
     lines = [
         '{"format": "pyfrc-input 1", "end": 1}',
@@ -586,7 +593,7 @@ def test_a_restart_keeps_what_was_chosen(simulation: Simulation) -> None:
     assert simulation.snapshot.chosen_mode == "teleop"
 
 
-@pytest.mark.parametrize(("start", "station"), [(None, 4), ("left", 4), ("far", 1)])
+@pytest.mark.parametrize(("start", "station"), sampled([(None, 4), ("left", 4), ("far", 1)], ("far", 1)))
 def test_the_alliance_is_that_of_the_wall_where_the_robot_starts(make_project, start: str | None, station: int) -> None:
     positions = """{"pyfrc": {"robot": {"start_positions": [
         {"name": "left", "x": 2, "y": 3}, {"name": "far", "x": 50, "y": 3, "angle": 180}]}}}"""

@@ -244,6 +244,7 @@ def test_a_layout_is_saved_for_the_project(make_project) -> None:
     assert json.loads((made.path / ".pyfrc" / "sim-layout.json").read_text()) == {"panels": ["field", "plot"]}
 
 
+@pytest.mark.slow
 def test_a_recording_that_is_there_is_replaced_only_when_that_is_wanted(make_project) -> None:
     made = make_project(FILES)
     with served(made) as server, server.page() as page:
@@ -366,6 +367,7 @@ def test_only_what_a_page_shows_is_sent(make_project) -> None:
         page.until(lambda: page.values["nt:/pose/translation/y"] > before["nt:/pose/translation/y"])
 
 
+@pytest.mark.slow
 def test_a_later_time_alone_may_wait(make_project) -> None:
     with served(make_project(FILES)) as server, server.page() as page:
         page.run_for(0.1)

@@ -88,6 +88,7 @@ def opened(server: Served, host: str, origin: str, token: str = "") -> int:
         return refusal.response.status_code
 
 
+@pytest.mark.slow
 def test_a_forwarded_port_of_another_number(make_project) -> None:
     """`ssh -L 9999:127.0.0.1:PORT`, and VS Code: the browser's own computer has another port."""
     with served(make_project(QUIET)) as server:
@@ -223,9 +224,7 @@ def test_share_to_drive_is_asked_for(make_project) -> None:
             page.command("enable")
 
 
-@pytest.mark.parametrize(
-    "image", sampled(["SECRET", "link.png", "../secret.svg", "pipe", "secret.txt"], "link.png", "../secret.svg")
-)
+@pytest.mark.parametrize("image", sampled(["SECRET", "link.png", "../secret.svg", "pipe", "secret.txt"], "link.png"))
 def test_no_file_but_a_picture_of_the_project_is_handed_out(image: str, make_project) -> None:
     made = make_project({**FILES, "sim/secret.txt": "SECRET", "secret.svg": "SECRET"})
     outside = made.path.parent / "outside.svg"
@@ -247,6 +246,7 @@ def test_no_file_but_a_picture_of_the_project_is_handed_out(image: str, make_pro
     assert "SECRET" not in written.read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_a_picture_that_becomes_a_link_is_not_handed_out(make_project) -> None:
     made = make_project(QUIET)
     outside = made.path.parent / "outside.svg"

@@ -69,6 +69,7 @@ def test_a_page_that_goes_away_leaves_no_driving_robot(way: str, driving: Seen) 
 
 
 @BROWSER
+@pytest.mark.slow
 def test_a_moment_that_was_driven_is_gone_on_from_without_its_keys(driving: Seen) -> None:
     since = driving.simulation.snapshot.time
     driving.until(lambda: driving.simulation.snapshot.time > since + 0.6)
@@ -165,6 +166,7 @@ def test_a_robot_is_stopped_from_the_past_and_seen(person: Seen, key: str) -> No
 
 
 @BROWSER
+@pytest.mark.slow
 def test_a_key_steps_through_the_past_and_not_the_present(person: Seen) -> None:
     person.until(lambda: person.simulation.snapshot.time > 0.5)
     person.pause()

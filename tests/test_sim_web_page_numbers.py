@@ -88,6 +88,7 @@ def test_what_is_no_number_is_refused_with_the_reason(person: Seen) -> None:
     assert written(person) == []
 
 
+@pytest.mark.slow
 def test_a_list_is_edited_with_all_digits_of_its_numbers(person: Seen) -> None:
     page = person.page
     target = "nt:/SmartDashboard/gains"

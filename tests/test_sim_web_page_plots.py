@@ -131,6 +131,7 @@ def test_a_table_has_statistics_of_what_is_in_view(drove: Seen) -> None:
     page.get_by_label("Show sim.pose[0]").wait_for()
 
 
+@pytest.mark.slow
 def test_curves_over_another_curve(drove: Seen) -> None:
     page = drove.page
     page.get_by_label("Settings of sim.pose[0]").click()
@@ -147,6 +148,7 @@ def test_curves_over_another_curve(drove: Seen) -> None:
     assert limits(drove, "X") == pytest.approx([low, high], abs=0.1)
 
 
+@pytest.mark.slow
 def test_more_curves_than_colours_look_different(drove: Seen) -> None:
     page = drove.page
     page.evaluate(ADD, [f"joysticks[0].axes[{number}]" for number in range(6)])
@@ -164,6 +166,7 @@ def test_more_curves_than_colours_look_different(drove: Seen) -> None:
     assert colors == [*range(13), 16]
 
 
+@pytest.mark.slow
 def test_the_axis_of_time_has_times(drove: Seen) -> None:
     steps = drove.page.evaluate(
         """async () => {

@@ -128,6 +128,7 @@ def test_python_and_the_packages_for_the_robot_are_downloaded_and_locked(laptop:
     assert f"get       wpilib {WPILIB} " in printed
 
 
+@pytest.mark.slow
 def test_with_a_lock_nothing_is_looked_up_and_what_is_there_is_not_downloaded_again(laptop: Laptop) -> None:
     laptop.sync()
     text = (laptop.project.path / LOCK_FILE).read_bytes()
@@ -191,6 +192,7 @@ def test_upgrade_takes_the_newest(laptop: Laptop) -> None:
     assert f"{LOCK_FILE} has changed. Commit it.\n  simple-lib 1.0 -> 2.0\n" in printed
 
 
+@pytest.mark.slow
 def test_without_a_version_the_robot_gets_this_computers(laptop: Laptop) -> None:
     laptop.index.add_wpilib("9999.1.1")
     laptop.project.write({"pyproject.toml": "[tool.robotpy]\n"})
@@ -392,6 +394,7 @@ def test_a_component_that_does_not_exist_is_refused_before_the_download(laptop: 
     assert laptop.index.requests == []
 
 
+@pytest.mark.slow
 def test_two_at_once_wait_for_each_other(laptop: Laptop) -> None:
     index, name = laptop.index, laptop.index.python.name
     index.cut_after[name], index.may_go_on = 200_000, threading.Event()

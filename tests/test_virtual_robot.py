@@ -321,6 +321,7 @@ def test_a_command_gets_the_address_and_the_robot_ends_with_it(project: RobotPro
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="processes there end without signals")
+@pytest.mark.slow
 def test_a_command_that_a_signal_ends_gives_the_exit_code_of_a_shell(project: RobotProject, directory: Path) -> None:
     result = project.run("virtual-robot", "--directory", directory, "--", "sh", "-c", "kill -KILL $$")
     assert result.code == 128 + signal.SIGKILL, result.output

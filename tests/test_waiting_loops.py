@@ -110,9 +110,9 @@ READY_MADE = """
     ("robot", "function", "line", "now"),
     [
         (TIMED, "teleopPeriodic", "time.sleep(0.02)", "2 s"),
-        (OWN_START, "teleopPeriodic", "time.sleep(0.02)", "2 s"),
+        pytest.param(OWN_START, "teleopPeriodic", "time.sleep(0.02)", "2 s", marks=pytest.mark.slow),
         (MAGIC, "execute", "time.sleep(0.02)", "2 s"),
-        (COMMANDS, "execute", "wpilib.wait(0.02)", "2 s"),
+        pytest.param(COMMANDS, "execute", "wpilib.wait(0.02)", "2 s", marks=pytest.mark.slow),
         (CALLBACK, "look", "self.pressed.wait()", "2 s"),
     ],
     ids=["timed", "own start", "magic", "command", "callback"],
@@ -152,6 +152,7 @@ def test_what_ends_in_time_is_no_failure(make_project: MakeProject) -> None:
     assert result.code == 0, result.output
 
 
+@pytest.mark.slow
 def test_the_limit_can_be_set(make_project: MakeProject) -> None:
     """In pyproject.toml; in autonomous, the match's autonomous period counts where it is longer."""
     robot = """
@@ -264,6 +265,7 @@ def test_time_is_the_persons_while_a_loop_waits(simulation: Simulation) -> None:
     assert simulation.status.worst_loop_seconds == pytest.approx(2.5, abs=0.05)
 
 
+@pytest.mark.slow
 def test_back_into_a_wait_and_on_with_new_code(simulation: Simulation, tmp_path: Path) -> None:
     """The robot is brought into the middle of its wait; what is recorded there does the same in a replay."""
     simulation.rewind(1.0)
