@@ -26,7 +26,7 @@ COMMANDS = {
     "fuzz": ("pyfrc_cli.fuzz", "Play matches with random inputs, and save the shortest script of each failure."),
     "replay": ("pyfrc_cli.replay", "Run the robot with the inputs of a recorded script."),
     "sim": ("pyfrc_cli.sim", "Drive the robot on the desk: simulate it, in a window or without one."),
-    "view": ("pyfrc_cli.view", "Look at logs of a robot: values, plots, field, console and timeline."),
+    "view": ("pyfrc_cli.view", "Look at logs of a robot, or at a robot, live: values, plots, field, console."),
     "test": ("pyfrc_cli.test", "Run the robot project's tests."),
     "coverage": ("pyfrc_cli.coverage", "Measure which lines of the robot run in another command."),
     "profile": ("pyfrc_cli.profile", "Measure how long the robot's functions take in another command."),

@@ -54,12 +54,21 @@ from .verbosity import verbosity
     metavar="HOST",
     help="Also serve the page under this host name, to which a port of this computer is forwarded.",
 )
-@click.argument("files", nargs=-1, required=True, metavar="FILE...", type=click.Path(path_type=Path, exists=True))
+@click.option(
+    "--robot",
+    is_flag=False,
+    flag_value="",
+    metavar="[ADDRESS]",
+    help="Show a robot, live, instead of logs: a team's number or an address. Default: the project's robot, and a "
+    "simulation on this computer.",
+)
+@click.argument("files", nargs=-1, metavar="[FILE]...", type=click.Path(path_type=Path, exists=True))
 def command(**request: Any) -> None:
-    """Look at logs of a robot on a page in your browser: values, plots, field, console and timeline.
+    """Look at logs of a robot, or at a robot, on a page in your browser: values, plots, field, console, timeline.
 
     A log is a .wpilog of WPILib, AdvantageKit or PyKit, a .dslog or .dsevents of the driver station, or a recording or
-    trace of pyfrc (.jsonl). Further logs are branches of the first one: compare them.
+    trace of pyfrc (.jsonl). Further logs are branches of the first one: compare them. A robot is never enabled, and
+    its values are set only after you have switched that on.
 
     \b
     Exit codes: 0 all went well, 1 a file is no log that can be read, 2 wrong usage.

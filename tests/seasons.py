@@ -23,6 +23,8 @@ IN_2027 = frozenset(
         "fuzz_states",
         "hangs",
         "isolation",
+        "live_robot",
+        "live_runs",
         "lost_driver_station",
         "motion",
         "robot_time",

@@ -56,7 +56,7 @@ def test_a_person_looks_at_a_robot(browser: Any, tmp_path: Path) -> None:
         with camera() as host, refusing_port() as silent:
             robot.set(CAMERA, "string[]", [f"mjpg:http://{host}/?action=stream"])
             robot.set("/CameraPublisher/Back/streams", "string[]", [f"mjpg:http://127.0.0.1:{silent}/stream.mjpg"])
-            person.choose("Open and close panels", "Cameras")
+            person.tab("Cameras").click()
             front = page.frame_locator("iframe[title='Camera Front']")
             front.locator("img").wait_for(state="visible")
             assert front.locator("img").evaluate("(image) => image.naturalWidth") == 32

@@ -15,6 +15,7 @@ from ports import lasting_port
 from web_pages import Page, Served, served_source
 
 from pyfrc_core.project import Project
+from pyfrc_core.season import CURRENT
 from pyfrc_core.sim.live.addresses import addresses_for
 from pyfrc_core.sim.live.robot import LiveRobot
 
@@ -136,7 +137,7 @@ def test_values_are_set_only_after_the_switch(robot: NetworkRobot, tmp_path: Pat
         while robot.get("/SmartDashboard/kP") != 0.25:
             pass
         page.command("choose", chooser="/SmartDashboard/Auto", option="Right")
-        while robot.get("/SmartDashboard/Auto/selected") != "Right":
+        while robot.get(f"/SmartDashboard/Auto/{CURRENT.dashboards.choice}") != "Right":
             pass
         for target, value, why in (
             ("nt:/SmartDashboard/kP", "much", "a number is needed"),

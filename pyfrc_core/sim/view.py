@@ -1,4 +1,4 @@
-"""`pyfrc view`: logs on the page, without a robot program."""
+"""`pyfrc view`: logs on the page, or a robot, without a robot program."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from ..project import MAIN_FILE, Project, find_project
 from ..text_files import check_writable
 from .engine.field import field_of
 from .engine.past_run import PastRun
+from .engine.source import Source
 from .logs import OpenedLog, open_log
 from .logs.align import Align, offset_of
 from .logs.columns import LogHistory
@@ -33,12 +34,14 @@ class ViewRequest:
     """The options of the command.
 
     :param files: the logs; the first one is shown, the others are its branches
+    :param robot: the robot that is shown instead: a team's number or an address; empty: the project's
     :param align: by what the others are aligned with the first one
     :param offsets: what is added to the times of the others, in seconds; None: as they are aligned
     :param page: where to write the log as a page, instead of serving it
     """
 
-    files: tuple[Path, ...]
+    files: tuple[Path, ...] = ()
+    robot: str | None = None
     align: Align = "enabled"
     offsets: tuple[float, ...] = ()
     page: Path | None = None
@@ -49,10 +52,17 @@ class ViewRequest:
 
 
 def view(request: ViewRequest, say: Say) -> int:
-    """Show logs on the page until Ctrl-C, or write them as one file, and return the exit code.
+    """Show logs or a robot on the page until Ctrl-C, or write logs as one file, and return the exit code.
 
-    :raises LogError: when one of them cannot be read
+    :raises LogError: when one of the logs cannot be read
+    :raises UsageError: when the options contradict each other
     """
+    if request.robot is not None:
+        if request.files or request.offsets or request.page is not None:
+            raise UsageError("--robot shows a robot, and no logs", remedy="Drop a log on its page to compare them.")
+        return _serve(_robot(request.robot), request, say)
+    if not request.files:
+        raise UsageError("nothing to show", remedy="Name a log: pyfrc view FILE. For a robot: pyfrc view --robot")
     if len(request.offsets) >= len(request.files):
         raise UsageError(
             f"--offset is given {len(request.offsets)} times, for {len(request.files) - 1} logs beside the first one",
@@ -71,6 +81,20 @@ def view(request: ViewRequest, say: Say) -> int:
         if not request.quiet:
             say(f"wrote {request.page}\n")
         return 0
+    return _serve(source, request, say)
+
+
+def _robot(given: str) -> Source:
+    """Return the robot that is shown."""
+    from .live.addresses import addresses_for
+    from .live.robot import LiveRobot
+
+    project = project_or_none()
+    where = addresses_for(given or None, project)
+    return LiveRobot(project or _no_project(), where)
+
+
+def _serve(source: Source, request: ViewRequest, say: Say) -> int:
     from .ui.web.front_end import WebFrontEnd
     from .ui.web.server import WebOptions
 

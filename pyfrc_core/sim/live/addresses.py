@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 from ...deploy.discovery import addresses_of, parse_address
-from ...deploy.targets import controller_of
+from ...deploy.targets import MAX_TEAM, controller_of
 from ...deploy.team import find_target
 from ...errors import UsageError
 from ...project import Project
@@ -40,11 +40,11 @@ def addresses_for(given: str | None, project: Project | None) -> RobotAddresses:
     :raises UsageError: when it is none of these
     """
     if given is not None:
-        if re.fullmatch(r"[0-9]{1,5}", given):
-            team = find_target(None, team=int(given)).team
-            assert team is not None
-            return _of_team(team)
-        return _of_host(given)
+        if not re.fullmatch(r"[0-9]{1,9}", given):
+            return _of_host(given)
+        if not 1 <= int(given) <= MAX_TEAM:
+            raise UsageError(f"--robot {given}: a team's number is from 1 to {MAX_TEAM}")
+        return _of_team(int(given))
     try:
         target = None if project is None else find_target(project)
     except UsageError:  # it names no robot

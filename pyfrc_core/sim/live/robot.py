@@ -32,6 +32,8 @@ from .tuning import Tuner, checked_write
 _LOOK_SECONDS, _TIME_SECONDS = 0.02, 0.1
 #: The tables of WPILib's choosers, by the name of their widget.
 _CHOOSERS = ("String Chooser", "Selectable")
+#: The option that a robot uses, in one of these tables.
+_ACTIVE = ("active", "selected/value")
 
 
 def console_of(host: str) -> Address | None:
@@ -221,8 +223,9 @@ class LiveRobot:
             path = VALUE + table
             options = values.get(f"{path}/options")
             if values.get(f"{path}/.type") in _CHOOSERS and isinstance(options, list):
-                default, active = (str(values.get(f"{path}/{name}", "")) for name in ("default", "active"))
-                found.append(Chooser(table, tuple(map(str, options)), default, active or default))
+                default = str(values.get(f"{path}/default", ""))
+                active = next((values[each] for name in _ACTIVE if (each := f"{path}/{name}") in values), default)
+                found.append(Chooser(table, tuple(map(str, options)), default, str(active)))
         return found
 
     # -- what is written ------------------------------------------------------------------------------------------

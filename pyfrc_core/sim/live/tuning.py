@@ -58,13 +58,13 @@ def checked_write(target: str, value: object, values: Mapping[str, Any]) -> tupl
     :raises UsageError: when the robot has no such value, or cannot have this one
     """
     name = target.removeprefix(VALUE)
-    table, _, entry = name.rpartition("/")
     type_name = values.get(TYPE + name)
-    if type_name is None and entry == CURRENT.dashboards.choice and f"{VALUE}{table}/options" in values:
+    chooser = name.removesuffix(f"/{CURRENT.dashboards.choice}")
+    if type_name is None and chooser != name and f"{VALUE}{chooser}/options" in values:
         type_name = "string"  # robots publish what can be chosen, and dashboards what is
     if not target.startswith(VALUE) or type_name is None:
         raise UsageError(f"the robot publishes no value {target}")
-    if name.startswith(_OF_WPILIB) or entry.startswith(".") or type_name not in PLAIN_TYPES:
+    if name.startswith(_OF_WPILIB) or "/." in name or type_name not in PLAIN_TYPES:
         raise UsageError(f"{name} cannot be set from here")
     kind = PLAIN_TYPES[type_name]
     if not type_name.endswith("[]"):

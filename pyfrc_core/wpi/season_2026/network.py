@@ -6,7 +6,7 @@ names that NetworkTables gives them, such as ``double[]``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import ntcore
@@ -155,6 +155,11 @@ def exists(name: str) -> bool:
 def type_of(name: str) -> str:
     """Return the name of the type of an entry, such as ``double[]``; "" if it is not published."""
     return _tables().getTopic(name).getTypeString()
+
+
+def written_entry(name: str, properties: Mapping[str, Any]) -> str:
+    """Return the entry that a dashboard writes to change this one, which has these properties: itself."""
+    return name
 
 
 def value_of(name: str) -> Any:

@@ -8,7 +8,7 @@ from typing import Any
 import ntcore
 
 from ..network_news import Connected, Gone, Lost, News, Received
-from .network import value_of_type
+from .network import value_of_type, written_entry
 
 #: How often the server sends what has changed, in seconds: all values that changed meanwhile, not the last one only.
 _INTERVAL = 0.02
@@ -63,11 +63,14 @@ class Client:
         return None if offset is None else int(ntcore.Value.makeBoolean(True).time()) + int(offset)
 
     def write(self, name: str, value: Any, type_name: str) -> None:
-        """Set the value of a topic.
+        """Set the value of a topic, or of the one that is there for it.
 
         :param type_name: its type, one of `network.TYPES`
         :raises TypeError, ValueError, RuntimeError: when it cannot have this value
+        :raises UsageError: when robot code does not let dashboards set it
         """
+        properties = self._tables.getTopic(name).getProperties()
+        name = written_entry(name, properties if isinstance(properties, dict) else {})
         converted = value_of_type(value, type_name)
         if name not in self._publishers:
             self._publishers[name] = self._tables.getTopic(name).genericPublish(type_name)

@@ -9,7 +9,6 @@ import tunables
 from wpilib import Field2d
 from wpimath import Pose2d
 
-from ...errors import UsageError
 from ..widgets import Chooser, Widget
 from . import network
 
@@ -17,7 +16,7 @@ __all__ = ["Field2d", "place_robot", "robot_pose", "show_field", "show_poses", "
 
 
 #: The tables of what dashboards show only, and of what they can change.
-_TELEMETRY, _TUNABLES = "/Telemetry/", "/Tunables/"
+_TUNABLES = "/Tunables/"
 #: How NetworkTables have a pose.
 _POSE = struct.Struct("<3d")
 
@@ -93,14 +92,7 @@ def written_entry(name: str) -> str:
 
     :raises UsageError: when robot code does not let dashboards change it
     """
-    if name.startswith(_TELEMETRY):
-        raise UsageError("robot code only shows this: what can be changed is in Tunables")
-    if not name.startswith(_TUNABLES):
-        return name
-    properties = network.properties_of(name)
-    if properties.get("mutable") is False:
-        raise UsageError("robot code has published this with mutable=False")
-    return f"{name.removesuffix('/value')}/tune" if properties.get("robust") else name
+    return network.written_entry(name, network.properties_of(name))
 
 
 def widget_of(name: str) -> Widget | None:

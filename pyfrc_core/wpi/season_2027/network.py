@@ -6,12 +6,13 @@ names that NetworkTables gives them, such as ``double[]``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import ntcore
 
 from ...compat.private_name import PrivateName
+from ...errors import UsageError
 
 NETWORK_LOG = PrivateName(
     "ntcore._logutil:NtLogForwarder.on_instance_start",
@@ -161,6 +162,21 @@ def properties_of(name: str) -> dict[str, Any]:
     """Return the properties of an entry; none if it is not published."""
     properties = _tables().get_topic(name).get_properties()
     return properties if isinstance(properties, dict) else {}
+
+
+def written_entry(name: str, properties: Mapping[str, Any]) -> str:
+    """Return the entry that a dashboard writes to change this one; a robust tunable has another one for it.
+
+    :param properties: those of this entry
+    :raises UsageError: when robot code does not let dashboards change it
+    """
+    if name.startswith("/Telemetry/"):
+        raise UsageError("robot code only shows this: what can be changed is in Tunables")
+    if not name.startswith("/Tunables/"):
+        return name
+    if properties.get("mutable") is False:
+        raise UsageError("robot code has published this with mutable=False")
+    return f"{name.removesuffix('/value')}/tune" if properties.get("robust") else name
 
 
 def value_of(name: str) -> Any:

@@ -101,7 +101,7 @@ def _looking(source: Source, saved: Any) -> dict[str, Any]:
     """Return the arrangement of a page that cannot drive: that of driving is of little use."""
     layout = saved if isinstance(saved, dict) else {}
     if not source.abilities.over:
-        return {"version": 1, **layout, "layout": "log"}
+        return {"version": 1, **layout, "layout": source.abilities.kind}
     plots = layout.get("plots")
     plots = plots if isinstance(plots, dict) else {}
     if not any(plot.get("curves") for plot in plots.values()):

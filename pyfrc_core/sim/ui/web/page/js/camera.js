@@ -23,6 +23,12 @@ function load() {
   image.src = tried < addresses.length ? address : `${address}${address.includes("?") ? "&" : "?"}again=${tried}`;
 }
 
-document.documentElement.dataset.theme = new URLSearchParams(location.search).get("theme") ?? "";
+// The colours are those of the page around it.
+const page = parent.document.documentElement;
+const takeColours = () => {
+  document.documentElement.dataset.theme = page.dataset.theme ?? "";
+};
+new MutationObserver(takeColours).observe(page, { attributeFilter: ["data-theme"] });
+takeColours();
 if (addresses[0]) load();
 else show(false);

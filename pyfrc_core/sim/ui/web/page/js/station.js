@@ -129,7 +129,7 @@ function switchTheme() {
 
 function LayoutMenu() {
   const chosen = settings.get("layout");
-  const offered = Object.entries(PRESETS).filter(([, { looks }]) => !looks || !model.isDriven);
+  const offered = Object.entries(PRESETS).filter(([, { looks }]) => !looks || (!model.isDriven && looks === model.hello.source?.kind));
   /** @type {any[]} */
   const items = offered.map(([name, preset]) => ({
     text: preset.title,
@@ -142,9 +142,15 @@ function LayoutMenu() {
 
 function PanelsMenu() {
   const open = new Set(panelsOf(settings.tree));
-  const ids = Object.keys(PANELS).filter((kind) => (model.isDriven || !PANELS[kind].drives) && !(isRecorded && PANELS[kind].served)).flatMap((kind) => (kind === "plot" ? plotIds(open) : [kind]));
+  const ids = Object.keys(PANELS).filter(isOffered).flatMap((kind) => (kind === "plot" ? plotIds(open) : [kind]));
   const items = ids.map((id) => ({ text: panelTitle(id), checked: open.has(id), act: () => toggle(id) }));
   return html`<${Menu} label="Panels" icon="panels" title="Open and close panels" items=${items} />`;
+}
+
+// Devices and joysticks are simulated or logged: a robot elsewhere publishes none.
+function isOffered(kind) {
+  const { drives, devices, served } = PANELS[kind];
+  return !(drives && !model.isDriven) && !(devices && model.hello.source?.kind === "robot") && !(served && isRecorded);
 }
 
 function plotIds(open) {

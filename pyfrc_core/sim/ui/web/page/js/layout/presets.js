@@ -12,11 +12,21 @@ export function column(sizes, ...children) {
   return { kind: "column", sizes, children };
 }
 
-/** @type {Record<string, { title: string, looks?: boolean, tree: any }>} */
+/** @type {Record<string, { title: string, looks?: string, tree: any }>} */
 export const PRESETS = {
+  robot: {
+    title: "Robot",
+    looks: "robot",
+    tree: row(
+      [24, 44, 32],
+      tabs("networktables"),
+      column([60, 40], tabs("field", "mechanism", "swerve", "cameras"), tabs("console")),
+      column([62, 38], tabs("plot:1", "plot:2"), tabs("widgets", "match", "dashboard")),
+    ),
+  },
   log: {
     title: "Log",
-    looks: true, // for what cannot be driven
+    looks: "log", // only for what cannot be driven, and is this
     tree: row(
       [24, 48, 28],
       tabs("networktables", "devices"),

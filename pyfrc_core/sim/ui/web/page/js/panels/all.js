@@ -16,7 +16,7 @@ import { WidgetsPanel } from "#js/panels/widgets.js";
 
 export const PANELS = {
   field: { title: "Field", component: FieldPanel },
-  devices: { title: "Devices", component: DevicesPanel },
+  devices: { title: "Devices", component: DevicesPanel, devices: true },
   plot: { title: "Plot", component: PlotPanel },
   networktables: { title: "NetworkTables", component: NetworkTablesPanel },
   widgets: { title: "Published", component: WidgetsPanel },
@@ -26,7 +26,7 @@ export const PANELS = {
   cameras: { title: "Cameras", component: CamerasPanel, served: true },
   console: { title: "Console", component: ConsolePanel },
   match: { title: "Match", component: MatchPanel },
-  joysticks: { title: "Joysticks", component: JoysticksPanel },
+  joysticks: { title: "Joysticks", component: JoysticksPanel, devices: true },
   keys: { title: "Keys", component: KeysPanel, drives: true },
   touch: { title: "Touch sticks", component: TouchPanel, drives: true },
 };

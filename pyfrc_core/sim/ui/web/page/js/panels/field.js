@@ -28,6 +28,9 @@ const MOST_ROBOTS = 3; // of more poses, each is a small arrowhead
 const LEAST_NAMED = 8; // pixels per foot: names would cover a smaller field
 const TURN = 15; // degrees by an arrow key
 
+// A robot elsewhere shows itself as an object of a Field2d.
+const WITHOUT_POSE = { simulation: "No physics.py: pyfrc create-physics writes one", log: "Where the robot is, is not known" };
+
 export class FieldPanel extends Live {
   parts = ["t", "robot", "shown", "values", "trail", "former_trail", "drawings", "targets", "hello", "field", "settings", "window", "compared", "compared-series"];
   canvas = createRef();
@@ -96,7 +99,7 @@ export class FieldPanel extends Live {
         <canvas ref=${this.canvas}></canvas>
       </div>
       ${!bare && html`<div class="field-line">
-        <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose.x)} ${pose.unit}</b><i>y</i><b>${numberText(pose.y)} ${pose.unit}</b><i class="long">heading</i><b>${numberText(pose.degrees, 1)}°</b>` : model.isDriven ? "No physics.py: pyfrc create-physics writes one" : "Where the robot is, is not known"}</span>
+        <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose.x)} ${pose.unit}</b><i>y</i><b>${numberText(pose.y)} ${pose.unit}</b><i class="long">heading</i><b>${numberText(pose.degrees, 1)}°</b>` : WITHOUT_POSE[model.hello.source?.kind] ?? ""}</span>
         <button class="quiet" title="Show the whole field: double click" aria-label="Show the whole field" onClick=${this.whole}><${Icon} name="fit" /></button>
         <${Menu} label="Show" title="What is drawn" items=${layers} />
       </div>`}
