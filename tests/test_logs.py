@@ -117,6 +117,32 @@ def test_records_of_several_threads_are_put_in_order(tmp_path: Path) -> None:
     assert network(run, "nt:/a") == ([0.0, 1.0, 2.0], [1, 2, 3])
 
 
+def test_times_before_the_robots_clock_began_are_those_of_the_log(tmp_path: Path) -> None:
+    """A dashboard that was there before has negative times."""
+    log = a_match()
+    log.values("NT:/SmartDashboard/Auto/selected", "string", "", (1, b"one"))
+    log.data += bytes([3 | 3 << 2 | 7 << 4]) + struct.pack("<IIq", 5, 3, -517 * SECOND) + b"two"
+    opened = open_log(log.save(tmp_path / "a.wpilog"), HEIGHT)
+    assert (opened.problem, opened.run.end) == ("", 19.9)
+    assert opened.run.histories["network"].now["nt:/SmartDashboard/Auto/selected"] in ("one", "two")
+
+
+def test_a_file_that_goes_on_with_another_one_has_records_before_their_names(tmp_path: Path) -> None:
+    """WPILib begins a new file when one is large."""
+    log = a_match()
+    head, first, name = (Written() for _ in range(3))
+    first.record(9, struct.pack("<d", 4.5), BOOT)
+    for _ in range(8):
+        name.start("NT:/early", "double")
+    begin = len(head.data)
+    before = len(name.data)
+    name.start("NT:/late", "double")
+    log.data = first.data + log.data[begin:] + name.data[before:]
+    opened = open_log(log.save(tmp_path / "a.2.wpilog"), HEIGHT)
+    assert opened.problem == ""
+    assert opened.run.histories["network"].now["nt:/late"] == 4.5
+
+
 def test_an_entry_that_begins_again_goes_on(tmp_path: Path) -> None:
     log = Written()
     log.values("/a", "int64", "q", (1, 1))

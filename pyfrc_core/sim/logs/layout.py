@@ -84,12 +84,14 @@ def run_of(log: ReadLog, name: str, height: float) -> PastRun:
 
 
 def _begin(log: ReadLog) -> int:
-    """Return the moment that is shown as 0: that of the first value of those that change, as a packet."""
+    """Return the moment that is shown as 0: that of the first value of those that change, as a packet.
+
+    Up to a twentieth of the values may have begun before: those of dashboards have the time when they were published.
+    """
     columns = log.columns.values()
     firsts = [column.moments[0] for column in columns if len(column.moments) > 1]
-    firsts = firsts or [column.moments[0] for column in columns if column.moments]
-    firsts += [round(each.time * 1e6) for each in log.happened[:1]]
-    first = min(firsts, default=0)
+    firsts = sorted(firsts or [column.moments[0] for column in columns if column.moments])
+    first = min([*firsts[len(firsts) // 20 :][:1], *(round(each.time * 1e6) for each in log.happened[:1])], default=0)
     return 0 if first <= PACKET_US else first // PACKET_US * PACKET_US
 
 

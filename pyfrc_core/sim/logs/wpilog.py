@@ -22,10 +22,12 @@ from .columns import Column, ReadLog
 MOST_RECORDS = 24_000_000
 _MAGIC, _HEADER = b"WPILOG", 12
 #: How far behind a damaged place the next record is looked for, in bytes; and how many records must follow each other
-#: where the time is another one, four times as many behind a damage.
-_SEARCHED, _IN_A_ROW = 1 << 16, 2
+#: where the time is another one, or an entry has no name so far; four times as many behind a damage.
+_SEARCHED, _IN_A_ROW, _IN_A_ROW_UNNAMED = 1 << 16, 2, 8
 #: Moments of neighbouring records that are further apart, in microseconds, are damaged; near ones need no closer look.
-_FARTHEST, _NEAR = 86_400_000_000, 60_000_000
+_FARTHEST, _NEAR_UNNAMED, _NEAR = 86_400_000_000, 3_600_000_000, 60_000_000
+#: No clock of a robot, in microseconds, comes here.
+_LATEST = 1 << 53
 #: The bit of a record's first byte that is never set.
 _SPARE = 128
 #: How many records of an array of structs are looked at for its length.
@@ -112,6 +114,8 @@ class _Index:
         self._data, self._most = data, most
         self._open: dict[int, _Entry] = {}
         self._named: dict[tuple[str, str], _Entry] = {}
+        #: Entries without a name so far: in a file that goes on with another one, records come before what names them.
+        self._unnamed: dict[int, _Entry] = {}
         #: The moments that need no closer look.
         self._window = (0, -1)
         self.problem = ""
@@ -139,6 +143,7 @@ class _Index:
         get = adders.get
         left = self._most - sum(len(entry.moments) for entry in self._named.values())
         low, high = self._window
+        last = max(low, 0)
         while place < end and left:
             entry_mask, size_shift, size_mask, moment_shift, length = heads[data[place]]
             header = from_bytes(data[place + 1 : place + length], "little")
@@ -158,24 +163,32 @@ class _Index:
                     place = after
                     continue
                 if number not in self._open:
-                    break
+                    if not self._is_record(place, end, _IN_A_ROW_UNNAMED, needs_names=False):
+                        break
+                    self._open[number] = self._unnamed[number] = _Entry("", "")
+                moment = _signed(moment)
+                if moment < 0:  # of a dashboard that was there before the robot's clock began
+                    moment = last
                 if not low <= moment <= high:
-                    if not self._is_record(place, end, _IN_A_ROW):
+                    if not self._is_record(place, end, _IN_A_ROW, needs_names=number not in self._unnamed):
                         break
                     low, high = self._window = moment - _NEAR, moment + _NEAR
                 entry = self._open[number]
                 adder = adders[number] = entry.moments.append, entry.places.append
             adder[0](moment)
+            last = moment
             adder[1](place)
             left -= 1
             place = after
         return place
 
-    def _is_record(self, place: int, end: int, count: int, may_be_cut: bool = True) -> bool:
+    def _is_record(self, place: int, end: int, count: int, may_be_cut: bool = True, needs_names: bool = True) -> bool:
         """Return whether there are this many records in a row at a place, or until the end, at about the same time.
 
         :param may_be_cut: whether the end may be within one of them, but not within the first
+        :param needs_names: whether their entries must have begun; otherwise, their times must be closer to each other
         """
+        farthest = _FARTHEST if needs_names else _NEAR_UNNAMED
         first: int | None = None
         started = set(self._open)
         for checked in range(count):
@@ -183,7 +196,8 @@ class _Index:
                 return True
             entry_mask, size_shift, size_mask, moment_shift, length = _HEADS[self._data[place]]
             header = int.from_bytes(self._data[place + 1 : place + length], "little")
-            number, size, moment = header & entry_mask, header >> size_shift & size_mask, header >> moment_shift
+            number, size = header & entry_mask, header >> size_shift & size_mask
+            moment = _signed(header >> moment_shift)
             after = place + length + size
             if after > end:
                 return may_be_cut and checked > 0
@@ -192,17 +206,22 @@ class _Index:
                 if start is None:
                     return False
                 started.add(start.entry)
-            elif number not in started or (first is not None and abs(moment - first) > _FARTHEST):
+            elif (needs_names and number not in started) or abs(moment) > _LATEST:
                 return False
-            else:
+            elif moment >= 0:
                 first = moment if first is None else first
+                if abs(moment - first) > farthest:
+                    return False
             place = after
         return True
 
     def _control(self, record: _Control) -> None:
         if record.name is not None:
             key = record.name, record.type_name
-            self._open[record.entry] = self._named.setdefault(key, _Entry(*key))
+            self._open[record.entry] = entry = self._named.setdefault(key, _Entry(*key))
+            if (unnamed := self._unnamed.pop(record.entry, None)) is not None:
+                entry.moments.extend(unnamed.moments)
+                entry.places.extend(unnamed.places)
 
     def _next_record(self, place: int, end: int) -> int:
         """Return where records go on after a damaged place; the end, if they do not."""
@@ -223,6 +242,10 @@ class _Index:
         if end - place < length or (known and is_near and len(rest) < _SEARCHED):
             return f"it is cut at byte {place:,}, within a record"
         return f"it is damaged at byte {place:,}"
+
+
+def _signed(moment: int) -> int:
+    return moment - (1 << 64) if moment >> 63 else moment
 
 
 class _Control(NamedTuple):
