@@ -117,6 +117,23 @@ def test_records_of_several_threads_are_put_in_order(tmp_path: Path) -> None:
     assert network(run, "nt:/a") == ([0.0, 1.0, 2.0], [1, 2, 3])
 
 
+def test_the_time_of_day_is_that_of_the_robot(tmp_path: Path) -> None:
+    log = a_match()
+    noon = datetime(2026, 3, 7, 12, tzinfo=timezone.utc)
+    log.values("systemTime", "int64", "q", (0, 1_000), (5, round(noon.timestamp() * 1e6) + 5 * SECOND))
+    assert open_log(log.save(tmp_path / "a.wpilog"), HEIGHT).when == noon
+
+
+def test_a_field_that_is_never_set_is_no_place(tmp_path: Path) -> None:
+    log = a_match()
+    log.values("NT:/SmartDashboard/Field/Robot", "double[]", "", (0, struct.pack("<3d", 0, 0, 0)))
+    file = log.save(tmp_path / "a.wpilog")
+    assert "sim.pose" not in open_log(file, HEIGHT).run.histories["network"].now
+    log.values("NT:/SmartDashboard/Field/Robot", "double[]", "", (1, struct.pack("<3d", 3.048, 3.048, 90)))
+    now = open_log(log.save(file), HEIGHT).run.histories["network"].now
+    assert now["sim.pose"] == pytest.approx((10, HEIGHT - 10, -1.5708), abs=1e-4)
+
+
 def test_times_before_the_robots_clock_began_are_those_of_the_log(tmp_path: Path) -> None:
     """A dashboard that was there before has negative times."""
     log = a_match()

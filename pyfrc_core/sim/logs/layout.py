@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from array import array
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from datetime import datetime, timedelta, timezone
 from typing import Any
 
 from ...physics.pose import METRES_PER_FOOT
@@ -22,6 +23,9 @@ from .columns import Column, LogHistory, ReadLog
 _HAL, _STATION = "/hal_data/", "DS:"
 #: The entries with the output of a robot.
 _OUTPUT = re.compile(r"(NT:)?/?((Real|Replay)Outputs/)?(messages|console|DSEvents)", re.IGNORECASE)
+#: The entries with the time of day, in microseconds since 1970; a robot without one begins at 1970.
+_CLOCKS, _NO_CLOCK = ("systemTime", "/SystemStats/EpochTimeMicros"), 1_500_000_000_000_000
+_EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
 #: The entries of the mode, in the order in which they are looked for: enabled, autonomous, test, emergency stop.
 _MODES = (
     ("DS:enabled", "DS:autonomous", "DS:test", "DS:estop"),
@@ -194,10 +198,21 @@ def _station_number(is_red: Any, number: Any) -> int:
 def _place(columns: Mapping[str, Column], height: float) -> Column | None:
     found = [each for each in (_place_of(columns, name) for name in columns) if each is not None]
     for pattern in _PLACES:
-        matching = [each for each in found if re.fullmatch(pattern, each[0].removeprefix("NT:"), re.IGNORECASE)]
+        named = [each for each in found if re.fullmatch(pattern, each[0].removeprefix("NT:"), re.IGNORECASE)]
+        matching = [each for each in named if _is_set(each[2](0, len(each[1])))]
         if matching:
             return _placed(*max(matching, key=lambda each: len(each[1]))[1:], height)
     return None
+
+
+def when_of(log: ReadLog) -> datetime | None:
+    """Return when the moment was that is shown as 0, if the log says so."""
+    for name in _CLOCKS:
+        if (column := log.columns.get(name)) is not None and column.moments:
+            moment, time = column.moments[-1], column.decode(len(column.moments) - 1, len(column.moments))[0]
+            if isinstance(time, int) and time > _NO_CLOCK:
+                return _EPOCH + timedelta(microseconds=time - moment + _begin(log))
+    return log.when
 
 
 def _placed(moments: array[int], read: _Read, height: float) -> Column:
@@ -223,6 +238,11 @@ def _place_of(columns: Mapping[str, Column], name: str) -> tuple[str, array[int]
         # As Field2d publishes it: metres and degrees.
         return name, column.moments, lambda begin, end: [_in_radians(each) for each in column.decode(begin, end)]
     return None
+
+
+def _is_set(places: Iterable[tuple[Any, Any, Any]]) -> bool:
+    """Return whether a place is used: a `Field2d` that code never sets stays at 0."""
+    return any(x or y for x, y, _ in places)
 
 
 def _is_place(value: Any) -> bool:

@@ -11,7 +11,7 @@ from ..engine.past_run import PastRun
 from . import recordings
 from .columns import ReadLog
 from .ds_log import is_ds_log, read_ds_events, read_ds_log
-from .layout import run_of
+from .layout import run_of, when_of
 from .wpilog import is_wpilog, read_wpilog
 
 #: Endings of logs that only their makers' tools can read, with what converts them.
@@ -73,7 +73,7 @@ def open_log(file: Path, height: float, name: str = "") -> OpenedLog:
         raise LogError(NO_LOG, where=name, remedy=_KINDS)
     if not read.columns and not read.happened:
         raise LogError(f"there is nothing in it: {read.problem or 'it has no values'}", where=name)
-    return OpenedLog(run_of(read, name, height), read.when or _changed(file), read.problem)
+    return OpenedLog(run_of(read, name, height), when_of(read) or _changed(file), read.problem)
 
 
 def _read_station(file: Path, is_events: bool) -> ReadLog:

@@ -102,18 +102,25 @@ def _looking(source: Source, saved: Any) -> dict[str, Any]:
     layout = saved if isinstance(saved, dict) else {}
     if not source.abilities.over:
         return {"version": 1, **layout, "layout": source.abilities.kind}
-    plots = layout.get("plots")
-    plots = plots if isinstance(plots, dict) else {}
-    if not any(plot.get("curves") for plot in plots.values()):
+    saved_plots = layout.get("plots")
+    plots = saved_plots if isinstance(saved_plots, dict) else {}
+    plots = {name: plot for name, plot in plots.items() if isinstance(plot, dict)}
+    known = _paths(source)
+    text = json.dumps(plots)
+    if not any(json.dumps(path) in text for path in known):  # they are of another log
         plots = {"plot:1": {"curves": _battery(source)}, "plot:2": {"curves": []}}
     whole = {name: {**plot, "seconds": 0} for name, plot in plots.items()}
     return {**layout, "version": 1, "layout": "log", "plots": whole}
 
 
+def _paths(source: Source) -> set[str]:
+    recorded = source.recorded
+    return set() if recorded is None else {path for each in recorded.histories.values() for path in each.paths()}
+
+
 def _battery(source: Source) -> list[dict[str, object]]:
     """Return the curve of the battery's voltage, which most questions about a match begin with."""
-    paths = () if source.recorded is None else source.recorded.histories["network"].paths()
-    found = [path for path in paths if path.startswith(VALUE) and _BATTERY.search(path)]
+    found = [path for path in _paths(source) if path.startswith(VALUE) and _BATTERY.search(path)]
     return [{"path": path, "axis": "left", "color": 0} for path in sorted(found, key=len)[:1]]
 
 

@@ -77,7 +77,7 @@ export class FieldPanel extends Live {
     const { robot, values, station } = model.shown;
     this.robots = {
       robot,
-      now: model.past && model.robot, // behind the robot of the moment that is shown
+      now: model.past && !model.isOver && model.robot, // behind the robot of the moment that is shown
       compared: compared.poseAt(model.past?.t ?? model.t),
       alliance: station.alliance ?? model.station.alliance ?? "",
     };
