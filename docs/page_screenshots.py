@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import io
+import json
 import shutil
 import sys
 import tempfile
@@ -98,11 +99,51 @@ def tune_elevator(browser: Browser, server: Served) -> None:
     page.close()
 
 
+#: The dashboard of the picture, as ``sim/dashboards.json`` has it: kind, topic, x, y, w, h, and settings.
+_WIDGETS = (
+    ("time", "", 0, 0, 2, 1, {}),
+    ("state", "", 2, 0, 4, 1, {}),
+    ("chooser", "/SmartDashboard/Autonomous", 6, 0, 4, 1, {}),
+    ("lamp", "control.enabled", 10, 0, 2, 1, {}),
+    ("field", "", 0, 1, 7, 5, {}),
+    ("swerve", "/SwerveStates/Measured", 7, 1, 5, 4, {"title": "Swerve", "max": 4}),
+    ("gauge", "/SwerveStates/Measured/0/speed", 7, 5, 2, 3, {"title": "Front left", "min": -4.0, "max": 4.0}),
+    ("number", "sim.pose[0]", 9, 5, 3, 1, {"title": "x"}),
+    ("number", "sim.pose[1]", 9, 6, 3, 1, {"title": "y"}),
+    ("number", "/SmartDashboard/Intake", 9, 7, 3, 1, {}),
+    (
+        "graph",
+        "/SwerveStates/Measured/0/speed",
+        *(0, 6, 7, 2),
+        {"more": ["/SwerveStates/Target/0/speed"], "title": "Speed of the front left module", "seconds": 5},
+    ),
+)
+
+
+def show_dashboard(browser: Browser, server: Served) -> None:
+    """A dashboard of the team, beside NetworkTables."""
+    keys = ("kind", "topic", "x", "y", "w", "h")
+    widgets = [{**dict(zip(keys, widget[:-1], strict=True)), **widget[-1]} for widget in _WIDGETS]
+    file = server.simulation.project.root / "sim" / "dashboards.json"
+    file.write_text(json.dumps({"dashboards": {"Drive": {"widgets": widgets}}}), "utf-8")
+    page = open_page(browser, server, "light")
+    choose_layout(page, "Dashboard")
+    server.simulation.practice()
+    run_for(server, 19)
+    for sideways, turn, seconds in ((0.0, 0.0, 0.8), (0.35, 0.1, 1.2), (-0.5, -0.12, 1.2)):
+        for axis, value in ((1, -0.6), (0, sideways), (4, turn)):
+            server.simulation.set_axis(0, axis, value)
+        run_for(server, seconds)
+    server.simulation.pause()
+    save(page, "dashboard")
+    page.close()
+
+
 def take_page_pictures() -> None:
     """Take the pictures of the page, each of a new project."""
     with tempfile.TemporaryDirectory() as directory, open_browser() as browser:
-        for template, take in (("swerve", drive_swerve), ("elevator-arm", tune_elevator)):
-            project = Path(directory, template)
+        for template, take in (("swerve", drive_swerve), ("elevator-arm", tune_elevator), ("swerve", show_dashboard)):
+            project = Path(directory, take.__name__)
             shutil.copytree(ROOT / "templates" / template, project)
             with served(SimpleNamespace(path=project), speed=1, paused=False) as server:
                 take(browser, server)

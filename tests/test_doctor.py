@@ -271,6 +271,7 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
             "another name",
             marks=pytest.mark.slow,
         ),
+        ({"sim/dashboards.json": '{"dashboards": {"a": {"rows": 0}}}'}, "sim/dashboards.json", "a.rows = 0", ""),
         pytest.param({"random.py": ""}, "project", "random.py hides a library", "another name", marks=pytest.mark.slow),
         (
             {"physics.py": "class PhysicsEngine:"},

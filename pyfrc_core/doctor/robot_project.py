@@ -46,6 +46,7 @@ def check_project(
     program = [] if refused else [*_robot_class(project)]
     yield from program
     yield from _sim_config(project)
+    yield from _dashboards(project)
     yield from _physics(project, imports=not refused and all(each.status != "problem" for each in program))
     tests = project.find_tests()
     if tests is not None:
@@ -172,6 +173,18 @@ def _load_physics(project: Project, log: CrashLog) -> None:
 
     load_robot(project)
     load_physics(project)
+
+
+def _dashboards(project: Project) -> Iterator[CheckResult]:
+    from ..config.dashboards import DASHBOARDS, load_dashboards
+
+    try:
+        found = load_dashboards(project.root)
+    except PyfrcError as error:
+        yield problem_from_error(DASHBOARDS.as_posix(), error, "The page of pyfrc sim shows no dashboards before that.")
+        return
+    if found:
+        yield ok(DASHBOARDS.as_posix(), f"dashboards: {', '.join(found)}")
 
 
 def _sim_config(project: Project) -> Iterator[CheckResult]:

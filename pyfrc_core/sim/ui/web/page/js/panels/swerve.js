@@ -67,8 +67,8 @@ export class SwervePanel extends Live {
       const [x, y] = turned(places[index], -(heading ?? 0));
       drawModule(context, [x, y], way(state.angle), Math.min(Math.max(state.speed / fastest, -1), 1) * longest, name, size, half * 0.16);
     });
+    if (measured) modules(measured, "swerve-measured", wanted ? 5 : 3.5);
     if (wanted) modules(wanted, "swerve-wanted", 2);
-    if (measured) modules(measured, "swerve-measured", 3.5);
     if (speeds) drawSpeeds(context, speeds, way, half, fastest);
   }
 }
@@ -122,7 +122,7 @@ function drawModule(context, [x, y], angle, reach, name, width, wheel) {
   context.arc(x, y, width, 0, 2 * Math.PI);
   context.fillStyle = color(name);
   context.fill();
-  if (Math.abs(reach) > wheel) arrow(context, [x, y], [x + Math.cos(angle) * reach, y + Math.sin(angle) * reach], 3 * width);
+  if (Math.abs(reach) > wheel) arrow(context, [x, y], [x + Math.cos(angle) * reach, y + Math.sin(angle) * reach], 6 + width);
   context.restore();
 }
 
