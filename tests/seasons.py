@@ -25,6 +25,7 @@ IN_2027 = frozenset(
         "isolation",
         "live_robot",
         "live_runs",
+        "logs",
         "lost_driver_station",
         "motion",
         "robot_time",

@@ -41,18 +41,16 @@ def test_a_log_has_values_modes_and_output(tmp_path: Path) -> None:
 
 
 def test_wpilibs_own_writer_is_read(tmp_path: Path) -> None:
-    from wpimath.geometry import Pose2d, Rotation2d
-
-    from pyfrc_core.wpi import logs
+    from pyfrc_core.wpi import geometry, logs
 
     log = logs.LogWriter(tmp_path / "ours.wpilog", "a test")
     number, texts = log.entry("/hal_data/pwm[0].value", "number"), log.entry("NT:/text", "text")
-    flags, place = log.entry("NT:/flags", "booleans"), log.poses("/pose", 20_000)
-    number(0.5, 20_000)
-    place(Pose2d(3.048, 3.048, Rotation2d(1.0)), 20_000)
-    texts("one", 40_000)
-    flags([True, False], 40_000)
-    number(-0.5, 60_000)
+    flags, place = log.entry("NT:/flags", "booleans"), log.poses("/pose", log.stamp(20_000))
+    number(0.5, log.stamp(20_000))
+    place(geometry.pose(3.048, 3.048, 1.0), log.stamp(20_000))
+    texts("one", log.stamp(40_000))
+    flags([True, False], log.stamp(40_000))
+    number(-0.5, log.stamp(60_000))
     log.close()
     run = open_log(tmp_path / "ours.wpilog", HEIGHT).run
     assert [list(each) for each in run.histories["hal"].changes("pwm[0].value")] == [[0.02, 0.06], [0.5, -0.5]]
@@ -96,6 +94,25 @@ def test_layouts_of_advantagekit_and_pykit(tmp_path: Path, table: str) -> None:
     assert now["joysticks[0].buttons"][-3:] == (True, False, True)
     assert now["alliance_station"] == 5
     assert [each.text for each in run.happened] == ["first\nError: second", "brownout"]
+
+
+def test_a_log_of_2027(tmp_path: Path) -> None:
+    """Its driver station is one word, a POV has a bit for each direction, and the robot is in a list."""
+    log = Written()
+    word = b"uint64 opModeHash:56;enum{unknown=0,autonomous=1,teleoperated=2,utility=3}uint64 robotMode:2;"
+    word += b"bool enabled:1;bool eStop:1;bool fmsAttached:1;bool dsAttached:1;"
+    log.values("/.schema/struct:ControlWord", "structschema", "", (0, word))
+    words = [
+        (time, struct.pack("<Q", mode << 56 | enabled << 58))
+        for time, mode, enabled in ((0, 2, 0), (1, 1, 1), (2, 2, 1))
+    ]
+    log.values("DS:controlWord", "struct:ControlWord", "", *words)
+    log.values("DS:joystick0/povs", "int64[]", "", (0, struct.pack("<q", 0)), (1, struct.pack("<q", 3)))
+    log.values("NT:/DriverStation/IsRedAlliance", "boolean", "?", (0, False))
+    run = open_log(log.save(tmp_path / "a.wpilog"), HEIGHT).run
+    assert network(run, "sim.mode") == ([0.0, 1.0, 2.0], ["disabled", "autonomous", "teleop"])
+    assert list(run.histories["hal"].changes("joysticks[0].povs")[1]) == [(-1,), (45,)]
+    assert run.histories["hal"].now["alliance_station"] == 4
 
 
 def test_logs_are_aligned_by_what_the_robot_did(tmp_path: Path) -> None:

@@ -37,13 +37,18 @@ _MODES = (
     ("/DSLog/Enabled", "/DSLog/Autonomous", "", ""),
 )
 _CONTROL = "NT:/FMSInfo/FMSControlData"
+#: The words of 2027's driver station, and their modes by number.
+_WORDS, _WORD_MODES = ("DS:controlWord", "NT:/DriverStation/ControlWord"), {1: "autonomous", 3: "test"}
+#: What only logs of 2027 have; their POVs have a bit for each direction: up, right, down, left.
+_OF_2027 = ("DS:controlWord/enabled", "DS:opMode")
+_POVS = {1: 0, 3: 45, 2: 90, 6: 135, 4: 180, 12: 225, 8: 270, 9: 315}
 #: Booleans that are marked when they become true.
 _ALARMS = {"/SystemStats/BrownedOut": "brownout", "/DSLog/Brownout": "brownout", "/DSLog/Watchdog": "watchdog"}
 #: The names of the robot's place, the most certain first.
 _PLACES = (
     r"/pose",
     r".*/Odometry/Robot",
-    r".*Field\w*/Robot",
+    r".*Field\w*/Robot(/0)?",
     r".*(estimated|robot|bot|drive)_?pose(2d)?",
     r".*/pose",
 )
@@ -137,9 +142,18 @@ def _mode(columns: Mapping[str, Column]) -> Column | None:
     for names in _MODES:
         if names[0] in columns:
             return together([columns.get(name) for name in names], _mode_name)
+    for word in _WORDS:
+        parts = [columns.get(f"{word}/{part}") for part in ("enabled", "robotMode", "eStop")]
+        if parts[0] is not None:
+            return together(parts, _word_mode)
     if (control := columns.get(_CONTROL)) is not None:
         return together([control], lambda bits: _mode_name(*(bool((bits or 0) & bit) for bit in (1, 2, 4, 8))))
     return None
+
+
+def _word_mode(enabled: Any, mode: Any, stopped: Any) -> str:
+    name = _WORD_MODES.get(mode)
+    return _mode_name(enabled, name == "autonomous", name == "test", stopped)
 
 
 def _mode_name(enabled: Any, autonomous: Any, test: Any, stopped: Any) -> str:
@@ -154,10 +168,12 @@ def _mode_name(enabled: Any, autonomous: Any, test: Any, stopped: Any) -> str:
 
 def _station(columns: Mapping[str, Column]) -> Iterator[tuple[str, Column]]:
     """Yield the values of `hal_data` that the entries of a driver station are."""
+    is_of_2027 = any(name in columns for name in _OF_2027)
     for stick in range(6):
-        for sort in ("axes", "povs"):
-            if (column := columns.get(f"DS:joystick{stick}/{sort}")) is not None:
-                yield f"joysticks[{stick}].{sort}", column
+        if (column := columns.get(f"DS:joystick{stick}/axes")) is not None:
+            yield f"joysticks[{stick}].axes", column
+        if (column := columns.get(f"DS:joystick{stick}/povs")) is not None:
+            yield f"joysticks[{stick}].povs", together([column], _angles) if is_of_2027 else column
         if (column := columns.get(f"DS:joystick{stick}/buttons")) is not None:
             yield f"joysticks[{stick}].buttons", together([column], _buttons)
         table = f"/DriverStation/Joystick{stick}"
@@ -168,11 +184,16 @@ def _station(columns: Mapping[str, Column]) -> Iterator[tuple[str, Column]]:
             yield f"joysticks[{stick}].buttons", together([columns.get(f"{table}/ButtonCount"), bits], _button_bits)
     if (station := columns.get("/DriverStation/AllianceStation")) is not None:
         yield "alliance_station", together([station], _plain_number)
-    elif (red := columns.get("NT:/FMSInfo/IsRedAlliance")) is not None:
-        yield "alliance_station", together([red, columns.get("NT:/FMSInfo/StationNumber")], _station_number)
-    for table in ("NT:/FMSInfo", "/DriverStation"):
-        if (message := columns.get(f"{table}/GameSpecificMessage")) is not None:
+    for table in ("NT:/FMSInfo", "NT:/DriverStation"):  # until 2026, and from 2027 on
+        if (red := columns.get(f"{table}/IsRedAlliance")) is not None:
+            yield "alliance_station", together([red, columns.get(f"{table}/StationNumber")], _station_number)
+    for name in ("NT:/FMSInfo/GameSpecificMessage", "NT:/DriverStation/GameData", "/DriverStation/GameSpecificMessage"):
+        if (message := columns.get(name)) is not None:
             yield "event.game_specific_message", message
+
+
+def _angles(povs: Any) -> Any:
+    return tuple(_POVS.get(each, -1) for each in povs or ())
 
 
 def _buttons(pressed: Any) -> Any:
