@@ -11,6 +11,8 @@ import pytest
 
 from pyfrc_core.config.dashboards import DASHBOARDS, Kind, Widget, load_dashboards, save_dashboard
 from pyfrc_core.errors import SettingsError
+from pyfrc_core.sim.ui.web.dashboards import Dashboards
+from pyfrc_core.sim.ui.web.messages import CommandError, Message
 
 WIDGET = {"kind": "number", "topic": "/SmartDashboard/kP", "x": 0, "y": 0, "w": 2, "h": 1}
 GAUGE = {"kind": "gauge", "topic": "/SmartDashboard/speed", "x": 2, "y": 0, "w": 2, "h": 2, "min": -12.0, "max": 12.0}
@@ -93,3 +95,35 @@ def test_the_example_of_the_documentation(tmp_path: Path) -> None:
     } == set(get_args(Kind))
     rows = re.findall("^[|] (`.*?`) [|]", text[text.index("| key of a widget") :], re.MULTILINE)
     assert {key for row in rows for key in re.findall("`([a-z]+)`", row)} == set(Widget.model_fields)
+
+
+def test_a_page_gets_them_when_they_have_changed(root: Path) -> None:
+    dashboards = Dashboards(root)
+    first = dashboards.found()
+    assert list(first["dashboards"]) == ["Drive", "Pit"]
+    assert first["dashboards"]["Drive"]["widgets"][0] == {**WIDGET, "more": (), "title": "", "unit": ""}
+    assert dashboards.found(first["stamp"]) == {"stamp": first["stamp"]}
+    (root / DASHBOARDS).write_text("{", "utf-8")
+    broken = dashboards.found(first["stamp"])
+    assert broken["dashboards"] == {}
+    assert broken["problem"].startswith("sim/dashboards.json:1: ")
+    (root / DASHBOARDS).unlink()
+    assert dashboards.found(broken["stamp"]) == {"stamp": "none", "dashboards": {}, "problem": ""}
+
+
+@pytest.mark.parametrize(
+    ("message", "problem"),
+    [
+        ({"dashboard": " ", "content": {}}, "A dashboard needs a name."),
+        ({"dashboard": "n" * 61, "content": {}}, "at most 60 characters"),
+        ({"dashboard": "Drive", "content": "no"}, "dashboards.Drive = 'no': input should be an object"),
+        ({"dashboard": "Drive", "content": {"columns": 1e9}}, "dashboards.Drive.columns = 1000000000.0"),
+        ({"dashboard": "Drive", "content": {"widgets": [{}] * 1001}}, "at most 1000 of them, not 1001"),
+    ],
+)
+def test_whatever_a_page_sends_has_an_answer(root: Path, message: dict[str, Any], problem: str) -> None:
+    before = (root / DASHBOARDS).read_text("utf-8")
+    with pytest.raises(CommandError) as error:
+        Dashboards(root).save(Message(message))
+    assert problem in str(error.value)
+    assert (root / DASHBOARDS).read_text("utf-8") == before

@@ -20,6 +20,10 @@ SCRIPT = """\
 {"t": 2, "set": {"joysticks[0].buttons[5]": true}}
 """
 
+DASHBOARD = """
+{"dashboards": {"Drive": {"widgets": [{"kind": "number", "topic": "pwm[0].value", "x": 0, "y": 0, "w": 3, "h": 2}]}}}
+"""
+
 #: Whether the field is drawn: how many colours there are.
 COLORS = """() => {
     const canvas = document.querySelector(".field canvas");
@@ -31,7 +35,7 @@ COLORS = """() => {
 @pytest.fixture(scope="module")
 def recorded(make_shared_project: Any) -> Any:
     """A project in which a failing run was written as a page."""
-    project = make_shared_project({**ROBOT, "drive.jsonl": SCRIPT})
+    project = make_shared_project({**ROBOT, "drive.jsonl": SCRIPT, "sim/dashboards.json": DASHBOARD})
     result = project.run("sim", "--ui", "none", "--script", "drive.jsonl", "--page", "pages/run.html")
     assert result.code == 1, result.output
     assert "wrote pages" in result.output
@@ -97,6 +101,11 @@ def test_a_mentor_looks_through_a_run_that_failed(page: Any, recorded: Any) -> N
     for name in ("Modules", "0"):
         page.locator(".nt-row.folder").get_by_role("button", name=name, exact=True).click()
     page.locator("[data-path='nt:/SmartDashboard/Modules/0/speed'] .nt-value", has_text="1").wait_for()
+    # The team's dashboard, which is not changed here.
+    page.get_by_title("Layout", exact=True).click()
+    page.get_by_role("menuitemcheckbox", name="Dashboard").click()
+    page.locator(".widget", has_text="pwm[0].value").locator("b", has_text="0.50").wait_for()
+    assert page.get_by_role("button", name="Arrange").count() == 0
 
 
 def test_a_page_from_disk_runs_its_own_scripts_only(recorded: Any, browser: Any) -> None:

@@ -49,7 +49,8 @@ export class ChooserWidget extends TableWidget {
   content({ path, name }, values) {
     const chooser = model.past ? null : model.choosers.find((each) => each.name === topicOf(path));
     const options = chooser?.options ?? plain(values.get(`${path}/options`)) ?? [];
-    const active = chooser?.active ?? plain(values.get(`${path}/active`)) ?? "";
+    const published = ["active", "selected/value", "default"].map((name) => values.get(`${path}/${name}`)); // the last two from 2027 on
+    const active = chooser?.active ?? published.find((each) => each !== undefined) ?? "";
     const choose = (option) => (chooser ? command("choose", { chooser: chooser.name, option }) : write({ [`${path}/${model.hello.options.dashboard.choice}`]: option }));
     return html`<div class="chooser-widget"><select aria-label=${name} value=${active} disabled=${!model.mayWrite} onChange=${(event) => choose(event.target.value)}>
       ${options.map((option) => html`<option key=${option} value=${option} selected=${option === active}>${option}</option>`)}</select></div>`;
