@@ -122,6 +122,23 @@ def test_a_log_that_is_dropped_on_the_page_becomes_a_branch(tmp_path: Path) -> N
             assert answer["text"].startswith(name)
 
 
+def test_what_changes_rarely_comes_first_among_the_changes_around_a_moment(tmp_path: Path) -> None:
+    log = a_match()
+    log.values("NT:/SmartDashboard/state", "string", "", (0, b"DRIVING"), (5.2, b"BLOCKED"))
+    log.values("NT:/SmartDashboard/same", "double", "d", *((step / 10, 1.0) for step in range(100)))
+    opened = open_log(log.save(tmp_path / "match.wpilog"), HEIGHT)
+    with served_source(LogSource(Project(tmp_path / "robot.py"), opened)) as server, server.page() as page:
+        changes = page.ask(type="changes", t=5.0, reach=0.5)["changes"]
+        assert changes[0] == {
+            "path": "nt:/SmartDashboard/state",
+            "t": 5.2,
+            "before": "DRIVING",
+            "after": "BLOCKED",
+            "count": 2,
+        }
+        assert [change["path"] for change in changes[1:]] == ["nt:/SmartDashboard/speed"]
+
+
 def test_only_who_may_drive_can_drop_a_log(tmp_path: Path) -> None:
     with served_source(source_of(tmp_path)) as server:
         viewing = urlsplit(server.viewing_address).query
@@ -164,6 +181,8 @@ def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:
         page.mouse.click(box["x"] + box["width"] * 0.25, box["y"] + 12)
         page.locator(".state b", has_text="Autonomous enabled").wait_for()
         page.locator(".console", has_text="ValueError: it broke").wait_for()
+        page.get_by_role("tab", name="Changes", exact=True).click()
+        page.locator(".change", has_text="speed").first.wait_for()
         drop = """([name, bytes]) => {
           const transfer = new DataTransfer();
           transfer.items.add(new File([new Uint8Array(bytes)], name));

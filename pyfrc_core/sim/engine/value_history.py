@@ -199,6 +199,10 @@ class ValueHistory:
         begin, end = bisect_left(changes.packets, first), bisect_right(changes.packets, last)
         return [self._times[packet - self._first] for packet in changes.packets[begin:end]], changes.values[begin:end]
 
+    def change_count(self, path: str) -> int:
+        """Return how often a value has changed, as far as it is known."""
+        return len(self._changes[path].packets)
+
     def change_numbers(self, path: str) -> list[int]:
         """Return which of the packets that are known have changed a value: 0 is the first of `times`."""
         return [packet - self._first for packet in self._changes[path].packets]

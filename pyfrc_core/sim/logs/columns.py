@@ -142,6 +142,10 @@ class LogHistory(ValueHistory):
         """Return all values to a reader that has none yet."""
         return dict(self.now) if packet <= 0 else {}
 
+    def change_count(self, path: str) -> int:
+        """Return how often a value was logged."""
+        return len(self._columns[path].moments)
+
     def change_numbers(self, path: str) -> list[int]:
         """Return which of the times have changed a value."""
         moments = self._moments

@@ -110,6 +110,9 @@ class PageClient:
                 return await asyncio.to_thread(self._values, message)
             case "plot":
                 return await asyncio.to_thread(self._plot, message)
+            case "changes":
+                time, reach = message.time("t"), float(message.number("reach", 0, 60))
+                return {"changes": await asyncio.to_thread(self._collector.runs.changes_around, time, reach)}
             case "first_difference":
                 return await asyncio.to_thread(self._first_difference, message)
             case "show":

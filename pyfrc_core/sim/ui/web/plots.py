@@ -119,7 +119,7 @@ class FirstDifference:
         for left, right in changes:
             if left is None or right is None or left[0] != right[0]:
                 return min(change[0] for change in (left, right) if change is not None)
-            if not _same(left[1], right[1]):
+            if not same(left[1], right[1]):
                 return float(left[0])
         return None
 
@@ -131,12 +131,13 @@ def _changes(history: ValueHistory, path: str, begin: float, end: float) -> Iter
     yield begin, before
     for time, each in zip(*history.changes(whole, begin, end), strict=True):
         value = picked(each, index)
-        if not _same(value, before):
+        if not same(value, before):
             before = value
             yield time, value
 
 
-def _same(one: Any, other: Any) -> bool:
+def same(one: Any, other: Any) -> bool:
+    """Return whether two values are equal; NaN equals itself."""
     if one is MISSING or other is MISSING:
         return one is other
     return bool(one == other) or (one != one and other != other)  # NaN

@@ -12,12 +12,14 @@ from ...engine.messages import MODE, POSE, TYPE, VALUE
 from ...engine.past_run import PastRun, Stream
 from ...engine.value_history import MISSING, ValueHistory, packed
 from ..models.wording import clock
-from .plots import MOST_POINTS, FirstDifference, picked, resolve, series
+from .plots import MOST_POINTS, FirstDifference, picked, resolve, same, series
 
 #: About how much memory the values of all runs may take together.
 MOST_BYTES = 256 << 20
 #: Times that are equal but for rounding.
 _ROUNDING = 1e-6
+#: The most changes around a moment that are named.
+_MOST_CHANGES = 100
 #: The most former runs that are kept.
 _MOST_FORMER = 12
 #: The number of the first branch that is no former run.
@@ -256,6 +258,31 @@ class Runs:
                     found[path] = flat[-2 * MOST_POINTS :]
         return found, positions
 
+    def changes_around(self, time: float, reach: float) -> list[dict[str, Any]]:
+        """Return the first change of each value that has changed around a moment, what changes rarely first.
+
+        :param reach: in seconds before and after the moment
+        """
+        found = []
+        for history in self._all():
+            with self._lock:
+                paths = [path for path in history.paths() if not path.startswith(TYPE)]
+            for path in paths:
+                with self._lock:  # for each value: a collector must not wait for all of them
+                    before = history.value_at(path, time - reach)
+                    changes = zip(*history.changes(path, time - reach, time + reach + _ROUNDING), strict=True)
+                    first = next(((at, value) for at, value in changes if not same(value, before)), None)
+                    count = history.change_count(path)
+                if first is not None:
+                    values = {"before": _shown(before), "after": _shown(first[1])}
+                    found.append({"path": path, "t": first[0], "count": count, **values})
+        found.sort(key=lambda change: (change["count"], change["t"]))
+        return found[:_MOST_CHANGES]
+
+    def _all(self) -> list[ValueHistory]:
+        with self._lock:
+            return list(self._histories.values())
+
     def change_counts(self, paths: Iterable[str]) -> dict[str, int]:
         """Return how often each of some values has changed in the present run."""
         with self._lock:
@@ -308,6 +335,10 @@ class Runs:
 
     def _branch(self, number: int) -> Branch | None:
         return next((each for each in self.branches if each.number == number), None)
+
+
+def _shown(value: Any) -> Any:
+    return None if value is MISSING else value
 
 
 def _name_of(began: RunBegan, end: float) -> str:

@@ -20,6 +20,7 @@ export async function readRun() {
   const answers = {
     values: ({ t, branch }) => ({ t, values: valuesAt(chosen(branch).columns, t - chosen(branch).offset) }),
     plot: ({ paths, from, to, branch }) => ({ series: Object.fromEntries(paths.map((path) => [path, curveOf(chosen(branch), path, from, to)])) }),
+    changes: ({ t, reach }) => ({ changes: changesAround(present.columns, t, reach) }),
     subscribe: () => ({}), // nothing comes any more
   };
   return {
@@ -52,6 +53,23 @@ function valuesAt(columns, t) {
     if (value !== undefined) found[path] = value;
   }
   return found;
+}
+
+const MOST_CHANGES = 100;
+
+// As `Runs.changes_around` has it.
+function changesAround(columns, t, reach) {
+  const found = [];
+  for (const [path, column] of columns) {
+    const before = column.at(t - reach);
+    const end = indexAfter(column.t, t + reach + ROUNDING);
+    for (let index = indexAfter(column.t, t - reach + ROUNDING); index < end; index++) {
+      if (JSON.stringify(column.v[index]) === JSON.stringify(before)) continue;
+      found.push({ path, t: column.t[index], before: before ?? null, after: column.v[index] ?? null, count: column.t.length });
+      break;
+    }
+  }
+  return found.sort((one, other) => one.count - other.count || one.t - other.t).slice(0, MOST_CHANGES);
 }
 
 function curveOf({ columns, offset }, path, from, to) {

@@ -29,7 +29,7 @@ export const PRESETS = {
     looks: "log", // only for what cannot be driven, and is this
     tree: row(
       [24, 48, 28],
-      tabs("networktables", "devices"),
+      tabs("networktables", "changes", "devices"),
       column([50, 50], tabs("field", "mechanism"), tabs("plot:1", "plot:2")),
       column([58, 42], tabs("console"), tabs("joysticks", "match", "widgets")),
     ),

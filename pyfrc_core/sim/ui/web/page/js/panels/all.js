@@ -1,5 +1,6 @@
 // Every panel that can be opened, by the part of its name before a colon. Those that only drive are of no use for a recorded run.
 import { CamerasPanel } from "#js/panels/cameras.js";
+import { ChangesPanel } from "#js/panels/changes.js";
 import { ConsolePanel } from "#js/panels/console.js";
 import { DashboardPanel } from "#js/panels/dashboard.js";
 import { DevicesPanel } from "#js/panels/devices.js";
@@ -24,6 +25,7 @@ export const PANELS = {
   mechanism: { title: "Mechanism", component: MechanismPanel },
   swerve: { title: "Swerve", component: SwervePanel },
   cameras: { title: "Cameras", component: CamerasPanel, served: true },
+  changes: { title: "Changes", component: ChangesPanel },
   console: { title: "Console", component: ConsolePanel },
   match: { title: "Match", component: MatchPanel },
   joysticks: { title: "Joysticks", component: JoysticksPanel, devices: true },

@@ -1,0 +1,57 @@
+// What has changed around the moment that is shown, what changes rarely first: a state, a fault, a command.
+import { ask } from "#js/connection.js";
+import { clock, valueText } from "#js/format.js";
+import { model } from "#js/model.js";
+import { nameOf } from "#js/names.js";
+import { look } from "#js/past.js";
+import { addToPlot, carryPath } from "#js/plotting.js";
+import { Icon, Live, html } from "#js/view.js";
+
+const REACHES = [0.1, 0.5, 2]; // seconds before and after the moment
+const LIVE_INTERVAL = 500; // milliseconds
+
+export class ChangesPanel extends Live {
+  parts = ["shown", "t", "status"];
+  state = { reach: 0.5, t: -1, changes: [] };
+
+  componentDidMount() {
+    super.componentDidMount();
+    this.update();
+  }
+
+  componentDidUpdate() {
+    this.update();
+  }
+
+  // One question at a time; the newest moment counts.
+  async update() {
+    const t = model.past?.t ?? model.t;
+    const { reach } = this.state;
+    if (this.asking || (t === this.askedAt && reach === this.askedReach)) return;
+    this.asking = true;
+    this.askedAt = t;
+    this.askedReach = reach;
+    const answer = await ask("changes", { t, reach }).catch(() => null);
+    this.asking = false;
+    if (answer) this.setState({ t, changes: answer.changes });
+  }
+
+  render(_, { reach, t, changes }) {
+    this.interval = model.past ? 0 : LIVE_INTERVAL;
+    return html`<div class="networktables changes">
+      <div class="changes-head"><span>Changed around ${clock(Math.max(t, 0))}</span>
+        <select aria-label="How far around" value=${reach} onChange=${(event) => this.setState({ reach: Number(event.target.value) })}>
+          ${REACHES.map((each) => html`<option key=${each} value=${each} selected=${each === reach}>± ${each} s</option>`)}</select></div>
+      <div class="scroll" role="list">${changes.map((change) => html`<${Change} key=${change.path} ...${change} />`)}
+        ${!changes.length && html`<p class="empty">Nothing has changed then. What changes rarely comes first here.</p>`}</div>
+    </div>`;
+  }
+}
+
+function Change({ path, t, before, after, count }) {
+  return html`<div class="nt-row change" role="listitem" title=${`${path}, ${count} changes in all`} draggable="true" onDragStart=${(event) => carryPath(event, path)} data-path=${path}>
+    <span class="row-label">${nameOf(path)}</span>
+    <span class="faint">${valueText(before)} → ${valueText(after)}</span>
+    <span class="row-tools"><button class="tool" title="Plot this value" aria-label=${`Plot ${nameOf(path)}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button></span>
+    <button class="quiet when" title="Look at the moment of this change" onClick=${() => look(t)}>${clock(t)}</button></div>`;
+}
