@@ -124,7 +124,23 @@ REV = """
             wpilib.SmartDashboard.putNumber("speed", self.encoder.getVelocity())
 """
 
-ROBOTS = {"commands": COMMANDS, "magic": MAGIC, "devices": DEVICES, "rev": REV}
+PATHS = """
+    import commands2
+    from pathplannerlib.auto import NamedCommands
+
+
+    class MyRobot(commands2.TimedCommandRobot):
+        def robotInit(self):
+            if NamedCommands.hasCommand("shoot"):
+                raise RuntimeError("it is configured already")
+            self.shots = 0
+            NamedCommands.registerCommand("shoot", commands2.cmd.runOnce(self.shoot))
+
+        def shoot(self):
+            self.shots += 1
+"""
+
+ROBOTS = {"commands": COMMANDS, "magic": MAGIC, "devices": DEVICES, "rev": REV, "pathplannerlib": PATHS}
 
 
 def hashes(project: RobotProject, isolation: str) -> tuple[dict[str, str], str]:
@@ -137,8 +153,8 @@ def hashes(project: RobotProject, isolation: str) -> tuple[dict[str, str], str]:
 
 @pytest.mark.parametrize("name", sampled(list(ROBOTS), "commands"))
 def test_one_interpreter_runs_all_tests(name: str, make_project: MakeProject) -> None:
-    if name == "rev":
-        pytest.importorskip("rev")
+    if name in ("rev", "pathplannerlib"):
+        pytest.importorskip(name)
     project = make_project({"robot.py": ROBOTS[name]})
     forked, _ = hashes(project, "fork")
     reused, printed = hashes(project, "reuse")

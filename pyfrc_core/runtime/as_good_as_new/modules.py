@@ -17,6 +17,11 @@ from .part import Part
 _PLAIN = ("builtins", "types", "unittest.mock")
 
 
+#: Libraries that keep what a robot has configured in their classes, with no call to forget it: they are imported anew,
+#: as the project's modules are.
+_IMPORTED_ANEW = ("pathplannerlib",)
+
+
 class ProjectModules(Part):
     """What is imported, and from where."""
 
@@ -28,11 +33,13 @@ class ProjectModules(Part):
         self.names: set[str] = set()
 
     def is_of_project(self, module: Any) -> bool:
-        """Return whether a module is one of the project's, or made by hand of what is the project's."""
+        """Return whether a module is one of the project's, or like one, or made by hand of what is the project's."""
         kind = type(module)  # an object may claim to be of another class
         if not issubclass(kind, ModuleType):  # it stands for a module
             return kind.__module__ in _PLAIN or self._is_made_by_project(kind)
         values: dict[str, Any] = ModuleType.__getattribute__(module, "__dict__")
+        if str(values.get("__name__")).partition(".")[0] in _IMPORTED_ANEW:
+            return True
         file, path = values.get("__file__"), values.get("__path__")
         if file is None and path is not None:
             return any(self._files.is_project_file(f"{each}{os.sep}") for each in path)
