@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .collector import Collector
 
 #: The shortest interval of updates, in seconds: somewhat less than a packet; and of those that bring only a later time.
-_INTERVAL, _TIME_INTERVAL = 0.014, 0.1
+_INTERVAL, _TIME_INTERVAL = 0.014, 0.2
 #: The longest error, in characters: it may quote what the page has sent.
 _MOST_ERROR = 300
 #: The most points of one curve.

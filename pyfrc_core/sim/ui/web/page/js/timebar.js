@@ -12,7 +12,7 @@ import { Icon, Live, html } from "#js/view.js";
 
 // The share of the speed slider that has speeds: beyond the fastest comes "as fast as possible".
 const UNLIMITED = 0.94;
-const LIVE_INTERVAL = 200; // milliseconds: the clock goes in step with the timeline, in the same frame of the screen
+const LIVE_INTERVAL = 150; // milliseconds: the clock goes in step with the timeline, in the same frame of the screen
 const FIGURES_INTERVAL = 500;
 
 export class TimeBar extends Live {

@@ -15,7 +15,7 @@ const NEAR = 5; // pixels between the pointer and a mark
 const MOST_NAMED = 5; // marks beside the pointer
 const HEIGHT = 46;
 const EDGE = 8; // pixels at both ends
-const LIVE_INTERVAL = 200; // milliseconds: the present moves slowly
+const LIVE_INTERVAL = 150; // milliseconds: the present moves slowly
 const SHORTEST = 10; // seconds on the timeline at least, until it is over
 
 export class Timeline extends Live {
