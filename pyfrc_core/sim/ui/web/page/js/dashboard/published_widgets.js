@@ -25,7 +25,8 @@ export class ValuesWidget extends TableWidget {
   }
 }
 
-const GAINS = ["p", "i", "d", "f", "setpoint", "goal", "measurement", "error"];
+// From 2027 on, a ProfiledPIDController has most of them in a table of its own.
+const GAINS = ["p", "i", "d", "f", "setpoint", "goal", "measurement", "error"].flatMap((name) => [name, `controller/${name}`]);
 
 export class PidWidget extends TableWidget {
   content(folder, values) {

@@ -63,7 +63,7 @@ export function ValuesCard({ folder, values, only = null }) {
     ? only.map((name) => [`${folder.path}/${name}`, values.get(`${folder.path}/${name}`)]).filter(([, value]) => value !== undefined)
     : [...values].filter(([path]) => path.startsWith(`${folder.path}/`) && !path.slice(folder.path.length).includes("/."));
   return html`<div class="card"><h4>${folder.name}<span class="chip">${folder.type}</span></h4>
-    ${rows.map(([path, value]) => html`<${ValueRow} key=${path} path=${path} name=${path.slice(folder.path.length + 1)} value=${plain(value)} />`)}</div>`;
+    ${rows.map(([path, value]) => html`<${ValueRow} key=${path} path=${path} name=${only ? path.split("/").pop() : path.slice(folder.path.length + 1)} value=${plain(value)} />`)}</div>`;
 }
 
 function ValueRow({ path, name, value }) {
