@@ -133,7 +133,6 @@ def test_what_todays_tool_has_installed_is_used_if_it_is_what_the_lock_wants(
         assert not (robot.home / ".pyfrc/environments").exists()
 
 
-@pytest.mark.season_2026
 @nightly
 def test_todays_tool_after_ours_and_ours_again(blank: Computer, laptop: Laptop) -> None:
     """It replaces code and start command, and has its packages where it installs them."""
@@ -149,7 +148,8 @@ def test_todays_tool_after_ours_and_ours_again(blank: Computer, laptop: Laptop) 
     blank.put(f"{blank.home_directory}/robotCommand", start, mode=0o755)
     laptop.deploy(blank)
     blank.said("program 1 with spinner 1.0")
-    assert laptop.run(blank, "deploy", "--rollback", "2").code == 0
+    back = laptop.run(blank, "deploy", "--rollback", "2")
+    assert back.code == 0, back.output
     blank.said("theirs")
     assert (blank.home / "robotCommand").read_text(encoding="utf-8") == start
     assert laptop.run(blank, "deploy", "--rollback", "1").code == 0

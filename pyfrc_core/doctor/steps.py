@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from ..deploy.robot_checks import PREPARE
 from .check_result import CheckResult, hint, ok
 
 #: The topic of the result.
@@ -50,4 +51,6 @@ def first_missing(downloads: CheckResult | None, robot: tuple[Step, str]) -> Che
     step, remedy = robot
     if downloads is not None and downloads.status != "ok" and Step.DOWNLOADS < step <= Step.PACKAGES:
         return next_step(Step.DOWNLOADS, downloads.remedy or "")
+    if downloads is not None and remedy == PREPARE:
+        remedy = "At the robot: pyfrc deploy, which installs what was downloaded."
     return next_step(step, remedy)
