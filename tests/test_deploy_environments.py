@@ -14,7 +14,7 @@ from zipfile import ZipFile, ZipInfo
 
 import pytest
 from conftest import sampled
-from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
+from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_memory, project_of
 
 from pyfrc_core.deploy.agent.robot_paths import Lock
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
@@ -265,6 +265,20 @@ def test_while_another_computer_installs_it_is_named(directory: Path, packages: 
     with Lock(robot.paths, "ann@laptop"), pytest.raises(OtherComputerError, match="ann@laptop is deploying to this"):
         install(robot, agents, packages, FIRST)
     assert install(robot, agents, packages, FIRST) == 2
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="it reads the memory of a process as Linux shows it")
+def test_memory(directory: Path, packages: Packages) -> None:
+    """A wheel of 20 MB: under 40 MB at the highest. What needs more to be compiled is left to the program."""
+    robot, table = new_robot(directory / "robot", ROBORIO), "TABLE = [\n" + '    ["a", 1.5, "b"],\n' * 100_000 + "]\n"
+    big = wheel(directory, "big-1.0", {"big.bin": os.urandom(20_000_000), "small.py": "A = 1\n", "table.py": table})
+    packages.wheels[FIRST] = Manifest((big,))
+    session = robot.start(Processes())
+    assert session.install(FIRST, None, packages.wheels[FIRST], [1]) == 1
+    peak = robot.channel.peak_memory()
+    session.close()
+    assert peak < 40_000_000
+    assert {each.name.partition(".")[0] for each in robot.home.rglob("*.pyc")} == {"small"}
 
 
 class Scenario:

@@ -177,7 +177,7 @@ def test_a_full_disk_is_said_before_anything_is_installed(laptop: Laptop) -> Non
     with blank_computer(disk_size="1m" if IS_ROBORIO else "20m") as robot:
         refused = laptop.run(robot, "deploy", "--skip-tests")
         assert refused.code == 1
-        assert "the robot's disk is too full to install Python: " in refused.first_error
+        assert "the robot's disk is too full to install Python and packages: " in refused.first_error
         assert not (robot.home / ".pyfrc/releases").exists()
 
 

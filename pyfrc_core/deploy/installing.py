@@ -135,6 +135,10 @@ def _install(connection: Connection, robot: AgentClient | None, wanted: Environm
     from .agent_client import AgentClient
 
     files = {each: cached_file(each, CURRENT) for each in wanted.lock.files}
+    wheels = Manifest(
+        tuple(Entry(each.file, each.size, each.sha256, False, files[each]) for each in wanted.lock.packages)
+    )
+    unpacked = [_unpacked_size(entry.file) for entry in wheels.entries]
     installer, has_place = wanted.controller.install_python, bool(wanted.controller.layout.python)
     sent_python = False
     if robot is None or not has_place:
@@ -143,13 +147,10 @@ def _install(connection: Connection, robot: AgentClient | None, wanted: Environm
             user = connection
             if installer.user != wanted.controller.layout.user:
                 user = stack.enter_context(connection.as_user(installer.user))
-            sent_python = _send_python(user, wanted, files[wanted.lock.python], phase)
+            then = wheels.total_bytes + sum(unpacked) if robot is None else 0
+            sent_python = _send_python(user, wanted, files[wanted.lock.python], then, phase)
     if robot is None:
         robot = AgentClient.start(connection, python=wanted.python)
-    wheels = Manifest(
-        tuple(Entry(each.file, each.size, each.sha256, False, files[each]) for each in wanted.lock.packages)
-    )
-    unpacked = [_unpacked_size(entry.file) for entry in wheels.entries]
     sent = robot.install(wanted.name, None if has_place else wanted.python_name, wheels, unpacked, phase.work)
     phase.detail = f"{counted(sent, 'package')} of {len(wheels.entries)} sent"
     if sent_python:
@@ -171,14 +172,15 @@ def _unpacked_size(wheel: Path) -> int:
         ) from error
 
 
-def _send_python(connection: Connection, wanted: Environment, archive: Path, phase: Phase) -> bool:
+def _send_python(connection: Connection, wanted: Environment, archive: Path, then: int, phase: Phase) -> bool:
     """Send the robot's Python, unless it is there. Return whether it was sent.
 
+    :param then: bytes that the packages need on its disk afterwards
     :raises RefusedError: if the robot's disk is too full
     :raises DeployError: if it cannot be unpacked
     """
     size, installer = archive.stat().st_size, wanted.controller.install_python
-    needed = installer.needed(archive)
+    needed = installer.needed(archive) + then
     script = installer.script.format(
         name=wanted.python_name, size=size, kilobytes=needed // 1024, sha256=wanted.lock.python.sha256
     )
@@ -189,7 +191,7 @@ def _send_python(connection: Connection, wanted: Environment, archive: Path, pha
                 return False
             if reply.startswith("full "):
                 raise RefusedError(
-                    f"the robot's disk is too full to install Python: {needed // 1000:,} kB are needed, "
+                    f"the robot's disk is too full to install Python and packages: {needed // 1000:,} kB are needed, "
                     f"{one_line(reply)[5:]} kB are free",
                     where=str(connection.address),
                     remedy="Remove old logs from the robot. Nothing was changed.",

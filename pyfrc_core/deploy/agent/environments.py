@@ -29,6 +29,8 @@ from .wheels import link_wheel, unpack_wheel
 RECORD = "environment.json"
 _NAME, _TAKEN = re.compile(r"[0-9a-f]{16}"), re.compile(r"taken-\d+")
 _SHA256 = re.compile(r"[0-9a-f]{64}")
+#: Memory for compiling packages, in kB. A robot with 256 MB runs its program meanwhile.
+_COMPILING_KILOBYTES = 40_000
 #: Bytes of disk space that stay free.
 _RESERVE = 8 << 20
 
@@ -218,8 +220,11 @@ class Environments:
                 files[each.sha256] = unpack_wheel(wheel, each.file, place, packages, self._activity)
                 remove(wheel)
         self._activity.begin("environment")
-        # As programs are started. A package may have files for another version of Python, which do not count.
-        self._run([str(place / "bin/python3"), "-O", "-m", "compileall", "-q", str(packages)], check=False)
+        # As programs are started. A package may have files for another version of Python, which do not count, and files
+        # that need too much memory: the program compiles them when it imports them.
+        limited = ["sh", "-c", f'ulimit -d {_COMPILING_KILOBYTES}; exec "$@"', "sh"]
+        compiling = [str(place / "bin/python3"), "-O", "-m", "compileall", "-q", str(packages)]
+        self._run([*limited, *compiling], check=False)
         return files
 
     def without_pip(self, python: Path) -> list[str]:
