@@ -155,6 +155,15 @@ def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
         assert watched.traceback is None
 
 
+@pytest.mark.slow
+def test_a_crash_in_c_code_is_named(computer: Computer, tmp_path: Path) -> None:
+    """WPILib's own runner enables the fault handler; the look-alikes' stand-in does not."""
+    crash = "import faulthandler, os; faulthandler.enable(); os.kill(os.getpid(), 11)"
+    with agent(computer) as robot:
+        robot.deploy(program(tmp_path, "bad", f"def __init__(self): {crash}"), DeployRequest("robot.py", {}))
+        assert started(robot).fatal_error == "Segmentation fault"
+
+
 @pytest.mark.parametrize("phase", sampled(["start", "send", "switch"], "switch"))
 def test_power_pulled_in_the_middle(computer: Computer, tmp_path: Path, phase: str) -> None:
     deploy(computer, program(tmp_path, "old"))

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -89,6 +90,14 @@ def test_a_crash_is_shown_with_its_traceback_and_goes_back(talk: UserInterface, 
     assert caught.value.exit_code == 3
     assert robot.went_back_to == [1]
     assert "| RuntimeError: no such gyro" in shown.getvalue()
+
+
+def test_a_crash_in_c_code_is_named(talk: UserInterface, shown: io.StringIO) -> None:
+    printed = f'{TRACEBACK}Fatal Python error: Segmentation fault\n\n  File "robot.py", line 4 in robotInit\n'
+    watched = replace(CRASHED, output=printed)
+    with pytest.raises(ProgramDiedError, match=r"ended after 4.1 s, by a crash in C code \(Segmentation fault\)"):
+        start(Watching(watched), talk, 1)
+    assert "line 4 in robotInit" in shown.getvalue()
 
 
 def test_a_slow_start_is_not_a_success_and_causes_no_rollback(talk: UserInterface, shown: io.StringIO) -> None:

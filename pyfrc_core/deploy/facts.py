@@ -19,6 +19,9 @@ VIRTUAL_IMAGE = "virtual robot"
 
 _TRACEBACK = re.compile(r"^Traceback \(most recent call last\):\n(?:[ \t].*\n|\n)*(?P<error>\S.*\n?)?", re.MULTILINE)
 
+#: What Python prints if C code ends it by a signal. WPILib's runner lets it do so.
+_FATAL = re.compile(r"^Fatal Python error: ([A-Z][A-Za-z -]{0,40})$", re.MULTILINE)
+
 
 @dataclass(frozen=True)
 class Release:
@@ -323,3 +326,9 @@ class Watched:
         found = list(_TRACEBACK.finditer(self.output))
         whole = [each for each in found if each["error"]] or found
         return whole[-1][0].rstrip() if whole else None
+
+    @property
+    def fatal_error(self) -> str | None:
+        """Return Python's name for the signal that has ended the process, such as ``Segmentation fault``, if known."""
+        found = _FATAL.findall(self.output)
+        return str(found[-1]) if found and not self.alive else None

@@ -35,7 +35,7 @@ def start(robot: AgentClient, talk: UserInterface, previous: int | None, auto_ro
         raise _still_starting(watched, "the new program was started")
     if watched.alive:
         return watched.verdict
-    what = f"the new program {_end_of(watched.state)}"
+    what = f"the new program {_end_of(watched)}"
     if previous is None:
         raise ProgramDiedError(
             what, remedy="There is no earlier program to go back to: correct the program, and deploy again."
@@ -71,7 +71,7 @@ def go_back(robot: AgentClient, talk: UserInterface, release: int | None, *, onl
         raise _still_starting(watched, f"release {back.release.number} is current again and was started")
     if not watched.alive:
         raise ProgramDiedError(
-            f"release {back.release.number} is current again, but {_end_of(watched.state)}",
+            f"release {back.release.number} is current again, but {_end_of(watched)}",
             remedy="Choose another with --rollback ID: pyfrc deploy-info lists them.",
         )
     return back.release.number
@@ -88,7 +88,7 @@ def _restart(robot: AgentClient, talk: UserInterface) -> Watched:
             start_monitor.RUNNING: "the program runs, as before" if watched.has_run else "the program runs",
             start_monitor.UNHEARD: f"its process has run for {state.age:.0f} s",
             start_monitor.STARTING: f"still starting after {state.seconds:.0f} s",
-        }.get(watched.verdict, f"it {_end_of(state)}")
+        }.get(watched.verdict, f"it {_end_of(watched)}")
     if watched.verdict == start_monitor.UNHEARD:
         why = "its console is silent, which is normal without a Driver Station"
         if state.has_output:
@@ -99,7 +99,8 @@ def _restart(robot: AgentClient, talk: UserInterface) -> Watched:
             f"  its first process ended after {state.lived:.1f} s, and the robot restarted it: see pyfrc console"
         )
     if watched.verdict in (start_monitor.ENDED, start_monitor.STARTING):
-        ended = watched.traceback if watched.verdict == start_monitor.ENDED else None
+        raised = watched.verdict == start_monitor.ENDED and watched.fatal_error is None
+        ended = watched.traceback if raised else None
         last = "\n".join(watched.output.splitlines()[-_LINES_SHOWN:])
         talk.progress.output(ended or last or _NO_OUTPUT)
     return watched
@@ -141,8 +142,9 @@ def _known_of(state: StartState) -> str:
     return known
 
 
-def _end_of(state: StartState) -> str:
+def _end_of(watched: Watched) -> str:
     """Return how a program has ended, as a predicate for a sentence."""
-    if not state.seen:
+    if not watched.state.seen:
         return "was not started by the robot, or ended immediately"
-    return f"ended after {state.lived:.1f} s"
+    why = "" if watched.fatal_error is None else f", by a crash in C code ({watched.fatal_error})"
+    return f"ended after {watched.state.lived:.1f} s{why}"
