@@ -140,8 +140,8 @@ def test_todays_tool_after_ours_and_ours_again(blank: Computer, laptop: Laptop) 
     laptop.deploy(blank)
     blank.said("program 1 with spinner 1.0")
     blank.run("rm", f"{blank.home_directory}/py")
-    complete = "********** Robot program startup complete **********"
-    code = f"import time\nprint('theirs\\n{complete}', flush=True)\ntime.sleep(1000)\n"
+    printed = r"Robot program starting\ntheirs\nRobot program startup complete"
+    code = f"import time\nprint('{printed}', flush=True)\ntime.sleep(1000)\n"
     blank.put(f"{blank.home_directory}/py/robot.py", code)
     python = blank.controller.layout.python or f"{blank.home_directory}/venv/bin/python3"
     start = f"{python} -u -O {blank.home_directory}/py/robot.py\n"
