@@ -54,7 +54,8 @@ OTHER_NAMES = {
     "download": "To download what the robot needs: pyfrc sync",
     "rollback": "To go back to an earlier release: pyfrc deploy --rollback",
     "netconsole": "To see the robot program's output: pyfrc console",
-    "logs": "To see the robot program's output: pyfrc console",
+    "logs": "To see the robot program's output: pyfrc console. To look at logs: pyfrc view FILE",
+    "log": "To look at a log: pyfrc view FILE",
     "create": "To create a project: pyfrc init",
     "new": "To create a project: pyfrc init",
     "simulate": "To simulate the robot: pyfrc sim",
@@ -81,6 +82,8 @@ class Commands(click.Group):
                 from pyfrc_core.config.packages import install_line
 
                 hint = f" {OTHER_NAMES[args[0]].format(robotpy=install_line('robotpy'))}"
+            if args[0].lower().endswith((".wpilog", ".dslog", ".dsevents")):
+                hint = " To look at a log: pyfrc view FILE"
             if args[0].endswith(".py"):
                 hint = " pyfrc finds the robot's file by itself, for example: pyfrc sim"
             raise click.UsageError(f"There is no command {args[0]!r}.{hint}", ctx)

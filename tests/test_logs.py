@@ -252,6 +252,7 @@ def test_no_damage_is_more_than_a_sentence(tmp_path_factory: pytest.TempPathFact
         ("photo.wpilog", b"\x89PNG\r\n\x1a\n" * 9, "this is not a log that pyfrc knows"),
         ("match.hoot", b"CTRE", "owlet -f wpilog"),
         ("match.revlog", b"REV", "AdvantageScope opens it"),
+        ("match.rlog", b"\x00\x00", "before 2023"),
         ("a.jsonl", b'{"format": "another"}\n', "this is not a log that pyfrc knows"),
     ],
 )
@@ -260,6 +261,14 @@ def test_what_is_no_log_is_said_in_a_sentence(tmp_path: Path, name: str, content
     file.write_bytes(content)
     with pytest.raises(LogError, match=says.replace(".", r"\.")):
         open_log(file, HEIGHT)
+
+
+def test_a_directory_names_its_newest_logs(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match="There are no logs in it"):
+        open_log(tmp_path, HEIGHT)
+    a_match().save(tmp_path / "a.wpilog")
+    with pytest.raises(LogError, match=r"this is a directory, not a log\n  Its newest logs: a\.wpilog"):
+        open_log(tmp_path, HEIGHT)
 
 
 # -- the driver station's logs ----------------------------------------------------------------------------------------

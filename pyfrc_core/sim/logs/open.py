@@ -18,8 +18,10 @@ from .wpilog import is_wpilog, read_wpilog
 _FOREIGN = {
     ".hoot": "CTRE's format is closed. Phoenix Tuner X (“Log Extractor”) or CTRE's command owlet writes it as a "
     ".wpilog: owlet -f wpilog FILE.hoot FILE.wpilog",
+    ".rlog": "This is AdvantageKit's format before 2023. AdvantageScope opens it, and exports it as a .wpilog.",
     ".revlog": "REV's format is not read here. AdvantageScope opens it, and exports it as a .wpilog.",
 }
+_SUFFIXES, _MOST_NAMED = (".wpilog", ".dslog", ".dsevents"), 5
 #: How much of a file tells what it is.
 _HEAD = 4096
 _KINDS = "Logs are .wpilog, .dslog and .dsevents, and recordings and traces of pyfrc (.jsonl)."
@@ -52,6 +54,8 @@ def open_log(file: Path, height: float, name: str = "") -> OpenedLog:
     :raises LogError: when nothing of it can be shown
     """
     name = name or file.name
+    if file.is_dir():
+        raise LogError("this is a directory, not a log", where=name, remedy=_newest_in(file))
     try:
         with file.open("rb") as opened:
             head = opened.read(_HEAD)
@@ -84,6 +88,14 @@ def _read_station(file: Path, is_events: bool) -> ReadLog:
     if events.is_file():
         read.happened += read_ds_events(events).happened
     return read
+
+
+def _newest_in(directory: Path) -> str:
+    """Return which logs a directory has, the newest first."""
+    files = [file for file in directory.iterdir() if file.suffix.lower() in _SUFFIXES]
+    files.sort(key=lambda file: file.stat().st_mtime, reverse=True)
+    names = ", ".join(file.name for file in files[:_MOST_NAMED])
+    return f"Its newest logs: {names}" if names else "There are no logs in it."
 
 
 def _problem_of(run: PastRun) -> str:
