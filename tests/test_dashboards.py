@@ -13,6 +13,7 @@ from pyfrc_core.config.dashboards import DASHBOARDS, Kind, Widget, load_dashboar
 from pyfrc_core.errors import SettingsError
 from pyfrc_core.sim.ui.web.dashboards import Dashboards
 from pyfrc_core.sim.ui.web.messages import CommandError, Message
+from pyfrc_core.sim.ui.web.single_file import PAGE
 
 WIDGET = {"kind": "number", "topic": "/SmartDashboard/kP", "x": 0, "y": 0, "w": 2, "h": 1}
 GAUGE = {"kind": "gauge", "topic": "/SmartDashboard/speed", "x": 2, "y": 0, "w": 2, "h": 2, "min": -12.0, "max": 12.0}
@@ -95,6 +96,11 @@ def test_the_example_of_the_documentation(tmp_path: Path) -> None:
     } == set(get_args(Kind))
     rows = re.findall("^[|] (`.*?`) [|]", text[text.index("| key of a widget") :], re.MULTILINE)
     assert {key for row in rows for key in re.findall("`([a-z]+)`", row)} == set(Widget.model_fields)
+
+
+def test_the_page_has_a_widget_of_each_kind() -> None:
+    text = (PAGE / "js" / "dashboard" / "kinds.js").read_text("utf-8")
+    assert set(re.findall("^  ([a-z]+): [{] title: ", text, re.MULTILINE)) == set(get_args(Kind))
 
 
 def test_a_page_gets_them_when_they_have_changed(root: Path) -> None:
