@@ -41,6 +41,26 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
 @click.option("--seconds", type=click.FloatRange(min=0.02), metavar="S", help="End, or pause, at this robot time.")
 @click.option("--script", type=_FILE, metavar="FILE", help="Replay the inputs of this script.")
 @click.option(
+    "--log",
+    type=_FILE,
+    metavar="FILE",
+    help="Drive today's code with the inputs of this log (.wpilog, or a recording), and show where the two differ.",
+)
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(0, 100),
+    metavar="PERCENT",
+    help="With --log: how far values may differ, in percent of their range. Default: 0 for pyfrc's own recordings, if "
+    "all devices repeat exactly; otherwise 5.",
+)
+@click.option(
+    "--input",
+    "inputs",
+    multiple=True,
+    metavar="NAME",
+    help="With --log: a person has set this value on a dashboard, such as SmartDashboard/kP; may be repeated.",
+)
+@click.option(
     "--from",
     "start_at",
     type=click.FloatRange(min=0),
@@ -98,7 +118,7 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
 def command(directory: Path | None, main: Path | None, robot_class: str | None, **request: Any) -> None:
     """Drive the robot on the desk: simulate it, with its physics, on a page in your browser.
 
-    Where no browser can be opened, pyfrc prints the page's address. With --ui none, --mode, --seconds or --script say
+    Where no browser can be opened, pyfrc prints the page's address. With --ui none, --mode, --seconds, --script or --log say
     what to simulate, as fast as it goes; with none of them the robot runs in real time, for dashboards, until Ctrl-C.
 
     \b

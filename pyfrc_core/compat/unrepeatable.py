@@ -88,6 +88,16 @@ def is_real_time(name: str) -> bool:
     return any(_DEVICES[module].search(name) for module in real_time_libraries())
 
 
+def in_real_time(name: str) -> bool:
+    """Return whether a path into `hal_data` is of a device that is always simulated in real time."""
+    return any(_DEVICES[module].search(name) for module in _REAL_TIME)
+
+
+def may_not_repeat(name: str) -> bool:
+    """Return whether a path into `hal_data` is of a device that does not repeat in some runs."""
+    return any(pattern.search(name) for pattern in _DEVICES.values())
+
+
 def unrepeatable_devices(names: Iterable[str]) -> tuple[str, ...]:
     """Return what does not repeat: devices such as ``phoenix6 Talon FX 11``, mechanisms such as ``wpilib ElevatorSim``.
 

@@ -28,9 +28,9 @@ NO_LIMIT_US = 1 << 62
 KICKOFF = int(CURRENT.kickoff.timestamp())
 
 # Actions that are due at the same microsecond are called in this order: scripts write inputs, the driver station's
-# packet is delivered, threads and notifiers wake up, the robot's loop runs, rules are checked, physics runs, observers
-# look at the result.
-INPUT, PACKET, WAKE_UP, ROBOT_LOOP, CHECK, PHYSICS, OBSERVE = range(7)
+# packet is delivered, threads and notifiers wake up, the robot's loop runs, rules are checked, physics runs, what a log
+# measured replaces what physics has written, observers look at the result.
+INPUT, PACKET, WAKE_UP, ROBOT_LOOP, CHECK, PHYSICS, MEASURED, OBSERVE = range(8)
 
 Action = Callable[[], None]
 

@@ -18,6 +18,8 @@ from ..text_files import check_writable
 from .engine.options import NT4_PORT, SimOptions
 from .engine.simulation import Simulation
 from .engine.watch import watching
+from .log_report import LogReport
+from .log_run import log_run
 from .page_file import PageFile, place_in
 from .ui.choose import FRONT_ENDS, SimRequest, default_name, make_front_end
 from .ui.headless import Headless
@@ -39,7 +41,11 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     if not kind.is_served and request.is_for_page:
         raise UsageError("--share, --port and --allow-host are for the simulator in a browser", remedy="Add --ui web.")
     front_end = make_front_end(ui, request, say)
-    ends_by_itself = any(each is not None for each in (request.mode, request.seconds, request.script))
+    if request.log is None and (request.tolerance is not None or request.inputs):
+        raise UsageError("--tolerance and --input are for a log", remedy="Add --log FILE.")
+    if request.log is not None and any((request.mode, request.script, request.opmodes)):
+        raise UsageError("--log has the modes and all inputs", remedy="Leave out --mode, --opmode and --script.")
+    ends_by_itself = any(each is not None for each in (request.mode, request.seconds, request.script, request.log))
     unattended = not kind.interactive and ends_by_itself
     port = request.nt_port if request.nt_port is not None else 0 if unattended else NT4_PORT
     if not kind.is_served and request.share is not None and not port:
@@ -47,22 +53,24 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
             "without a page, --share drive shares NetworkTables, and these are not served here",
             remedy=f"Add --nt-port {NT4_PORT}.",
         )
+    share = None if request.tolerance is None else request.tolerance / 100
+    log = None if request.log is None else log_run(project, request.log, share, request.inputs)
     options = SimOptions(
         speed=request.speed if request.speed is not None else 0.0 if unattended else 1.0,
-        paused=request.paused or not kind.interactive,
-        script=None if request.script is None else load_inputs(request.script),
-        start_at=request.start_at,
+        paused=request.paused or not kind.interactive or _is_shown_whole(request),
+        script=log.script if log is not None else None if request.script is None else load_inputs(request.script),
+        start_at=log.end if log is not None and kind.interactive and _is_shown_whole(request) else request.start_at,
         run_until=request.seconds,
-        recording=kind.interactive or request.watch or not (request.record is None and request.page is None),
+        recording=kind.interactive or request.watch or any((request.record, request.page, request.log)),
         nt_port=port or None,
         nt_shared=request.share == "drive",
         wpilog=request.wpilog,
         extensions=(*request.extensions, *kind.extensions),
         start_position=request.start_position,
         opmodes=request.opmodes,
-        network_values=kind.shows_network or request.page is not None,
+        network_values=kind.shows_network or request.page is not None or log is not None,
     )
-    simulation = Simulation(project, options)
+    simulation = Simulation(project, options, None if log is None else log.run)
     page = None if request.page is None else PageFile(request.page, _what(project, request))
     files = OutputFiles(request.record, request.wpilog, request.picture, page)
     with ExitStack() as closing:
@@ -73,6 +81,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
             closing.enter_context(watching(simulation, front_end.saved))
         if page is not None:
             page.follow(simulation, front_end if kind.shows_network else None)
+        report = LogReport(simulation, log.run) if log is not None and not kind.shows_network else None
         try:
             code = front_end.run(simulation)
         except KeyboardInterrupt:  # in the terminal: another way to close a window
@@ -82,9 +91,16 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
             simulation.close()
             written = files.write(simulation)
     with suppress(OSError):  # the terminal has gone
+        for line in () if report is None else report.lines():
+            say(f"{line}\n")
         for file in () if request.quiet else written:
             say(f"wrote {file}\n")
     return code
+
+
+def _is_shown_whole(request: SimRequest) -> bool:
+    """Return whether a log is to be replayed to its end at once, so that all of it can be looked at."""
+    return request.log is not None and request.seconds is None and request.speed is None and not request.start_at
 
 
 def _front_end_name(request: SimRequest, say: Callable[[str], object]) -> str:
@@ -108,6 +124,8 @@ def _what(project: Project, request: SimRequest) -> str:
     parts += [f"--opmode {quoted(name)}" for name in request.opmodes]
     if request.script is not None:
         parts.append(f"--script {place_in(project, request.script)}")
+    if request.log is not None:
+        parts.append(f"--log {place_in(project, request.log)}")
     if request.start_position is not None:
         parts.append(f"--start {request.start_position}")
     return " ".join(parts)

@@ -1,15 +1,18 @@
 """Input scripts from WPILib data logs: `wpilib.DriverStation.startDataLog`, or ``pyfrc sim --wpilog``.
 
 A log has what the driver station sent, and the values of NetworkTables. It does not say who has published a value, so
-only values that dashboards and cameras publish are inputs: the choices of choosers, and the tables of Limelight and
-PhotonVision. The seconds left are not logged. In a log with autonomous before teleoperated, they are those until the
-period ends.
+only values that dashboards and cameras publish are inputs: the choices of choosers, preferences, the tables of Limelight
+and PhotonVision, and what the user names. Only the simulator logs the seconds left. Of a robot, in a log with autonomous before teleoperated,
+they are those until the period ends.
+
+A robot is on for minutes before a match and after it: of its log, the script has the time from `_BEFORE_US` before it is
+first enabled until `_AFTER_US` after it was last disabled. What was logged earlier is there when the script begins.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
@@ -35,7 +38,10 @@ _NAMED_TYPES = {
 
 _FMS = "NT:/FMSInfo/"
 _HAL = "/hal_data/"
-_FROM_OUTSIDE = re.compile(r"NT:(/.+/selected|/limelight[^/]*/.+|/photonvision/.+)", re.DOTALL)
+_FROM_OUTSIDE = re.compile(r"NT:(/.+/selected|/Preferences/[^.].*|/limelight[^/]*/.+|/photonvision/.+)", re.DOTALL)
+
+#: The part of a robot's log before and after it is enabled that is replayed, in microseconds.
+_BEFORE_US, _AFTER_US = 5_000_000, 3_000_000
 
 #: The bits of ``FMSControlData``.
 _FMS_ATTACHED, _DS_ATTACHED = 16, 32
@@ -51,9 +57,10 @@ _CONTROLS: dict[str, tuple[int, Any]] = {
 }
 
 
-def script_from_log(file: Path) -> InputScript:
+def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
     """Return the inputs in a data log as a script.
 
+    :param given: names of entries of NetworkTables that a person has set, such as ``/SmartDashboard/kP``
     :raises ScriptError: when the file is not a data log, or has no data of a driver station
     """
     try:
@@ -67,18 +74,38 @@ def script_from_log(file: Path) -> InputScript:
             where=file.name,
             remedy=logs.HOW_TO_LOG_STATION,
         )
-    # A robot's clock starts before its program; that of a simulation starts with it.
-    first_us = sent[0].at_us
-    base_us = 0 if first_us <= PACKET_US else first_us // PACKET_US * PACKET_US
-    state, steps = _State(), []
-    for at_us, together in groupby(records, key=lambda record: _packet(record.at_us - base_us)):
+    begin_us, end_us = _part(sent, records[-1].at_us)
+    first_us = PACKET_US if begin_us else 0  # what was logged before is there with the first packet
+    state, steps = _State(frozenset(f"NT:{name}" for name in given)), []
+    for at_us, together in groupby(records, key=lambda record: max(first_us, _packet(record.at_us - begin_us))):
         for record in together:
             state.values[record.name] = record.value
             state.types[record.name] = record.type_name
+        if at_us > _packet(end_us - begin_us):
+            break
         if at_us > 0 and (writes := dict(state.changes())):  # before the first packet, no driver station is connected
             steps.append(Step(at_us, writes))
-    last_us = _packet(records[-1].at_us - base_us)
+    last_us = _packet(end_us - begin_us)
     return InputScript(tuple(_with_match_time(steps, last_us)), last_us + PACKET_US, file=file.name)
+
+
+def _part(sent: list[logs.Record], last_us: int) -> tuple[int, int]:
+    """Return the beginning and the end of what is replayed, by the log's clock.
+
+    A robot's clock starts before its program; that of a simulation starts with it, and its log is replayed whole.
+
+    :param sent: what the driver station has sent
+    :param last_us: when the last value was logged
+    """
+    first_us = sent[0].at_us
+    if first_us <= PACKET_US:
+        return 0, last_us
+    enabled = [(record.at_us, record.value) for record in sent if record.name == "DS:enabled"]
+    first_on = next((at_us for at_us, is_on in enabled if is_on), first_us)
+    last_off = last_us if enabled[-1][1] else enabled[-1][0]
+    is_used = any(is_on for _, is_on in enabled)
+    begin_us = max(first_us, first_on - _BEFORE_US) // PACKET_US * PACKET_US
+    return begin_us, min(last_us, last_off + _AFTER_US) if is_used else last_us
 
 
 def _records(file: Path) -> Iterator[logs.Record]:
@@ -97,8 +124,12 @@ def _packet(at_us: int) -> int:
 
 @dataclass
 class _State:
-    """The latest values of a log, and what was written of them."""
+    """The latest values of a log, and what was written of them.
 
+    :param given: the names of further entries that are inputs
+    """
+
+    given: frozenset[str] = frozenset()
     values: dict[str, Any] = field(default_factory=dict)
     types: dict[str, str] = field(default_factory=dict)
     _written: dict[str, Any] = field(default_factory=dict)
@@ -113,7 +144,7 @@ class _State:
             for stick in range(station.JOYSTICKS):
                 yield from self._joystick(stick)
         for name, value in self.values.items():
-            if _FROM_OUTSIDE.fullmatch(name):
+            if _FROM_OUTSIDE.fullmatch(name) or name in self.given:
                 target = entry_target(name.removeprefix("NT:"), _NAMED_TYPES.get(self.types[name], ""))
                 yield from self._changed(target, value, None)
 
@@ -144,6 +175,8 @@ class _State:
         yield "event.match_type", _named(_MATCH_TYPES, match_type), "none"
         message = fms.get("GameSpecificMessage", ours.get("event.game_specific_message", ""))
         yield "event.game_specific_message", message, ""
+        if (left := ours.get(REMAINING)) is not None:
+            yield REMAINING, left, 0.0
         yield OPMODE, self.values.get(f"{_HAL}control.opmode", ""), ""  # of the mode that follows
         yield MODE, self._mode(), "disabled"
 
@@ -174,6 +207,9 @@ def _named(names: tuple[str, ...], number: int) -> str:
 
 
 def _with_match_time(steps: list[Step], last_us: int) -> Iterator[Step]:
+    if any(REMAINING in step.writes for step in steps):  # logged
+        yield from steps
+        return
     modes = [(step.at_us, str(step.writes[MODE])) for step in steps if MODE in step.writes]
     enabled = [mode for _, mode in modes if not mode.startswith("disabled")]
     if "autonomous" not in enabled or "teleop" not in enabled[enabled.index("autonomous") :]:

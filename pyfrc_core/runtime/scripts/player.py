@@ -7,10 +7,14 @@ from contextlib import contextmanager
 
 from ...errors import PyfrcError
 from ...hal.kinds import UnknownKey
-from ..clock import INPUT
+from ..clock import INPUT, MEASURED
 from ..robot import RobotRun
 from .script import InputScript, ScriptError, Step
+from .sensors import HOLD
 from .targets import MATCH_TIME, Targets
+
+#: The shortest period of physics, in microseconds.
+_MEASURED_US = 10_000
 
 
 class Player:
@@ -52,6 +56,8 @@ class Player:
         run.clock.limit_us = max(run.clock.limit_us, script.end_us)
         if any(MATCH_TIME in step.writes for step in script.steps):
             run.clock.before_packet.append(self._on_packet)
+        if any(target.startswith(HOLD) for step in script.steps for target in step.writes):
+            run.clock.every(_MEASURED_US, MEASURED, self._targets.held.apply)
         if script.start_us > run.clock.now_us:
             run.run_until(script.start_us)
         self._write_until(script.start_us)

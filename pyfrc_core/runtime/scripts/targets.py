@@ -7,6 +7,7 @@
 - ``restart``: true: the robot program ends as without power, and starts again; more in `boots`
 - ``nt:/SmartDashboard/x``: an entry of NetworkTables; a SendableChooser's choice is its entry ``selected``;
   more in `network_entries`
+- ``hold:encoder[0].count``: what a sensor measures, whatever physics writes; null ends it; more in `sensors`
 - anything else: a path in `hal_data`, such as ``joysticks[0].axes[1]`` or ``event.game_specific_message``
 """
 
@@ -21,6 +22,7 @@ from ...hal import HalData, LiveDict, format_path, parse_path
 from ...wpi import station
 from ..clock import to_us
 from .network_entries import NETWORK, NetworkEntries
+from .sensors import HOLD, Held
 
 MODE, MATCH_TIME, PACKET, RESTART = "mode", "match_time", "packet", "restart"
 #: The path of the name of the chosen opmode.
@@ -76,6 +78,8 @@ class Targets:
         self._hal_data = hal_data
         self._deliver = deliver
         self._entries = NetworkEntries()
+        #: What a log measured.
+        self.held = Held(hal_data)
         #: Where `hal_data` has what was written, of `_KEPT`: most writes of fuzz go to these.
         self._places: dict[str, tuple[Any, Any]] = {}
         self._countdown = Countdown()
@@ -107,6 +111,8 @@ class Targets:
             raise UsageError("only pyfrc replay and control.replay() can start the robot program again")
         elif target.startswith(NETWORK):
             self._entries.write(target, value)
+        elif target.startswith(HOLD):
+            self.held.write(target, value)
         elif (stick := PLUGGED.fullmatch(target)) is not None:
             station.plug_in(int(stick[1])) if value else station.unplug(int(stick[1]))
         else:
@@ -152,6 +158,6 @@ class Targets:
     def _is_path(target: str) -> bool:
         return (
             target not in (MODE, MATCH_TIME, PACKET, RESTART)
-            and not target.startswith(NETWORK)
+            and not target.startswith((NETWORK, HOLD))
             and not PLUGGED.fullmatch(target)
         )

@@ -53,13 +53,13 @@ def first_difference(recorded: Path, replayed: Path, run_us: int | None = None) 
         after = equal | new["set"] if new is not None and new["t"] == now else equal
         different = [path for path in before | after if before.get(path) != after.get(path)]
         if different:
-            path = min(different, key=_rank)
+            path = min(different, key=rank)
             return Difference(now, path, before.get(path), after.get(path))
         return Difference(now, "what there is", (old or {}).get("gone"), (new or {}).get("gone"))
     return None
 
 
-def _rank(path: str) -> tuple[bool, bool, str]:
+def rank(path: str) -> tuple[bool, bool, str]:
     """Return what puts the outputs that robot code sets before the sensors that follow from them."""
     return path.endswith(".raw_value"), _OUTPUT.match(path) is None, path
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from ...runtime.scripts.joysticks import releases
 from ...runtime.scripts.script import InputScript, Step
+from ...runtime.scripts.sensors import released
 from ...season import CURRENT
 from .commands import ChooseMode, ChooseOpmode, Command, Write
 from .field import robot_at, start_named
@@ -39,6 +40,16 @@ def first_script(options: SimOptions, robot: str, field: Field) -> InputScript:
     return replace(script, steps=(Step(0, robot_at(field, start)), *script.steps))
 
 
+def first_recording(options: SimOptions, robot: str, field: Field, has_log: bool) -> Recording:
+    """Return a recording that begins with these inputs.
+
+    :param has_log: whether what the robot does on the way to `start_at` is compared with a log, and so recorded
+    """
+    recording = Recording(first_script(options, robot, field))
+    recording.is_open = has_log
+    return recording
+
+
 def releases_after(recording: Recording) -> tuple[Command, ...]:
     """Return the commands that release the joysticks at a recording's end: they are not held in another run."""
     held = releases({**_values_after(recording.past.steps), **recording.station.sticks})
@@ -47,7 +58,8 @@ def releases_after(recording: Recording) -> tuple[Command, ...]:
 
 def ending_released(script: InputScript) -> InputScript:
     """Return a script after whose end the joysticks are released."""
-    held = releases(_values_after(script.steps))
+    values = _values_after(script.steps)
+    held = releases(values) | released(values)
     return replace(script, steps=(*script.steps, Step(script.end_us + 1, held))) if held else script
 
 

@@ -27,6 +27,22 @@ class Happened(NamedTuple):
 
 
 @dataclass(frozen=True)
+class Comparison:
+    """How values of two runs are compared. By default they are equal or not, as those of former runs.
+
+    :param is_log: whether the other run is a log: only values that both have are compared, and not those from outside
+    :param share: values are equal if they differ by at most this share of their range
+    :param late: how late a value may come, in seconds
+    :param given: the values from outside, besides those of the driver station
+    """
+
+    is_log: bool = False
+    share: float = 0.0
+    late: float = 0.0
+    given: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
 class PastRun:
     """Its times are in seconds, from 0.
 
@@ -34,6 +50,7 @@ class PastRun:
     :param end: the end of its time
     :param happened: what it printed, and what went wrong, in the order of time
     :param offset: what is added to its times where it is a branch of another run
+    :param compared: how it is compared with that one; None: it is not
     """
 
     name: str
@@ -41,3 +58,4 @@ class PastRun:
     histories: Mapping[Stream, ValueHistory]
     happened: tuple[Happened, ...] = ()
     offset: float = 0.0
+    compared: Comparison | None = None

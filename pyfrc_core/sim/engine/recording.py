@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ...runtime.robot_time import to_us
 from ...runtime.scripts.script import InputScript, Step, trace_beside
+from ...runtime.scripts.sensors import released
 from ...runtime.scripts.trace import FORMAT
 from ...runtime.scripts.trace_lines import hashed_part, line_time
 from ...text_files import write_whole
@@ -94,7 +95,11 @@ class Recording:
 
     def until(self, time_us: int) -> Recording:
         """Return a recording of the part until a moment, which can grow from there."""
-        part = Recording(self._script_until(time_us), self._known)
+        past = self._script_until(time_us)
+        values = {target: value for step in past.steps for target, value in step.writes.items()}
+        if free := released(values):  # whoever goes on from there has no log
+            past = replace(past, steps=(*past.steps, Step(min(time_us + 1, past.end_us), free)))
+        part = Recording(past, self._known)
         part.length_us = time_us
         part.is_open = self.is_open
         if not self.is_open:

@@ -20,10 +20,11 @@ from .changes import ChangeCursor, ChangeStreams, ReportSignal
 from .commands import Command, PendingCommands, TimeState
 from .controls import Controls, Driver
 from .field import field_of, robot_at, start_named
-from .first_script import choices_of, first_script, releases_after
+from .first_script import choices_of, first_recording, releases_after
 from .messages import Failed, Job, Message, Ready, Replayed, Update
 from .options import SimOptions
 from .output_log import OutputCursor, OutputLog
+from .past_run import PastRun
 from .processes import RobotProcesses
 from .recording import Recording
 from .scene import Pose, Tag
@@ -42,11 +43,12 @@ class Simulation(Controls, SimulationSource):
     explains itself in `Status.note`. Only `close` and `wait_for` block. `Snapshot` and `Status` say what there is to
     see. Several front ends can show one simulation: cursors give each of them all output and all changes.
 
+    :param log: a run that is shown beside this one: a log that has the script's inputs
     :raises SettingsError: when ``sim/config.json`` is invalid
     :raises UsageError: when an option is impossible
     """
 
-    def __init__(self, project: Project, options: SimOptions | None = None) -> None:
+    def __init__(self, project: Project, options: SimOptions | None = None, log: PastRun | None = None) -> None:
         self.options = options or SimOptions()
         self.options.check()
         self.project = project
@@ -55,7 +57,8 @@ class Simulation(Controls, SimulationSource):
         self.reports = ReportSignal()
         self._status = Status(speed=self.options.speed)
         self._snapshot: Snapshot | None = None
-        self._recording = Recording(self._first_script())
+        self.branches = () if log is None else (log,)
+        self._recording = self._first_recording()
         self._older: list[Recording] = []
         self._reported_at = monotonic()
         self._launch = 0
@@ -193,9 +196,9 @@ class Simulation(Controls, SimulationSource):
         """
         with self._sending, self.reports:
             to = to_us(self.options.start_at)
-            first = self._first_script()
-            choices = choices_of(self._recording, self._pending.commands, first, self._snapshot)
-            self._keep_and_begin(Recording(first), to, self._time_wanted.continued_at(to), choices)
+            first = self._first_recording()
+            choices = choices_of(self._recording, self._pending.commands, first.past, self._snapshot)
+            self._keep_and_begin(first, to, self._time_wanted.continued_at(to), choices)
 
     def reload(self) -> None:
         """Load the robot's code again, replay the same inputs until this moment, and go on from there."""
@@ -393,5 +396,5 @@ class Simulation(Controls, SimulationSource):
         if not self.options.recording:
             raise UsageError("this simulation is not recorded")
 
-    def _first_script(self) -> InputScript:
-        return first_script(self.options, self.project.main_file.name, self.field)
+    def _first_recording(self) -> Recording:
+        return first_recording(self.options, self.project.main_file.name, self.field, bool(self.branches))

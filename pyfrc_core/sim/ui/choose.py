@@ -35,6 +35,9 @@ class SimRequest:
     :param mode: what a headless simulation puts the robot through
     :param opmodes: the names of opmodes to choose, each for its mode
     :param seconds: the end, in robot time; `start_at` likewise
+    :param log: the log whose inputs drive the robot, and that is shown beside it
+    :param tolerance: how far values of the log may differ, in percent of their range; None: see `log_run`
+    :param inputs: entries of NetworkTables that a person set while the log was made
     :param speed: robot seconds per second; None: real time, or as fast as possible when unattended
     :param nt_port: None: the usual port, or none when unattended; 0: none
     :param quiet: print only the robot's output and what is wrong
@@ -47,6 +50,9 @@ class SimRequest:
     mode: HeadlessMode | None = None
     seconds: float | None = None
     script: Path | None = None
+    log: Path | None = None
+    tolerance: float | None = None
+    inputs: tuple[str, ...] = ()
     start_at: float = 0.0
     speed: float | None = None
     paused: bool = False

@@ -9,10 +9,11 @@ from typing import Any
 
 from ...engine.changes import Change, RunBegan
 from ...engine.messages import MODE, POSE, TYPE, VALUE
-from ...engine.past_run import PastRun, Stream
+from ...engine.past_run import Comparison, PastRun, Stream
 from ...engine.value_history import MISSING, ValueHistory, packed
 from ..models.wording import clock
-from .plots import MOST_POINTS, FirstDifference, picked, resolve, same, series
+from .differences import FirstDifference, sensors_by_source
+from .plots import MOST_POINTS, picked, resolve, same, series
 
 #: About how much memory the values of all runs may take together.
 MOST_BYTES = 256 << 20
@@ -34,6 +35,7 @@ class Branch:
     :param begin: where the present run left it, in seconds of the present run; `end` is where it ended
     :param histories: its values
     :param offset: what is added to its own times
+    :param compared: how it is compared with the present run; None: it is not
     """
 
     number: int
@@ -42,6 +44,7 @@ class Branch:
     end: float
     histories: Mapping[Stream, ValueHistory] = field(default_factory=dict)
     offset: float = 0.0
+    compared: Comparison | None = Comparison()
 
     @property
     def is_former(self) -> bool:
@@ -51,6 +54,8 @@ class Branch:
     def plain(self) -> dict[str, object]:
         """Return it for a page."""
         found: dict[str, object] = {"id": self.number, "name": self.name, "from": self.begin, "to": self.end}
+        if self.compared is not None:
+            found["compared"] = True
         return found if self.is_former else found | {"offset": self.offset}
 
     def packed(self, clean: Callable[[str], str]) -> dict[str, Any]:
@@ -152,7 +157,8 @@ class Runs:
         with self._lock:
             number = max([_FIRST_OTHER - 1, *(branch.number for branch in self.branches)]) + 1
             offset = run.offset
-            branch = Branch(number, run.name, max(offset, 0.0), run.end + offset, run.histories, offset)
+            end = run.end + offset
+            branch = Branch(number, run.name, max(offset, 0.0), end, run.histories, offset, run.compared)
             self.branches = (*self.branches, branch)
         return number
 
@@ -219,26 +225,38 @@ class Runs:
         return found
 
     def first_difference(self, number: int, paths: Iterable[str] | None) -> FirstDifference | None:
-        """Return where a former run and the present one first differ; None if there is no such former run.
+        """Return where a branch and the present run first differ; None if there is no such branch that is compared.
 
         :param paths: the values to compare; None: all
         """
         with self._lock:
             branch = self._branch(number)
-            if branch is None or not branch.is_former:
+            if branch is None or branch.compared is None:
                 return None
             end = max(history.end for history in self._histories.values())
             compared: list[tuple[ValueHistory, ValueHistory, str]] = []
-            found = FirstDifference(branch.begin, min(end, branch.end) + _ROUNDING)
+            found = FirstDifference(branch.begin, min(end, branch.end) + _ROUNDING, branch.compared, branch.offset)
             for stream, history in self._histories.items():
                 former = branch.histories[stream]
-                known = history.now.keys() | former.now.keys() if paths is None else paths
+                known = self._known(history, former, branch.compared) if paths is None else paths
                 chosen = sorted(path for path in known if stream_of(path) == stream and not path.startswith(TYPE))
                 compared += ((history, former, path) for path in chosen)
         for history, former, path in compared:
             with self._lock:  # for each value: a collector must not wait for all of them
                 found.compare(history, former, path)
         return found
+
+    def sensors(self, number: int) -> dict[str, list[str]]:
+        """Return the sensors of the present run, by where their values come from: a log that drives it, or not."""
+        with self._lock:
+            branch, hal = self._branch(number), self._histories["hal"]
+            given = frozenset[str]() if branch is None or branch.compared is None else branch.compared.given
+            return sensors_by_source(hal, given)
+
+    @staticmethod
+    def _known(history: ValueHistory, former: ValueHistory, by: Comparison) -> Iterable[str]:
+        """Return the values to compare: of a log, those that both have."""
+        return history.now.keys() & former.now.keys() if by.is_log else history.now.keys() | former.now.keys()
 
     def samples(self, paths: Iterable[str], after: Position) -> tuple[dict[str, list[Any]], Position]:
         """Return every change of some values since a position, as times and values in turn, and the next position."""

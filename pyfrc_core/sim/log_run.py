@@ -1,0 +1,150 @@
+"""`pyfrc sim --log`: the inputs of a log drive today's code, and the log is shown beside it.
+
+What a log has is given to the robot: the driver station, dashboards' choices, and each sensor whose value the log has by
+its path in `hal_data`, as pyfrc's own logs do (`scripts.sensors`). Physics moves the rest. Both have the moment at which
+the robot is first enabled in common; the times of pyfrc's own recordings are those of the simulation.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ..compat.unrepeatable import may_not_repeat
+from ..errors import UsageError
+from ..project import Project
+from ..runtime.robot_time import PACKET_US
+from ..runtime.scripts.inputs_file import DATA_LOG, load_inputs
+from ..runtime.scripts.script import InputScript, Step, trace_beside
+from ..runtime.scripts.sensors import HOLD, INFINITE, is_sensor
+from ..wording import from_here
+from .engine.field import field_of, robot_at, start_named
+from .engine.messages import POSE, VALUE
+from .engine.past_run import Comparison, PastRun
+from .engine.scene import Pose
+from .engine.value_history import MISSING, ValueHistory
+from .logs import open_log
+from .logs.align import moment_of
+
+#: The default share of a value's range that does not count as a difference, of runs that do not repeat exactly.
+SHARE = 0.05
+#: How late a value of such a run may come, in seconds: three turns of the loop.
+_LATE = 0.06
+_TRACE = ".trace.jsonl"
+#: How long after it is enabled robot code has set its place, in seconds; and what is the same place, in feet.
+_PLACED, _SAME_PLACE = 0.1, 0.5
+
+
+@dataclass(frozen=True)
+class LogRun:
+    """A log, ready to drive a simulation.
+
+    :param script: the inputs that it has
+    :param run: what it shows, as a branch
+    """
+
+    script: InputScript
+    run: PastRun
+
+    @property
+    def end(self) -> float:
+        """The moment of the last packet, in seconds of robot time."""
+        return (self.script.end_us - 1) // PACKET_US * PACKET_US / 1_000_000
+
+
+def log_run(project: Project, file: Path, share: float | None = None, given: tuple[str, ...] = ()) -> LogRun:
+    """Open a log.
+
+    :param share: values of log and simulation are equal if they differ by at most this share of their range; None: 0 if
+        both repeat exactly, else `SHARE`
+    :param given: further entries of NetworkTables that a person has set, by name
+    :raises PyfrcError: when it is no log, or has no inputs
+    """
+    file = _script_of(file)
+    given = tuple(f"/{name.removeprefix(VALUE).removeprefix('/')}" for name in given)
+    script = _inputs(file, given)
+    run = open_log(file, field_of(project).height).run
+    hal = run.histories["hal"]
+    offset = _offset(script, run)
+    is_own = any(path.startswith("control.") for path in hal.paths())
+    sensors = frozenset(path for path in hal.paths() if _is_measured(hal, path)) if is_own else frozenset()
+    script = _with_sensors(_placed(project, script, run, is_own), hal, sensors, offset)
+    repeats = is_own and not any(map(may_not_repeat, hal.paths()))
+    if share is None:
+        share = 0.0 if repeats else SHARE
+    written = {target.removeprefix(HOLD) for step in script.steps for target in step.writes}
+    compared = Comparison(True, share, 0.0 if repeats and not share else _LATE, frozenset(written | sensors))
+    return LogRun(script, replace(run, offset=offset, compared=compared))
+
+
+def _script_of(file: Path) -> Path:
+    """Return the file with the inputs: of a trace, that is the script beside it."""
+    if not file.name.endswith(_TRACE):
+        return file
+    script = file.with_name(f"{file.name.removesuffix(_TRACE)}.jsonl")
+    if script.is_file():
+        return script
+    raise UsageError(
+        "a trace has no inputs, and its input script is not beside it",
+        where=from_here(file),
+        remedy=f"It was recorded with {script.name}: put both into one directory.",
+    )
+
+
+def _inputs(file: Path, given: tuple[str, ...]) -> InputScript:
+    if file.suffix.lower() in (".dslog", ".dsevents"):
+        raise UsageError(
+            "the driver station's log does not have the joysticks",
+            where=from_here(file),
+            remedy="Take the data log of the robot of the same match (.wpilog).",
+        )
+    script = load_inputs(file, given)
+    if file.suffix.lower() != DATA_LOG and not trace_beside(file).is_file():
+        raise UsageError(
+            "this input script has no trace beside it, so what the robot did is not known",
+            where=from_here(file),
+            remedy=f"pyfrc sim --record writes both. To run the robot with its inputs: pyfrc replay {from_here(file)}",
+        )
+    return script
+
+
+def _offset(script: InputScript, run: PastRun) -> float:
+    """Return what is added to the log's times: the robot is enabled for the first time at the same moment."""
+    enabled = (step.at_us for step in script.steps if not str(step.writes.get("mode", "disabled")).startswith("disabled"))
+    at_us, logged = next(enabled, None), moment_of(run.histories["network"], "enabled")
+    return 0.0 if at_us is None or logged is None else round(at_us / 1_000_000 - logged, 6)
+
+
+def _placed(project: Project, script: InputScript, run: PastRun, is_own: bool) -> InputScript:
+    """Return the script with the robot's place in the log, as soon as it is enabled, if that is not where it starts."""
+    network = run.histories["network"]
+    moment = PACKET_US / 1_000_000 if is_own else (moment_of(network, "enabled") or 0.0) + _PLACED
+    place = network.value_at(POSE, moment)
+    field = field_of(project)
+    start = start_named(field, None)
+    if place is MISSING or math.hypot(place[0] - start.x, place[1] - start.y) < _SAME_PLACE:
+        return script
+    return replace(script, steps=(Step(0, robot_at(field, Pose(*place))), *script.steps))
+
+
+def _is_measured(hal: ValueHistory, path: str) -> bool:
+    """Return whether a path is of a sensor; a digital channel can be an output, too."""
+    if not is_sensor(path):
+        return False
+    return not path.startswith("dio[") or bool(hal.now.get(path.replace(".value", ".is_input"), True))
+
+
+def _with_sensors(script: InputScript, hal: ValueHistory, sensors: frozenset[str], offset: float) -> InputScript:
+    """Return the script with what the log's sensors have measured."""
+    writes: defaultdict[int, dict[str, Any]] = defaultdict(dict)
+    for step in script.steps:
+        writes[step.at_us] |= step.writes
+    for path in sorted(sensors):
+        for time, value in zip(*hal.changes(path), strict=True):
+            at_us = round((time + offset) * 1_000_000)
+            if value is not MISSING and not isinstance(value, (tuple, str)) and 0 <= at_us < script.end_us:
+                writes[at_us // PACKET_US * PACKET_US][HOLD + path] = INFINITE if value == math.inf else value
+    return replace(script, steps=tuple(Step(at_us, writes[at_us]) for at_us in sorted(writes)))

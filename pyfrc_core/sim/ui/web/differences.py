@@ -1,0 +1,196 @@
+"""Where two runs first differ.
+
+Former runs have their times in common with the present one, so they differ where their values do. A log has the times of
+another clock, its robot's loop is some milliseconds late now and then, and its sensors measure noise. There, a value
+differs if one of the runs does not come close to it in the `Comparison.late` seconds before and after that moment.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from ....compat.unrepeatable import in_real_time
+from ....runtime.scripts.sensors import is_sensor
+from ....runtime.scripts.trace_difference import rank
+from ...engine.messages import MODE, POSE, TYPE, VALUE
+from ...engine.past_run import Comparison
+from ...engine.value_history import MISSING, ValueHistory
+from .plots import picked, resolve
+
+#: The most paths that are named.
+_MOST_NAMED = 20
+#: Times that are equal but for rounding, and numbers that are equal in any case.
+_ROUNDING, _SMALLEST = 1e-6, 1e-9
+#: Values that both runs have from outside, and those that robot code does not set.
+_GIVEN = re.compile(
+    rf"joysticks\[\d\]\.(axes|buttons|povs)|control\.|event\.|alliance_station|time\.|{VALUE}/(FMSInfo|DS)/"
+    rf"|{re.escape(TYPE)}|{re.escape(MODE)}|{re.escape(POSE)}"
+)
+
+#: A value from a moment on.
+Held = tuple[float, Any]
+
+
+@dataclass
+class FirstDifference:
+    """The earliest difference that was found, and where.
+
+    :param begin: look after this moment, in seconds of robot time; `end` is the last one
+    :param by: how the values are compared
+    :param offset: what is added to the times of the other run
+    """
+
+    begin: float
+    end: float
+    by: Comparison = Comparison()
+    offset: float = 0.0
+    #: The first moments of all values that differ; in former runs only of the earliest.
+    found: dict[str, float] = field(default_factory=dict)
+    #: How many values were compared.
+    compared: int = 0
+
+    @property
+    def time(self) -> float | None:
+        """The earliest moment; None: there is no difference."""
+        return min(self.found.values(), default=None)
+
+    @property
+    def paths(self) -> list[str]:
+        """The values that differ then: first what robot code sets."""
+        return [path for path, time in self.sorted() if time == self.time][:_MOST_NAMED]
+
+    def sorted(self) -> list[tuple[str, float]]:
+        """Return all values that differ, the earliest first."""
+        return sorted(self.found.items(), key=lambda each: (each[1], not each[0].startswith(VALUE), rank(each[0])))
+
+    def compare(self, one: ValueHistory, other: ValueHistory, path: str) -> None:
+        """Look for a difference in this value."""
+        if self.by.is_log and (path in self.by.given or _is_from_outside(path)):
+            return
+        self.compared += 1
+        end = self.end if self.by.is_log or self.time is None else self.time
+        left = list(_changes(one, path, self.begin, end))
+        shifted = _changes(other, path, self.begin - self.offset, end - self.offset)
+        right = [(time + self.offset, value) for time, value in shifted]
+        time = self._difference(left, right, end)
+        if time is not None and (self.by.is_log or self.time is None or time <= self.time):
+            if not self.by.is_log and self.time is not None and time < self.time:
+                self.found.clear()  # later ones do not matter
+            self.found[path] = time
+
+    def _difference(self, left: list[Held], right: list[Held], end: float) -> float | None:
+        if left == right:  # as most are
+            return None
+        late = self.by.late
+        close = self._close(left, right)
+        moments = sorted({time for time, _ in (*left, *right)})
+        if late:  # a value that was there just before does not count for longer
+            moments = sorted({*moments, *(time + late + _ROUNDING for time in moments)})
+            moments = [time for time in moments if time <= end - late]
+        lefts, rights = [time for time, _ in left], [time for time, _ in right]
+        for time in moments:
+            here, there = _at(left, lefts, time), _at(right, rights, time)
+            if here is MISSING or there is MISSING:
+                if here is not there and not self.by.is_log:
+                    return time
+            elif not close(here, there) and not (
+                late
+                and _comes_close(here, _between(right, rights, time, late), close)
+                and _comes_close(there, _between(left, lefts, time, late), close)
+            ):
+                return time
+        return None
+
+    def _close(self, left: list[Held], right: list[Held]) -> _Close:
+        if not self.by.is_log:
+            return _Close(0.0)
+        whole = (value if isinstance(value, tuple) else (value,) for _, value in (*left, *right))
+        numbers = [each for value in whole for each in value if _is_number(each) and math.isfinite(each)]
+        if not numbers:
+            return _Close(0.0, is_log=True)
+        low, high = min(numbers), max(numbers)
+        rounding = max(abs(low), abs(high), 1.0) * _SMALLEST
+        return _Close(max(self.by.share * (high - low), rounding if self.by.share else 0.0), is_log=True)
+
+
+@dataclass(frozen=True)
+class _Close:
+    """Whether two values are close to each other."""
+
+    most: float
+    is_log: bool = False
+
+    def __call__(self, one: Any, other: Any) -> bool:
+        if one is MISSING or other is MISSING:
+            return one is other
+        if one == other or (one != one and other != other):  # NaN
+            return True
+        if not self.is_log:
+            return False
+        if _is_number(one) and _is_number(other):
+            return bool(abs(one - other) <= self.most)
+        if isinstance(one, tuple) and isinstance(other, tuple):
+            return len(one) == len(other) and all(map(self, one, other))
+        return isinstance(one, str) != isinstance(other, str)  # data logs have lists as texts
+
+
+def _is_from_outside(path: str) -> bool:
+    """Return whether a value is none that robot code sets; devices that never repeat count as such, too."""
+    return bool(_GIVEN.match(path)) or is_sensor(path) or in_real_time(path)
+
+
+def sensors_by_source(hal: ValueHistory, given: frozenset[str]) -> dict[str, list[str]]:
+    """Return the sensors of a run by where their values come from: ``log``, ``physics``, or ``nothing``.
+
+    :param hal: the values of `hal_data`
+    :param given: the values that a log has
+    """
+    found: dict[str, list[str]] = {"log": [], "physics": [], "nothing": []}
+    for path in sorted(hal.now):
+        if is_sensor(path) and hal.now.get(path.replace(".value", ".is_input"), True):
+            moves = len(hal.changes(path)[0]) > 1
+            found["log" if path in given else "physics" if moves else "nothing"].append(path)
+    return found
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _comes_close(value: Any, others: list[Any], close: _Close) -> bool:
+    """Return whether a value is close to one of others, or between them."""
+    if any(close(value, other) for other in others):
+        return True
+    if not _is_number(value) or not all(map(_is_number, others)):
+        return False
+    return min(others) <= value <= max(others)
+
+
+def _at(values: list[Held], times: list[float], time: float) -> Any:
+    after = bisect_right(times, time + _ROUNDING)
+    return values[after - 1][1] if after else MISSING
+
+
+def _between(values: list[Held], times: list[float], time: float, late: float) -> list[Any]:
+    """Return what a value is between `late` seconds before a moment and after it."""
+    first = max(bisect_right(times, time - late + _ROUNDING) - 1, 0)
+    found = (value for _, value in values[first : bisect_left(times, time + late + _ROUNDING)])
+    return [value for value in found if value is not MISSING]
+
+
+def _changes(history: ValueHistory, path: str, begin: float, end: float) -> Iterator[Held]:
+    """Yield the value at the beginning, and each later change of it."""
+    whole, index = resolve(history, path)
+    before = picked(history.value_at(whole, begin), index)
+    same = _Close(0.0)
+    yield begin, before
+    for time, each in zip(*history.changes(whole, begin, end), strict=True):
+        value = picked(each, index)
+        if not same(value, before):
+            before = value
+            yield time, value
