@@ -118,8 +118,9 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
 def command(directory: Path | None, main: Path | None, robot_class: str | None, **request: Any) -> None:
     """Drive the robot on the desk: simulate it, with its physics, on a page in your browser.
 
-    Where no browser can be opened, pyfrc prints the page's address. With --ui none, --mode, --seconds, --script or --log say
-    what to simulate, as fast as it goes; with none of them the robot runs in real time, for dashboards, until Ctrl-C.
+    Where no browser can be opened, pyfrc prints the page's address. With --ui none, --mode, --seconds, --script or
+    --log say what to simulate, as fast as it goes; with none of them the robot runs in real time, for dashboards, until
+    Ctrl-C.
 
     \b
     Exit codes: 0 all went well, 1 the robot's code failed, 2 wrong usage.

@@ -49,12 +49,12 @@ class LogReport:
         found = None if branch is None else runs.first_difference(branch.number, None)
         if branch is None or found is None:
             return
-        yield from self._differences(found)
+        yield from self._differences(found, branch.number)
         for kind, paths in runs.sensors(branch.number).items():
             if paths:
                 yield f"{_SOURCES[kind]}: {_listed(_devices(paths))}"
 
-    def _differences(self, found: FirstDifference) -> Iterator[str]:
+    def _differences(self, found: FirstDifference, branch: int) -> Iterator[str]:
         log, runs = self._log, self._collector.runs
         by = found.by
         how = f"within {by.share * 100:g} % of their range" if by.share else "exactly"
@@ -63,8 +63,8 @@ class LogReport:
             yield f"no difference: {counted(found.compared, 'value')} that {log.name} has, too, {how} the same"
             return
         (path, time), *others = differing
-        here, there = (runs.values_at(time, number).get(path) for number in (None, runs.branches[0].number))
-        yield f"differs first at {clock(time)}, in {name_of(path)}: {_short(there)} in {log.name}, {_short(here)} here"
+        here, there = (_short((runs.values_at(time, number) or {}).get(path)) for number in (None, branch))
+        yield f"differs first at {clock(time)}, in {name_of(path)}: {there} in {log.name}, {here} here"
         if others:
             yield "then in " + _listed([f"{name_of(path)} ({clock(time)})" for path, time in others])
 

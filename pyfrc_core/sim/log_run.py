@@ -1,8 +1,8 @@
 """`pyfrc sim --log`: the inputs of a log drive today's code, and the log is shown beside it.
 
-What a log has is given to the robot: the driver station, dashboards' choices, and each sensor whose value the log has by
-its path in `hal_data`, as pyfrc's own logs do (`scripts.sensors`). Physics moves the rest. Both have the moment at which
-the robot is first enabled in common; the times of pyfrc's own recordings are those of the simulation.
+What a log has is given to the robot: the driver station, dashboards' choices, and each sensor whose value the log has
+by its path in `hal_data`, as pyfrc's own logs do (`scripts.sensors`). Physics moves the rest. Both have the moment in
+common at which the robot is first enabled; the times of pyfrc's own recordings are those of the simulation.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..project import Project
 from ..runtime.robot_time import PACKET_US
 from ..runtime.scripts.inputs_file import DATA_LOG, load_inputs
 from ..runtime.scripts.script import InputScript, Step, trace_beside
-from ..runtime.scripts.sensors import HOLD, INFINITE, is_sensor
+from ..runtime.scripts.sensors import HOLD, INFINITE, is_input, is_sensor
 from ..wording import from_here
 from .engine.field import field_of, robot_at, start_named
 from .engine.messages import POSE, VALUE
@@ -70,13 +70,20 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
     hal = run.histories["hal"]
     offset = _offset(script, run)
     is_own = any(path.startswith("control.") for path in hal.paths())
-    sensors = frozenset(path for path in hal.paths() if _is_measured(hal, path)) if is_own else frozenset()
+    sensors = (
+        frozenset(path for path in hal.paths() if is_sensor(path) and is_input(path, hal.now))
+        if is_own
+        else frozenset()
+    )
     script = _with_sensors(_placed(project, script, run, is_own), hal, sensors, offset)
     repeats = is_own and not any(map(may_not_repeat, hal.paths()))
     if share is None:
         share = 0.0 if repeats else SHARE
     written = {target.removeprefix(HOLD) for step in script.steps for target in step.writes}
-    compared = Comparison(True, share, 0.0 if repeats and not share else _LATE, frozenset(written | sensors))
+    late = _LATE
+    if repeats and not share:  # a data log does not tell what was there before the loop and what came after it
+        late = PACKET_US / 1_000_000 if file.suffix.lower() == DATA_LOG else 0.0
+    compared = Comparison(True, share, late, frozenset(written | sensors))
     return LogRun(script, replace(run, offset=offset, compared=compared))
 
 
@@ -113,7 +120,9 @@ def _inputs(file: Path, given: tuple[str, ...]) -> InputScript:
 
 def _offset(script: InputScript, run: PastRun) -> float:
     """Return what is added to the log's times: the robot is enabled for the first time at the same moment."""
-    enabled = (step.at_us for step in script.steps if not str(step.writes.get("mode", "disabled")).startswith("disabled"))
+    enabled = (
+        step.at_us for step in script.steps if not str(step.writes.get("mode", "disabled")).startswith("disabled")
+    )
     at_us, logged = next(enabled, None), moment_of(run.histories["network"], "enabled")
     return 0.0 if at_us is None or logged is None else round(at_us / 1_000_000 - logged, 6)
 
@@ -128,13 +137,6 @@ def _placed(project: Project, script: InputScript, run: PastRun, is_own: bool) -
     if place is MISSING or math.hypot(place[0] - start.x, place[1] - start.y) < _SAME_PLACE:
         return script
     return replace(script, steps=(Step(0, robot_at(field, Pose(*place))), *script.steps))
-
-
-def _is_measured(hal: ValueHistory, path: str) -> bool:
-    """Return whether a path is of a sensor; a digital channel can be an output, too."""
-    if not is_sensor(path):
-        return False
-    return not path.startswith("dio[") or bool(hal.now.get(path.replace(".value", ".is_input"), True))
 
 
 def _with_sensors(script: InputScript, hal: ValueHistory, sensors: frozenset[str], offset: float) -> InputScript:

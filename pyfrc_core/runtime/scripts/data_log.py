@@ -1,12 +1,12 @@
 """Input scripts from WPILib data logs: `wpilib.DriverStation.startDataLog`, or ``pyfrc sim --wpilog``.
 
 A log has what the driver station sent, and the values of NetworkTables. It does not say who has published a value, so
-only values that dashboards and cameras publish are inputs: the choices of choosers, preferences, the tables of Limelight
-and PhotonVision, and what the user names. Only the simulator logs the seconds left. Of a robot, in a log with autonomous before teleoperated,
-they are those until the period ends.
+only values that dashboards and cameras publish are inputs: the choices of choosers, preferences, the tables of
+Limelight and PhotonVision, and what the user names. Robots do not log the seconds left: in their logs with autonomous
+before teleoperated, they are those until the period ends.
 
-A robot is on for minutes before a match and after it: of its log, the script has the time from `_BEFORE_US` before it is
-first enabled until `_AFTER_US` after it was last disabled. What was logged earlier is there when the script begins.
+A robot is on for minutes before a match and after it: of its log, the script has the time from `_BEFORE_US` before it
+is first enabled until `_AFTER_US` after it was last disabled. What was logged earlier is there when the script begins.
 """
 
 from __future__ import annotations

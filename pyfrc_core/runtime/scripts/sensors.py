@@ -47,6 +47,11 @@ def is_sensor(path: str) -> bool:
     return bool(_OF_DEVICES.search(name)) and not _SETTINGS.search(name)
 
 
+def is_input(path: str, values: Mapping[str, object]) -> bool:
+    """Return whether a sensor's channel is an input: a digital one can be an output, too."""
+    return not path.startswith("dio[") or bool(values.get(path.replace(".value", ".is_input"), True))
+
+
 def released(values: Mapping[str, object]) -> dict[str, object]:
     """Return the writes that leave to physics what is held after these writes."""
     return {target: None for target, value in values.items() if target.startswith(HOLD) and value is not None}

@@ -43,10 +43,10 @@ def first_script(options: SimOptions, robot: str, field: Field) -> InputScript:
 def first_recording(options: SimOptions, robot: str, field: Field, has_log: bool) -> Recording:
     """Return a recording that begins with these inputs.
 
-    :param has_log: whether what the robot does on the way to `start_at` is compared with a log, and so recorded
+    :param has_log: whether what the robot does on the way to `start_at` is compared with a log, and so reported
     """
-    recording = Recording(first_script(options, robot, field))
-    recording.is_open = has_log
+    recording = Recording(first_script(options, robot, field), known=not (has_log and options.start_at))
+    recording.is_open = bool(has_log and options.start_at)
     return recording
 
 

@@ -42,6 +42,10 @@ class Comparison:
     given: frozenset[str] = frozenset()
 
 
+#: How former runs are compared.
+EXACT = Comparison()
+
+
 @dataclass(frozen=True)
 class PastRun:
     """Its times are in seconds, from 0.

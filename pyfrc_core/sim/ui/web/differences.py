@@ -1,8 +1,8 @@
 """Where two runs first differ.
 
-Former runs have their times in common with the present one, so they differ where their values do. A log has the times of
-another clock, its robot's loop is some milliseconds late now and then, and its sensors measure noise. There, a value
-differs if one of the runs does not come close to it in the `Comparison.late` seconds before and after that moment.
+Former runs have their times in common with the present one, so they differ where their values do. A log has the times
+of another clock, its robot's loop is some milliseconds late now and then, and its sensors measure noise. There, a value
+differs if the other run does not come close to it in the `Comparison.late` seconds before and after that moment.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ....compat.unrepeatable import in_real_time
-from ....runtime.scripts.sensors import is_sensor
+from ....runtime.scripts.sensors import is_input, is_sensor
 from ....runtime.scripts.trace_difference import rank
 from ...engine.messages import MODE, POSE, TYPE, VALUE
-from ...engine.past_run import Comparison
+from ...engine.past_run import EXACT, Comparison
 from ...engine.value_history import MISSING, ValueHistory
 from .plots import picked, resolve
 
@@ -29,6 +29,7 @@ _ROUNDING, _SMALLEST = 1e-6, 1e-9
 #: Values that both runs have from outside, and those that robot code does not set.
 _GIVEN = re.compile(
     rf"joysticks\[\d\]\.(axes|buttons|povs)|control\.|event\.|alliance_station|time\.|{VALUE}/(FMSInfo|DS)/"
+    rf"|{VALUE}/.*( \(physics\)/|/Ids$)"  # the simulated field, and the numbers of commands
     rf"|{re.escape(TYPE)}|{re.escape(MODE)}|{re.escape(POSE)}"
 )
 
@@ -47,7 +48,7 @@ class FirstDifference:
 
     begin: float
     end: float
-    by: Comparison = Comparison()
+    by: Comparison = EXACT
     offset: float = 0.0
     #: The first moments of all values that differ; in former runs only of the earliest.
     found: dict[str, float] = field(default_factory=dict)
@@ -152,7 +153,7 @@ def sensors_by_source(hal: ValueHistory, given: frozenset[str]) -> dict[str, lis
     """
     found: dict[str, list[str]] = {"log": [], "physics": [], "nothing": []}
     for path in sorted(hal.now):
-        if is_sensor(path) and hal.now.get(path.replace(".value", ".is_input"), True):
+        if is_sensor(path) and is_input(path, hal.now):
             moves = len(hal.changes(path)[0]) > 1
             found["log" if path in given else "physics" if moves else "nothing"].append(path)
     return found
@@ -168,7 +169,7 @@ def _comes_close(value: Any, others: list[Any], close: _Close) -> bool:
         return True
     if not _is_number(value) or not all(map(_is_number, others)):
         return False
-    return min(others) <= value <= max(others)
+    return bool(min(others) <= value <= max(others))
 
 
 def _at(values: list[Held], times: list[float], time: float) -> Any:

@@ -9,7 +9,7 @@ from typing import Any
 
 from ...engine.changes import Change, RunBegan
 from ...engine.messages import MODE, POSE, TYPE, VALUE
-from ...engine.past_run import Comparison, PastRun, Stream
+from ...engine.past_run import EXACT, Comparison, PastRun, Stream
 from ...engine.value_history import MISSING, ValueHistory, packed
 from ..models.wording import clock
 from .differences import FirstDifference, sensors_by_source
@@ -44,7 +44,7 @@ class Branch:
     end: float
     histories: Mapping[Stream, ValueHistory] = field(default_factory=dict)
     offset: float = 0.0
-    compared: Comparison | None = Comparison()
+    compared: Comparison | None = EXACT
 
     @property
     def is_former(self) -> bool:

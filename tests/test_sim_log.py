@@ -1,0 +1,272 @@
+"""`pyfrc sim --log`: the inputs of a log drive today's code, and where the two differ first."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import MakeProject, RobotProject
+from wpiutil import DataLogWriter
+from wpiutil.log import BooleanLogEntry, DoubleArrayLogEntry, DoubleLogEntry, StringLogEntry
+
+from pyfrc_core.runtime.scripts.inputs_file import load_inputs
+from pyfrc_core.sim.engine.past_run import Comparison
+from pyfrc_core.sim.engine.value_history import ValueHistory
+from pyfrc_core.sim.ui.web.differences import FirstDifference
+
+ROBOT = """
+    import wpilib
+
+    GAIN = 0.5
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.pad = wpilib.Joystick(0)
+            self.motor = wpilib.PWMSparkMax(0)
+            self.lift = wpilib.PWMSparkMax(1)
+            self.encoder = wpilib.Encoder(0, 1)
+            self.height = wpilib.AnalogInput(0)
+            self.far = wpilib.AnalogInput(1)
+            wpilib.SmartDashboard.setDefaultNumber("kP", 1.0)
+
+        def teleopPeriodic(self):
+            self.motor.set(-self.pad.getRawAxis(1))
+            setpoint = GAIN if self.pad.getRawButton(2) else 0.0
+            wpilib.SmartDashboard.putNumber("Elevator/setpoint", setpoint)
+            kP = wpilib.SmartDashboard.getNumber("kP", 1.0)
+            self.lift.set(kP * (setpoint - self.height.getVoltage()) + self.encoder.get() / 1000)
+
+        def disabledInit(self):
+            self.motor.set(0)
+            self.lift.set(0)
+"""
+PHYSICS = """
+    class PhysicsEngine:
+        def __init__(self, physics_controller):
+            self.turns = 0.0
+
+        def update_sim(self, hal_data, now, tm_diff):
+            self.turns += hal_data["pwm"][0]["value"] * SPEED
+            hal_data["encoder"][0]["count"] = int(self.turns)
+            hal_data["analog_in"][0]["voltage"] = 0.25 if now >= 2 else 0.0
+
+    SPEED = 1.0
+"""
+DRIVEN = """{"format": "pyfrc-input 1", "end": 4.0}
+{"t": 1.0, "set": {"mode": "teleop"}}
+{"t": 1.5, "set": {"joysticks[0].axes[1]": -0.6}}
+{"t": 2.5, "set": {"joysticks[0].buttons[2]": true}}
+{"t": 3.5, "set": {"mode": "disabled"}}
+"""
+SIM = ("sim", "--ui", "none")
+
+
+def log_of(project: RobotProject, *arguments: str) -> str:
+    """Return what `pyfrc sim --log` says."""
+    result = project.run(*SIM, "--log", *arguments)
+    assert result.code == 0, result.output
+    return result.stdout
+
+
+def change(project: RobotProject, file: str, old: str, new: str) -> None:
+    place = project.path / file
+    text = place.read_text(encoding="utf-8")
+    assert old in text
+    place.write_text(text.replace(old, new), encoding="utf-8")
+
+
+@pytest.fixture
+def recorded(make_project: MakeProject) -> RobotProject:
+    """Return a project with a drive that was recorded in both forms."""
+    project = make_project({"robot.py": ROBOT, "physics.py": PHYSICS, "drive.jsonl": DRIVEN})
+    files = ("--record", "match.jsonl", "--wpilog", "match.wpilog")
+    result = project.run(*SIM, "--script", "drive.jsonl", *files)
+    assert result.code == 0, result.output
+    return project
+
+
+@pytest.mark.parametrize("log", ["match.jsonl", "match.wpilog"])
+def test_unchanged_code_does_the_same_and_changed_code_differs_where_the_change_acts(
+    log: str, recorded: RobotProject
+) -> None:
+    said = log_of(recorded, log)
+    assert "no difference: " in said
+    assert "exactly the same" in said
+    change(recorded, "robot.py", "GAIN = 0.5", "GAIN = 0.75")
+    said = log_of(recorded, log)
+    # The button is pressed with the packet of 2.5 s.
+    assert "differs first at 0:02.50, in pwm[1].value: " in said
+    assert "sensors from the log: analog_in[0], analog_in[1], dio[0], dio[1], encoder[0], fpga_button, power" in said
+
+
+def test_sensors_measure_what_they_measured_in_the_log(recorded: RobotProject) -> None:
+    change(recorded, "physics.py", "SPEED = 1.0", "SPEED = 7.0")
+    assert "no difference: " in log_of(recorded, "match.wpilog", "--record", "again.jsonl")
+    # The recording has them, too.
+    result = recorded.run("replay", "again.jsonl")
+    assert result.code == 0, result.output
+    writes = [target for step in load_inputs(recorded.path / "again.jsonl").steps for target in step.writes]
+    assert "hold:encoder[0].count" in writes
+
+
+def test_a_trace_stands_for_the_script_beside_it(recorded: RobotProject) -> None:
+    assert "no difference: " in log_of(recorded, "match.trace.jsonl")
+    (recorded.path / "match.jsonl").unlink()
+    result = recorded.run(*SIM, "--log", "match.trace.jsonl")
+    assert result.code == 2
+    assert "match.trace.jsonl: a trace has no inputs, and its input script is not beside it" in result.output
+
+
+class Log:
+    """A log of a robot that was switched on before time `began`, in seconds."""
+
+    def __init__(self, file: Path, began: float = 100.0) -> None:
+        self._log = DataLogWriter(str(file))
+        self.began = began
+        entries = {
+            "DS:enabled": BooleanLogEntry,
+            "DS:autonomous": BooleanLogEntry,
+            "DS:test": BooleanLogEntry,
+            "DS:estop": BooleanLogEntry,
+            "NT:/FMSInfo/GameSpecificMessage": StringLogEntry,
+            "DS:joystick0/axes": DoubleArrayLogEntry,
+            "NT:/SmartDashboard/Elevator/setpoint": DoubleLogEntry,
+            "NT:/SmartDashboard/kP": DoubleLogEntry,
+        }
+        self._entries = {name: kind(self._log, name) for name, kind in entries.items()}
+
+    def at(self, seconds: float, **values: object) -> None:
+        for name, value in values.items():
+            entry = next(each for full, each in self._entries.items() if full.rsplit("/", 1)[-1].endswith(name))
+            entry.append(value, round((self.began + seconds) * 1e6))
+
+    def close(self) -> None:
+        self._log.flush()
+        self._log.stop()
+
+
+PUBLISHING = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.pad = wpilib.Joystick(0)
+            wpilib.SmartDashboard.putNumber("kP", 1.0)
+
+        def teleopPeriodic(self):
+            asked = wpilib.SmartDashboard.getNumber("kP", 1.0) * self.pad.getRawAxis(0)
+            wpilib.SmartDashboard.putNumber("Elevator/setpoint", min(asked, 0.8))
+"""
+
+
+@pytest.fixture
+def played(make_project: MakeProject) -> RobotProject:
+    """Return a project with the log of a real robot: it waited for a minute, and its loop jitters."""
+    project = make_project({"robot.py": PUBLISHING})
+    log = Log(project.path / "match.wpilog")
+    log.at(0.0, enabled=False, autonomous=False, test=False, estop=False, kP=1.0, setpoint=0.0)
+    log.at(0.0, axes=[0.0, 0.0])
+    log.at(60.004, enabled=True)
+    for number in range(100):
+        axis = number / 100
+        log.at(60.1 + 0.02 * number, axes=[axis, 0.0])
+        # One loop late, and with the noise of a sensor.
+        log.at(60.1 + 0.02 * (number + 1) + 0.003 * (number % 3), setpoint=axis + 0.004 * (number % 2))
+    log.at(63.0, enabled=False)
+    log.at(300.0, setpoint=5.0)
+    log.close()
+    return project
+
+
+def test_the_log_of_a_robot_is_shown_on_the_times_of_the_simulation(played: RobotProject) -> None:
+    script = load_inputs(played.path / "match.wpilog")
+    # It begins five seconds before the robot was enabled, and ends three seconds after it was disabled.
+    assert [step.at_us for step in script.steps if step.writes.get("mode") == "teleop"] == [5_020_000]
+    assert 11.0 <= script.end_us / 1e6 <= 11.1
+    said = log_of(played, "match.wpilog")
+    # At 0.85, since 5 % of the range are 0.05.
+    assert "differs first at 0:06.84, in Elevator/setpoint: 0.854 in match.wpilog, 0.8 here" in said
+    assert "no difference: 2 values" in log_of(played, "match.wpilog", "--tolerance", "25")
+
+
+def test_what_a_person_has_set_on_a_dashboard_is_named(played: RobotProject) -> None:
+    change(played, "robot.py", '"kP", 1.0)\n\n', '"kP", 0.5)\n\n')
+    said = log_of(played, "match.wpilog")
+    assert "in kP: 1 in match.wpilog, 0.5 here" in said
+    said = log_of(played, "match.wpilog", "--input", "SmartDashboard/kP")
+    assert "in Elevator/setpoint" in said
+    assert "in kP" not in said
+
+
+def test_a_log_that_has_no_inputs_is_refused_in_a_sentence(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": PUBLISHING, "drive.jsonl": DRIVEN})
+    log = DataLogWriter(str(project.path / "turns.wpilog"))
+    DoubleLogEntry(log, "NT:/turns").append(1.0, 20_000)
+    log.flush()
+    log.stop()
+    (project.path / "match.dslog").write_bytes(b"\0\0\0\4" + bytes(64))
+    for name, sentence in (
+        ("turns.wpilog", "In robotInit, wpilib.DriverStation.startDataLog(wpilib.DataLogManager.getLog()) logs it."),
+        ("match.dslog", "the driver station's log does not have the joysticks"),
+        ("drive.jsonl", "this input script has no trace beside it"),
+        ("none.wpilog", "there is no file none.wpilog"),
+    ):
+        result = project.run(*SIM, "--log", name)
+        assert result.code == 2, result.output
+        assert sentence in " ".join(result.output.split())
+        assert "Traceback" not in result.output
+    result = project.run(*SIM, "--log", "turns.wpilog", "--mode", "auto")
+    assert result.code == 2
+    assert "--log has the modes and all inputs" in result.output
+    result = project.run(*SIM, "--mode", "auto", "--tolerance", "5")
+    assert result.code == 2
+    assert "--tolerance and --input are for a log" in result.output
+
+
+def history(*changes: tuple[float, object]) -> ValueHistory:
+    made = ValueHistory()
+    for time, value in changes:
+        made.add(time, {"nt:/x": value})
+    return made
+
+
+STEPS = [(0.02 * number, float(number % 10)) for number in range(200)]
+
+
+@pytest.mark.parametrize(
+    ("here", "log", "differs"),
+    [
+        (STEPS, STEPS, None),
+        (STEPS, [(time + 0.04, value) for time, value in STEPS], None),  # late
+        (STEPS, [(time, value + 0.4) for time, value in STEPS], None),  # within 5 % of 9.4
+        ([(0.0, 0.0), (1.0, 1.0)], [(0.0, 0.0), (1.05, 1.0), (4.0, 1.0)], None),
+        ([(0.0, 0.0), (1.0, 1.0), (4.0, 1.0)], [(0.0, 0.0), (4.0, 0.0)], 1.0),
+        (
+            [(0.0, 0.0), (1.0, 1.0), (1.02, 0.0), (4.0, 0.0)],
+            [(0.0, 0.0), (4.0, 0.0)],
+            1.0,
+        ),  # a button that was not seen
+        ([(0.0, True), (1.0, False), (4.0, False)], [(0.0, False), (1.0, True), (4.0, True)], 0.0),
+        ([(0.0, "up"), (1.0, "down"), (4.0, "down")], [(0.0, "up"), (4.0, "up")], 1.0),
+        ([(0.0, (1.0, 2.0)), (4.0, (1.0, 2.0))], [(0.0, (1.0, 2.02)), (4.0, (1.0, 2.02))], None),
+        ([(0.0, (1.0, 2.0)), (4.0, (1.0, 2.0))], [(0.0, (1.0,)), (4.0, (1.0,))], 0.0),
+        # Only one of them has it at first.
+        ([(0.0, 1.0), (4.0, 1.0)], [(2.0, 1.0), (4.0, 1.0)], None),
+    ],
+)
+def test_a_value_of_a_log_may_be_late_and_noisy(here: list, log: list, differs: float | None) -> None:
+    found = FirstDifference(0.0, 4.0, Comparison(True, 0.05, 0.06))
+    found.compare(history(*here), history(*log), "nt:/x")
+    assert found.time == differs
+    assert found.compared == 1
+
+
+def test_the_times_of_a_log_are_those_of_another_clock() -> None:
+    found = FirstDifference(0.0, 4.0, Comparison(True), offset=-10.0)
+    log = [(time + 10.0, value) for time, value in STEPS]
+    found.compare(history(*STEPS), history(*log), "nt:/x")
+    assert found.time is None
+    log[50] = (log[50][0], 7.5)
+    found.compare(history(*STEPS), history(*log), "nt:/x")
+    assert found.time == pytest.approx(1.0)
+    assert found.paths == ["nt:/x"]
