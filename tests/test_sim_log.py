@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+from browser_pages import shared_browser  # noqa: F401 - `browser`
 from conftest import MakeProject, RobotProject
+from sim_robots import PATIENCE
+from web_pages import Served, served_source
 from wpiutil import DataLogWriter
 from wpiutil.log import BooleanLogEntry, DoubleArrayLogEntry, DoubleLogEntry, StringLogEntry
 
+from pyfrc_core.project import find_project
 from pyfrc_core.runtime.scripts.inputs_file import load_inputs
+from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine.past_run import Comparison
 from pyfrc_core.sim.engine.value_history import ValueHistory
+from pyfrc_core.sim.log_run import log_run
 from pyfrc_core.sim.ui.web.differences import FirstDifference
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 ROBOT = """
     import wpilib
@@ -270,3 +282,58 @@ def test_the_times_of_a_log_are_those_of_another_clock() -> None:
     found.compare(history(*STEPS), history(*log), "nt:/x")
     assert found.time == pytest.approx(1.0)
     assert found.paths == ["nt:/x"]
+
+
+# -- the page ---------------------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def page_with(project: RobotProject, log: str) -> Iterator[Served]:
+    """Serve what ``pyfrc sim --log`` shows."""
+    found = find_project(project.path)
+    run = log_run(found, project.path / log)
+    options = SimOptions(speed=1, paused=True, script=run.script, start_at=run.end, network_values=True)
+    simulation = Simulation(found, options, run.run)
+    with served_source(simulation) as server:
+        assert simulation.wait_for(lambda: simulation.status.state == "paused", PATIENCE)
+        yield server
+
+
+def test_the_page_gets_the_first_difference_and_what_moves_the_sensors(recorded: RobotProject) -> None:
+    change(recorded, "robot.py", "GAIN = 0.5", "GAIN = 0.75")
+    with page_with(recorded, "match.wpilog") as server, server.page() as page:
+        (branch,) = page.parts["branches"]
+        assert (branch["name"], branch["offset"], branch["compared"]) == ("match.wpilog", 0.0, True)
+        found = page.ask(type="first_difference", branch=branch["id"], paths=None)
+        assert (found["t"], found["paths"][0]) == (2.5, "pwm[1].value")
+        assert [path for path, _ in found["others"]] == ["pwm[1].value", "pwm[1].raw_value"]
+        assert "encoder[0].count" in found["sensors"]["log"]
+        assert found["sensors"]["physics"] == []
+        # From the past on, a person drives: then physics moves the encoder again.
+        page.command("rewind", t=2.0)
+        page.until(lambda: page.status["state"] == "paused" and page.time == 2.0)
+        page.command("axis", stick=0, axis=1, value=-1.0)
+        held = page.values["encoder[0].count"]
+        page.run_for(0.5)
+        page.until(lambda: page.values["encoder[0].count"] > held + 15)
+
+
+@pytest.mark.slow
+def test_a_person_sees_where_the_log_differs(recorded: RobotProject, browser: Browser) -> None:
+    change(recorded, "robot.py", "GAIN = 0.5", "GAIN = 0.75")
+    with page_with(recorded, "match.wpilog") as server:
+        page = browser.new_page(viewport={"width": 1180, "height": 820})
+        wrong: list[str] = []
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.set_default_timeout(PATIENCE * 1000)
+        page.goto(server.address)
+        sentence = page.get_by_role("button", name="Differs first at 0:02.50, in pwm[1].value")
+        sentence.click()
+        page.locator("time.clock", has_text="0:02.50").wait_for()
+        page.get_by_title("Compare with an earlier run", exact=True).click()
+        page.locator(".menu-list button", has_text="What differs").click()
+        page.locator(".comparison tr", has_text="pwm[1].raw_value").wait_for()
+        page.locator(".comparison tr", has_text="From the log").get_by_text("encoder[0].count").wait_for()
+        page.get_by_role("button", name="Close", exact=True).click()
+        page.close()
+        assert wrong == []

@@ -105,6 +105,7 @@ def test_a_robot_elsewhere_is_not_driven_but_its_values_can_be_set(tmp_path: Pat
                 "rewinds": False,
                 "writes": True,
                 "over": False,
+                "replays": False,
             }
             page.command("write", values={"nt:/kP": 0.25})
             assert robot.written == [{"nt:/kP": 0.25}]

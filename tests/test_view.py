@@ -14,12 +14,15 @@ from browser_pages import missing_browser, shared_browser  # noqa: F401 - `brows
 from recorded_pages import run_in
 from sim_robots import PATIENCE
 from skips import require
-from web_pages import Served, served_source
+from web_pages import Page, Served, served_source
+from websockets.sync.client import connect
 from written_logs import Written, a_match
 
+from pyfrc_core.errors import PyfrcError
 from pyfrc_core.project import Project
 from pyfrc_core.sim.logs import open_log
 from pyfrc_core.sim.logs.source import LogSource
+from pyfrc_core.sim.what_if import WhatIf
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -194,3 +197,42 @@ def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:
         page.locator(".menu-list button", has_text="practice.wpilog").first.wait_for()
         page.close()
         assert wrong == []
+
+
+def test_the_code_of_a_project_can_be_run_with_a_log(tmp_path: Path, browser: Browser) -> None:
+    require("the page of pyfrc view in a browser", missing_browser())
+    log = open_log(a_match().save(tmp_path / "match.wpilog"), HEIGHT)
+    project = Project(tmp_path / "robot.py")
+    with served_source(LogSource(project, log)) as server:
+        with server.page() as page:
+            assert page.hello["source"]["replays"] is False
+            assert page.ask(type="command", name="what_if")["type"] == "error"
+        address = f"{server.address}&there"
+        with served_source(LogSource(project, log, what_if=lambda: address)) as before:
+            page = browser.new_page()
+            page.set_default_timeout(PATIENCE * 1000)
+            page.goto(before.address)
+            page.get_by_role("button", name="What would my code have done?").click()
+            page.wait_for_url(address)
+            page.locator(".recorded code", has_text="match.wpilog").wait_for()
+            page.close()
+
+
+def test_a_simulation_that_a_log_drives_is_started_and_ended(make_project: Any) -> None:
+    made = make_project({"robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"})
+    log = a_match().save(made.path / "match.wpilog")
+    said: list[str] = []
+    what_if = WhatIf(Project(made.path / "robot.py"), log, said.append)
+    try:
+        address = urlsplit(what_if.start())
+        assert what_if.start() == address.geturl()
+        with connect(f"ws://{address.netloc}/ws?{address.query}", max_size=None) as socket:
+            page = Page(socket)
+            assert [branch["name"] for branch in page.parts["branches"]] == ["match.wpilog"]
+    finally:
+        what_if.close()
+    assert f"The simulator is at {address.geturl()}\n" in said
+    broken = WhatIf(Project(made.path / "robot.py"), made.path / "none.wpilog", said.append)
+    with pytest.raises(PyfrcError, match=r"The simulation did not start: .*there is no file"):
+        broken.start()
+    broken.close()

@@ -75,6 +75,8 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
         if is_own
         else frozenset()
     )
+    if is_own:  # to its end; that of a robot's log ends soon after the match
+        script = replace(script, end_us=max(script.end_us, round((run.end + offset) * 1_000_000) + PACKET_US))
     script = _with_sensors(_placed(project, script, run, is_own), hal, sensors, offset)
     repeats = is_own and not any(map(may_not_repeat, hal.paths()))
     if share is None:

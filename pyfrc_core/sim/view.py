@@ -20,6 +20,7 @@ from .logs.align import Align, offset_of
 from .logs.columns import LogHistory
 from .logs.source import LogSource
 from .page_file import PageFile
+from .what_if import WhatIf
 
 #: The size of logs that take longer to read than a person waits without a word, in bytes.
 _LARGE = 100 << 20
@@ -72,7 +73,13 @@ def view(request: ViewRequest, say: Say) -> int:
     project = project_or_none() or _no_project()
     height = field_of(project).height
     first, *others = [_opened(file, height, request, say) for file in request.files]
-    source = LogSource(project, first, tuple(_aligned(request, first.run, [each.run for each in others], say)))
+    what_if = WhatIf(project, request.files[0], say)
+    source = LogSource(
+        project,
+        first,
+        tuple(_aligned(request, first.run, [each.run for each in others], say)),
+        what_if.start if project.main_file.is_file() else None,
+    )
     if request.page is not None:
         _check_size(first.run, *source.branches)
         page = PageFile(request.page, f"pyfrc view {first.run.name}")
@@ -104,6 +111,7 @@ def _serve(source: Source, request: ViewRequest, say: Say) -> int:
             return front_end.run(source)
         finally:
             interruption.finish()
+            what_if.close()
     return 0
 
 

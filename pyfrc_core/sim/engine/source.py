@@ -42,6 +42,7 @@ class Abilities:
     :param rewinds: whether it can go back in time, and go on from there
     :param writes: whether values of NetworkTables can be set
     :param over: whether its time is over
+    :param replays: whether a simulation can be started with its inputs
     """
 
     kind: Literal["simulation", "log", "robot"] = "simulation"
@@ -49,6 +50,7 @@ class Abilities:
     rewinds: bool = False
     writes: bool = False
     over: bool = False
+    replays: bool = False
 
 
 class ChangeReader(Protocol):

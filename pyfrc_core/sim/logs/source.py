@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import MappingProxyType
 
 from ...project import Project
@@ -27,13 +28,20 @@ class LogSource:
     """A log, with others as its branches.
 
     :param project: whose layout, field and names are used
+    :param what_if: starts a simulation of the project's robot that this log drives, and returns its page's address
     :raises SettingsError: when ``sim/config.json`` is invalid
     """
 
-    abilities = Abilities("log", over=True)
     wants_to_run = False
 
-    def __init__(self, project: Project, log: OpenedLog, branches: tuple[PastRun, ...] = ()) -> None:
+    def __init__(
+        self,
+        project: Project,
+        log: OpenedLog,
+        branches: tuple[PastRun, ...] = (),
+        what_if: Callable[[], str] | None = None,
+    ) -> None:
+        self.abilities, self.what_if = Abilities("log", over=True, replays=what_if is not None), what_if
         self.project, self.recorded, self.branches = project, log.run, branches
         self.title, self.when = log.run.name, log.when
         self.field = field_of(project)

@@ -12,6 +12,7 @@ from ...engine.commands import ChosenMode, chooser_target
 from ...engine.controls import Driver
 from ...engine.simulation import Simulation
 from ...live.tuning import Tuner
+from ...logs.source import LogSource
 from ..models.joysticks import FIRST_BUTTON, MOST_BUTTONS
 from ..models.time_controls import rewind, toggle
 from ..models.wording import STATIONS
@@ -48,6 +49,8 @@ class PageCommands:
             "move_branch": self._move_branch,
             "quit": lambda m: close(),
         }
+        if isinstance(source, LogSource) and (what_if := source.what_if) is not None:
+            self._table["what_if"] = lambda m: {"address": what_if()}
         if writer is not None:
             self._table["write"] = lambda m: writer.write(_writes(m))
             self._table["choose"] = lambda m: writer.write({chooser_target(m.text("chooser")): m.text("option")})

@@ -54,6 +54,7 @@ def greeting(source: Source, client: int, read_only: bool, watching: bool = Fals
             "rewinds": abilities.rewinds,
             "writes": abilities.writes,
             "over": abilities.over,
+            "replays": abilities.replays,
         },
         "options": {
             "watch": watching,

@@ -87,6 +87,7 @@ def _hello(source: Source, collector: Collector, title: RunTitle) -> dict[str, A
         "rewinds": False,
         "writes": False,
         "over": True,
+        "replays": False,
     }
     if source.abilities.drives:
         found["layout"] = _layout(load_layout(source.project.root), collector)

@@ -54,9 +54,7 @@ class Branch:
     def plain(self) -> dict[str, object]:
         """Return it for a page."""
         found: dict[str, object] = {"id": self.number, "name": self.name, "from": self.begin, "to": self.end}
-        if self.compared is not None:
-            found["compared"] = True
-        return found if self.is_former else found | {"offset": self.offset}
+        return found if self.is_former else found | {"offset": self.offset, "compared": self.compared is not None}
 
     def packed(self, clean: Callable[[str], str]) -> dict[str, Any]:
         """Return its values for a page without a server.

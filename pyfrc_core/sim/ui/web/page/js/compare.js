@@ -1,15 +1,20 @@
 // The branch that the person compares with: a ghost on the field, dashed curves in the plots.
 import { ask } from "#js/connection.js";
 import { model } from "#js/model.js";
+import { length } from "#js/past.js";
 import { valueAt } from "#js/series.js";
 
 const POINTS = 4000;
+const AGAIN = 2000; // milliseconds between two comparisons with a log while the robot runs
 
 class Compared {
   id = null;
   pose = { t: [], v: [] };
   offset; // of the branch that was asked for
   difference; // the first moment at which the branch differs from the present run; null: none, undefined: not known
+  found = null; // where a log that drives this run differs: { t, paths, others, sensors }
+  #compared = ""; // how far the run was when it was compared
+  #waits = false;
 
   get branch() {
     return model.branches.find((each) => each.id === this.id);
@@ -37,10 +42,13 @@ class Compared {
     this.offset = this.branch?.offset;
     this.pose = { t: [], v: [] };
     this.difference = undefined;
+    this.found = null;
+    this.#compared = "";
     if (id === null) return;
     try {
       const answer = await ask("plot", { paths: ["sim.pose"], from: 0, to: this.end, points: POINTS, branch: id });
       if (this.id === id) this.pose = answer.series["sim.pose"] ?? this.pose;
+      if (this.branch?.compared) this.followLog();
       if (this.branch?.offset !== undefined) return; // times of another clock never agree exactly
       const first = await ask("first_difference", { branch: id, paths: null });
       if (this.id === id) this.difference = first.t;
@@ -50,11 +58,41 @@ class Compared {
       model.announce("compared-series", "robot");
     }
   }
+
+  // Compare with the log that drives this run, again as long as the run goes on.
+  async followLog() {
+    const { id } = this;
+    const place = `${id} ${this.offset} ${model.run.number} ${model.run.t} ${length()}`;
+    if (this.#waits || !this.branch?.compared || place === this.#compared) return;
+    this.#waits = true;
+    this.#compared = place;
+    try {
+      const first = await ask("first_difference", { branch: id, paths: null });
+      if (this.id === id) [this.difference, this.found] = [first.t, first];
+    } catch {
+      // It may be gone.
+    }
+    model.announce("compared-series");
+    setTimeout(() => {
+      this.#waits = false;
+      this.followLog();
+    }, AGAIN);
+  }
 }
 
 export const compared = new Compared();
 
+const known = new Set(); // the logs that drive the run: they are compared with it at first
+
 model.listen((changed) => {
+  if (changed.has("branches")) {
+    for (const { id, compared: drives } of model.branches) {
+      if (!drives || known.has(id)) continue;
+      known.add(id);
+      model.set("compared", id);
+    }
+  }
+  if (changed.has("t") || changed.has("status") || changed.has("run")) compared.followLog();
   // A branch that was just opened, or moved in time, is asked for again.
   const moved = changed.has("branches") && compared.id !== null && compared.branch?.offset !== compared.offset;
   if (changed.has("compared") || moved) compared.choose(model.compared);

@@ -1,5 +1,6 @@
 // The controls of what is over, a recorded run or a log: what it is, and its time.
 import { BranchesMenu } from "#js/branches.js";
+import { command } from "#js/connection.js";
 import { clock, speedText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { live, look, lookByPackets } from "#js/past.js";
@@ -44,6 +45,8 @@ export class RecordedTimeBar extends Live {
             onInput=${(event) => { playback.position = Number(event.target.value); }} />
           <b>${speedText(speed)}</b></label>
         <div class="spacer"></div>
+        ${source.replays && html`<button disabled=${model.readonly} onClick=${whatIf}
+          title="Run this project’s code with the inputs of this log, and show where the two differ">What would my code have done?</button>`}
         <${BranchesMenu} />
         <dl class="figures">
           <div title="The length of the run, in robot time"><dt>Length</dt><dd>${clock(status.length)}</dd></div>
@@ -54,6 +57,12 @@ export class RecordedTimeBar extends Live {
       <${Timeline} />
     </footer>`;
   }
+}
+
+async function whatIf() {
+  model.set("problem", "Starting the simulation…");
+  const answer = await command("what_if");
+  if (answer?.address) location.href = answer.address;
 }
 
 function toEnd() {

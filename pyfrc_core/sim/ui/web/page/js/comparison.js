@@ -1,0 +1,55 @@
+// Where the log that drives this run differs from it, and what moves the robot's sensors: a sentence, and a list.
+import { compared } from "#js/compare.js";
+import { clock } from "#js/format.js";
+import { look } from "#js/past.js";
+import { html, render } from "#js/view.js";
+
+const SOURCES = [
+  ["log", "From the log"],
+  ["physics", "From physics.py"],
+  ["nothing", "Neither: not simulated"],
+];
+
+// The name of a value for people.
+export function nameOf(path) {
+  return path.replace(/^nt:\/(SmartDashboard\/)?/, "");
+}
+
+// The sentence about the first difference, which a click goes to.
+export function FirstDifference({ difference, found }) {
+  if (difference === null && !found) return html`<button class="quiet" disabled>No difference</button>`;
+  if (!found) {
+    return html`<button class="quiet" onClick=${() => look(difference)} title="The first moment at which the branch differs from this run">
+      Differs at ${clock(difference)}</button>`;
+  }
+  const text = difference === null ? "No difference" : `Differs first at ${clock(difference)}, in ${nameOf(found.paths[0])}`;
+  return html`<button class="quiet first-difference" disabled=${difference === null} onClick=${() => look(difference)}
+      title="The first moment at which the log differs from what the code does now"><span>${text}</span></button>`;
+}
+
+// Show all values that differ, and what moves the sensors.
+export function showComparison() {
+  const dialog = document.createElement("dialog");
+  dialog.className = "comparison";
+  const { branch, found } = compared;
+  const goTo = (t) => () => {
+    dialog.close();
+    look(t);
+  };
+  render(
+    html`<form method="dialog">
+      <h2>${branch.name} and today’s code</h2>
+      ${found.others.length === 0 && html`<p>No value differs.</p>`}
+      ${found.others.length > 0 && html`<table><thead><tr><th>Differs first at</th><th>Value</th></tr></thead>
+        <tbody>${found.others.map(([path, t]) => html`<tr key=${path}>
+          <td><button type="button" class="quiet" onClick=${goTo(t)}>${clock(t)}</button></td><td>${nameOf(path)}</td></tr>`)}</tbody></table>`}
+      <table><thead><tr><th>Sensors</th><th>Value</th></tr></thead>
+        <tbody>${SOURCES.flatMap(([source, text]) => found.sensors[source].map((path) => html`<tr key=${path}><td>${text}</td><td>${path}</td></tr>`))}</tbody></table>
+      <div class="dialog-buttons"><button class="primary" value="ok">Close</button></div>
+    </form>`,
+    dialog,
+  );
+  dialog.addEventListener("close", () => dialog.remove());
+  document.body.append(dialog);
+  dialog.showModal();
+}

@@ -1,0 +1,82 @@
+"""`pyfrc sim --log` with competition robots: unchanged code does the same, and a changed line differs where it acts."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import MakeProject, RobotProject
+from skips import require
+
+require("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"])
+pytestmark = pytest.mark.slow
+
+ROBOTS = Path(__file__).parent / "robots" / "competition"
+SIM = ("sim", "--ui", "none")
+#: The driver drives from 2 s on; the operator raises the elevator, or lets the shooter idle, at 3 s.
+DRIVE = """{"format": "pyfrc-input 1", "end": 5.0}
+{"t": 0.5, "set": {"mode": "autonomous", "match_time": 1.0}}
+{"t": 1.5, "set": {"mode": "teleop", "match_time": 3.1}}
+{"t": 2.0, "set": {"joysticks[0].axes[1]": -0.6}}
+{"t": 2.8, "set": {"joysticks[0].axes[1]": 0.0}}
+{"t": 3.0, "set": {"joysticks[1].buttons[4]": true, "joysticks[1].buttons[6]": true}}
+{"t": 3.2, "set": {"joysticks[1].buttons[4]": false}}
+{"t": 4.6, "set": {"mode": "disabled", "match_time": 0.0}}
+"""
+#: A line of each robot, what it becomes, and the output that it acts on, from 3 s on.
+CHANGES = {
+    "magic_swerve": ("components/shooter.py", "idle_rpm = tunable(900.0)", "idle_rpm = tunable(1500)", "SPARK MAX [9]"),
+    "rev_swerve": ("constants.py", "TOP = 1.1", "TOP = 0.8", "SPARK MAX [21]"),
+    "tank_arm": ("constants.py", "MAX_ACCELERATION = 3.2", "MAX_ACCELERATION = 1.6", "pwm["),
+}
+
+
+def drive(made: RobotProject, name: str, *options: str) -> None:
+    made.copy(ROBOTS / name)
+    (made.path / "drive.jsonl").write_text(DRIVE, encoding="utf-8")
+    result = made.run(*SIM, "--script", "drive.jsonl", *options)
+    assert result.code == 0, result.output
+
+
+def log_of(project: RobotProject, log: str) -> str:
+    result = project.run(*SIM, "--log", log)
+    assert result.code == 0, result.output
+    return result.stdout
+
+
+def change(project: RobotProject, file: str, old: str, new: str) -> None:
+    place = project.path / file
+    text = place.read_text(encoding="utf-8")
+    assert text.count(old) == 1
+    place.write_text(text.replace(old, new), encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_changed_line_differs_where_it_acts(name: str, make_project: MakeProject) -> None:
+    project = make_project({})
+    drive(project, name, "--record", "match.jsonl", "--wpilog", "match.wpilog")
+    for log in ("match.jsonl", "match.wpilog"):
+        assert "no difference: " in log_of(project, log)
+    file, old, new, output = CHANGES[name]
+    change(project, file, old, new)
+    for log in ("match.jsonl", "match.wpilog"):
+        said = re.search(r"differs first at 0:0(\d\.\d\d), in (.*?): ", log_of(project, log))
+        assert said is not None
+        assert 3.0 <= float(said[1]) < 4.6
+        assert output in said[2]
+
+
+def test_a_robot_whose_devices_are_simulated_in_real_time_is_compared_by_what_it_publishes(
+    make_project: MakeProject,
+) -> None:
+    project = make_project({})
+    drive(project, "ctre_swerve", "--record", "match.jsonl", "--wpilog", "match.wpilog")
+    (log,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
+    log.rename(project.path / "robot.wpilog")
+    for name in ("match.jsonl", "match.wpilog"):
+        assert "no difference: " in log_of(project, name)
+    assert "Elevator/" not in log_of(project, "robot.wpilog")
+    change(project, "constants.py", "SCORE_HIGH = 0.0, 0.05, 0.45, 1.1", "SCORE_HIGH = 0.0, 0.05, 0.45, 0.9")
+    assert re.search(r"in .*Elevator/Goal \(0:03\.\d\d\)", log_of(project, "robot.wpilog"))
