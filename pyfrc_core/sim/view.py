@@ -88,7 +88,10 @@ def view(request: ViewRequest, say: Say) -> int:
         if not request.quiet:
             say(f"wrote {request.page}\n")
         return 0
-    return _serve(source, request, say)
+    try:
+        return _serve(source, request, say)
+    finally:
+        what_if.close()
 
 
 def _robot(given: str) -> Source:
@@ -111,7 +114,6 @@ def _serve(source: Source, request: ViewRequest, say: Say) -> int:
             return front_end.run(source)
         finally:
             interruption.finish()
-            what_if.close()
     return 0
 
 

@@ -20,7 +20,7 @@ from ....runtime.scripts.trace_difference import rank
 from ...engine.messages import MODE, POSE, TYPE, VALUE
 from ...engine.past_run import EXACT, Comparison
 from ...engine.value_history import MISSING, ValueHistory
-from .plots import picked, resolve
+from .plots import picked, resolve, same
 
 #: The most paths that are named.
 _MOST_NAMED = 20
@@ -127,11 +127,9 @@ class _Close:
     is_log: bool = False
 
     def __call__(self, one: Any, other: Any) -> bool:
-        if one is MISSING or other is MISSING:
-            return one is other
-        if one == other or (one != one and other != other):  # NaN
+        if same(one, other):
             return True
-        if not self.is_log:
+        if not self.is_log or one is MISSING or other is MISSING:
             return False
         if _is_number(one) and _is_number(other):
             return bool(abs(one - other) <= self.most)
@@ -188,7 +186,6 @@ def _changes(history: ValueHistory, path: str, begin: float, end: float) -> Iter
     """Yield the value at the beginning, and each later change of it."""
     whole, index = resolve(history, path)
     before = picked(history.value_at(whole, begin), index)
-    same = _Close(0.0)
     yield begin, before
     for time, each in zip(*history.changes(whole, begin, end), strict=True):
         value = picked(each, index)

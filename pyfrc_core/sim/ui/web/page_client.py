@@ -26,8 +26,6 @@ _INTERVAL, _TIME_INTERVAL = 0.014, 0.2
 _MOST_ERROR = 300
 #: The most points of one curve.
 _MOST_POINTS = 1_000_000
-#: The most values that are named with where they differ.
-_MOST_OTHERS = 200
 _READ_ONLY = "This window only shows the simulation; it cannot drive."
 
 
@@ -158,13 +156,10 @@ class PageClient:
 
     def _first_difference(self, message: Message) -> dict[str, Any]:
         paths, branch = message.paths() if "paths" in message else None, message.branch()
-        found = None if branch is None else self._collector.runs.first_difference(branch, paths)
+        found = None if branch is None else self._collector.runs.plain_difference(branch, paths)
         if found is None:
             raise _no_branch()
-        answer: dict[str, Any] = {"t": found.time, "paths": found.paths}
-        if found.by.is_log:
-            answer |= {"others": found.sorted()[:_MOST_OTHERS], "sensors": self._collector.runs.sensors(branch or 0)}
-        return answer
+        return found
 
     def _plot(self, message: Message) -> dict[str, Any]:
         found = self._collector.runs.plots(

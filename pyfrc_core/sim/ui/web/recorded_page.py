@@ -65,7 +65,10 @@ def recorded_page(source: Source, collector: Collector, title: RunTitle) -> str:
     run: dict[str, Any] = {
         "hello": _cleaned(_hello(source, collector, title), clean),
         **collector.runs.packed(clean),
-        "branches": [branch.plain() | branch.packed(clean) for branch in branches],
+        "branches": [
+            branch.plain() | branch.packed(clean) | {"difference": collector.runs.plain_difference(branch.number)}
+            for branch in branches
+        ],
     }
     return single_file("A recorded run - pyfrc", gzip.compress(json_text(run).encode(), 9, mtime=0))
 

@@ -15,11 +15,12 @@ export async function readRun() {
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   const run = await new Response(stream).json();
   const present = { columns: columnsOf(run), offset: 0 };
-  const branches = new Map(run.branches.map((branch) => [branch.id, { columns: columnsOf(branch), offset: branch.offset }]));
+  const branches = new Map(run.branches.map((branch) => [branch.id, { ...branch, columns: columnsOf(branch) }]));
   const chosen = (branch) => branches.get(branch) ?? present;
   const answers = {
     values: ({ t, branch }) => ({ t, values: valuesAt(chosen(branch).columns, t - chosen(branch).offset) }),
     plot: ({ paths, from, to, branch }) => ({ series: Object.fromEntries(paths.map((path) => [path, curveOf(chosen(branch), path, from, to)])) }),
+    first_difference: ({ branch }) => chosen(branch).difference,
     changes: ({ t, reach }) => ({ changes: changesAround(present.columns, t, reach) }),
     subscribe: () => ({}), // nothing comes any more
   };
