@@ -11,7 +11,7 @@ const UNSAVED = "pyfrc-unsaved";
 const DEFAULTS = {
   version: 1,
   theme: "auto",
-  layout: "driving",
+  layout: matchMedia("(pointer: coarse)").matches ? "tablet" : "driving",
   trees: {},
   plots: {},
   pins: [],

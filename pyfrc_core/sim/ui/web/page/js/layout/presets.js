@@ -43,6 +43,14 @@ export const PRESETS = {
       column([38, 62], tabs("match"), tabs("joysticks", "keys", "touch")),
     ),
   },
+  tablet: {
+    title: "Tablet",
+    tree: column(
+      [58, 42],
+      row([28, 44, 28], tabs("networktables", "devices"), tabs("field", "mechanism", "plot:1"), tabs("match", "console", "joysticks", "widgets")),
+      tabs("touch"),
+    ),
+  },
   tuning: {
     title: "Tuning",
     tree: row(
