@@ -385,7 +385,6 @@ def user_keys(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.slow
 def test_the_ssh_agents_keys_are_offered_with_the_option(new_robot, make_project, user_keys: Path) -> None:
     robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
     project = make_project(program())
@@ -413,6 +412,7 @@ def test_the_ssh_agents_keys_are_offered_with_the_option(new_robot, make_project
         agent.stdout.close()
 
 
+@pytest.mark.slow
 def test_the_key_in_a_file_is_offered_with_the_option(new_robot, make_project, user_keys: Path) -> None:
     robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
     project = make_project(program())

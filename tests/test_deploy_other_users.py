@@ -57,6 +57,7 @@ def test_a_directory_that_cannot_be_moved_is_refused_before_anything_is_changed(
     assert deploy(roborio, tmp_path, 1).taken == 1
 
 
+@pytest.mark.slow
 def test_files_without_permission_do_not_prevent_a_deploy(roborio: Roborio, tmp_path: Path) -> None:
     deploy(roborio, tmp_path, 1)
     roborio.run("mkdir", "/home/lvuser/py/photos")
@@ -78,6 +79,7 @@ def undeploy(roborio: Roborio) -> bool:
             roborio.wait_for_end_of_deploy()
 
 
+@pytest.mark.slow
 def test_a_read_only_directory_of_the_program_is_removed(roborio: Roborio, tmp_path: Path) -> None:
     for number in range(1, 6):
         deploy(roborio, tmp_path, number)

@@ -54,6 +54,7 @@ def test_a_python_that_is_too_old(project: RobotProject, look_alike: Roborio) ->
     assert any("the robot's Python 3.8 is too old" in text for text in found), found
 
 
+@pytest.mark.slow
 def test_a_home_that_cannot_be_written(project: RobotProject, look_alike: Roborio) -> None:
     belongs = "{0} on the robot belongs to another user, and lvuser cannot write to it\n"
     give = "Give it to lvuser, as admin on the robot: chown -R lvuser {0}"

@@ -352,6 +352,7 @@ def test_a_robot_that_is_off(make_project) -> None:
         assert finding["status"] == "problem"
 
 
+@pytest.mark.slow
 def test_a_team_number_that_is_none(make_project) -> None:
     project = make_project({"robot.py": ROBOT, ".wpilib/wpilib_preferences.json": '{"teamNumber": "red"}'})
     (finding,) = results_of(project.run("doctor", "--json"))["robot"]
@@ -376,6 +377,7 @@ def test_only_one_result_about_the_robot(make_project) -> None:
     assert make_project({}).run("doctor", "--no-robot", "--team", "1").code == 2
 
 
+@pytest.mark.slow
 def test_problems_come_first_and_extras_when_asked(make_project) -> None:
     settings = """
         [tool.robotpy]

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from conftest import sampled
 
 ROBOT = """
     import wpilib
@@ -176,7 +177,7 @@ def test_a_documented_example_runs(example: str, make_project) -> None:
 
 
 @pytest.mark.parametrize("command", [("test", "--builtin"), ("sim", "--ui", "none", "--mode", "teleop")])
-@pytest.mark.parametrize("where", ["at the top", "in a method"])
+@pytest.mark.parametrize("where", sampled(["at the top", "in a method"], "in a method"))
 def test_the_successor_of_networktables_is_named(make_project, command: tuple[str, ...], where: str) -> None:
     at_top = where == "at the top"
     physics = f"""

@@ -292,6 +292,7 @@ def test_workers_play_the_matches(cluster: Cluster, make_project) -> None:
     assert cluster.left_on_workers() == []
 
 
+@pytest.mark.slow
 def test_an_error_of_the_robots_code_is_shown_as_without_a_cluster(cluster: Cluster, make_project) -> None:
     project = make_project({"robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    x = missing\n"})
     here = project.run("fuzz", "--runs", "1")

@@ -153,6 +153,7 @@ def test_the_nightly_workflow_of_new_projects() -> None:
     assert {step["with"]["path"] for step in steps if "actions/cache" in step.get("uses", "")} == {DIRECTORY.as_posix()}
 
 
+@pytest.mark.slow
 def test_github_shows_a_failure_at_its_line(make_shared_project, monkeypatch) -> None:
     robot = "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    def teleopInit(self):\n        {}['50%']\n"
     project = make_shared_project({"robot/robot.py": robot, "robot/pyproject.toml": SETTINGS})

@@ -219,6 +219,7 @@ ERRORS = {
 
 
 @pytest.mark.parametrize("body", sampled(ERRORS, "robot.elevator.move('up')"))
+@pytest.mark.slow
 def test_an_error_of_a_rule_names_its_line(body: str, project) -> None:
     project.write({RULES: rule(body), "tests/test_it.py": READY_MADE})
     line = 4 if body.startswith("return") else 5
@@ -267,6 +268,7 @@ def test_rules_in_test_files_and_values_that_are_shown(project) -> None:
         (project.path / file).unlink()
 
 
+@pytest.mark.slow
 def test_a_new_rule_concerns_tests_that_have_passed(project) -> None:
     project.write({"tests/test_it.py": READY_MADE})
     assert project.run("test", "--changed").code == 0

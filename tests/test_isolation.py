@@ -289,7 +289,19 @@ def test_several_at_a_time_give_the_same_in_the_same_order(everything: RobotProj
         # Each of its tests is a new interpreter: enough of them, not all.
         (
             "spawn",
-            ("test_parametrised", "test_of_module", "test_second_on", "test_unexpectedly", "test_skip", "OldStyle"),
+            (
+                "test_parametrised",
+                "test_of_module",
+                "test_second_on",
+                "test_unexpectedly",
+                "test_skip",
+                "OldStyle",
+                "test_has",
+                "test_plain",
+                "test_warns",
+                "test_expected",
+                "test_talks_and_passes",
+            ),
         ),
         # Used again, each is as good as new.
         pytest.param("reuse", (), marks=pytest.mark.slow),

@@ -88,6 +88,7 @@ def test_a_robot_with_urcl_is_told_where_to_import_it(make_project: MakeProject)
     assert "`import urcl` makes a notifier. Do that in robotInit." in explained[0]
 
 
+@pytest.mark.slow
 def test_fuzz_imports_such_a_robot_in_each_match(make_project: MakeProject) -> None:
     _, output = run(make_project({"robot.py": ROBOT}), "fuzz", "--seed", "1", "--time", "2")
     assert "Nothing was found" in output

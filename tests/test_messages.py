@@ -299,6 +299,7 @@ def test_a_state_that_does_not_exist(make_project: MakeProject) -> None:
     assert block[1] == "  Did you mean 'push'?"
 
 
+@pytest.mark.slow
 def test_a_magic_robot_with_robot_init(make_project: MakeProject) -> None:
     tests = {"tests/test_a.py": IN_TELEOP, "tests/test_b.py": READY_MADE}
     project = make_project({"robot.py": STATES.format("robotInit"), **tests})

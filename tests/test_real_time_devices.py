@@ -177,6 +177,7 @@ def test_recordings_have_the_same_hash_and_mark_the_values(with_phoenix: Phoenix
     assert load_script(first).trace == expected
 
 
+@pytest.mark.slow
 def test_their_passes_are_not_remembered(with_phoenix: PhoenixProject) -> None:
     tests = with_phoenix.path / "tests/test_robot.py"
     tests.write_text(tests.read_text("utf-8").partition("def test_disabled")[0], "utf-8")  # one is enough

@@ -149,6 +149,7 @@ def test_a_change_runs_what_depends_on_the_file(project) -> None:
         assert ran(project) == expected, (name, new)
 
 
+@pytest.mark.slow
 def test_what_failed_runs_until_it_passes(project) -> None:
     edit(project, "parts/arm.py", "self.motor.set(POWER)", "self.motor.set(-POWER)")
     assert ran(project, code=1) == ALL

@@ -201,6 +201,7 @@ def test_a_log_that_is_started_at_import(make_project) -> None:
     assert not (made.path / "logs").exists()
 
 
+@pytest.mark.slow
 def test_replays_and_campaigns(make_project) -> None:
     """A replay has a log; thousands of matches have none."""
     script = [{"format": "pyfrc-input 1", "robot": "robot.py", "end": 4.0}, {"t": 1.0, "set": {"mode": "teleop"}}]

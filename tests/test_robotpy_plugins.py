@@ -82,6 +82,7 @@ def test_robotpy_runs_our_tests(make_project) -> None:
     assert "pyfrc.tests ...." in result.stdout
 
 
+@pytest.mark.slow
 def test_robotpy_ends_as_our_command_does(make_project) -> None:
     project = make_project(FAILING)
     result = project.run("test", "--", "-v", program="robotpy")
@@ -93,6 +94,7 @@ def test_robotpy_ends_as_our_command_does(make_project) -> None:
     assert "Did you mean '--jobs'?" in wrong.stderr
 
 
+@pytest.mark.slow
 def test_robotpy_measures_our_commands(make_project) -> None:
     project = make_project(ROBOT)
     result = project.run("coverage", "--fail-under", "100", "test", "--builtin", "-j", "1", program="robotpy")

@@ -53,7 +53,7 @@ def test_orders(control, robot, run):
 
 @pytest.mark.parametrize(
     "args",
-    [(), ("--isolation", "reuse"), pytest.param(("--no-isolation",), marks=pytest.mark.slow)],
+    [(), *(pytest.param(each, marks=pytest.mark.slow) for each in (("--isolation", "reuse"), ("--no-isolation",)))],
     ids=["isolated", "reused", "one process"],
 )
 def test_each_run_has_the_same_order(make_project: MakeProject, args: tuple[str, ...]) -> None:

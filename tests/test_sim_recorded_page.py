@@ -132,6 +132,7 @@ def test_nothing_of_this_computer_is_in_a_page(recorded: Any) -> None:
     assert [each.name for each in file.parent.iterdir()] == ["run.html"]
 
 
+@pytest.mark.slow
 def test_a_page_of_a_replay_and_of_a_failure_that_fuzz_has_found(make_project: Any) -> None:
     broken = FILES["robot.py"].replace("print(", "{}[5]\n                print(", 1)
     project = make_project({**FILES, "robot.py": broken})

@@ -156,6 +156,7 @@ def test_a_robot_that_hangs_or_ends_leaves_the_page_alive(make_project, button: 
         page.until(lambda: page.status["state"] == "paused" and page.status["starts"] == 2)
 
 
+@pytest.mark.slow
 def test_its_options_belong_to_it(make_project) -> None:
     made = make_project(FILES)
     for option in (["--share"], ["--port", "7777"], ["--allow-host", "cart.example"]):

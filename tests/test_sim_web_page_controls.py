@@ -158,6 +158,7 @@ def test_each_kind_of_device_shows_and_takes_its_value(person: Seen) -> None:
     page.locator(".curve-name").first.wait_for(state="detached")
 
 
+@pytest.mark.slow
 def test_joysticks_by_keys(browser, server) -> None:
     with page_of(browser, server, script=PADS) as person:
         page = person.page

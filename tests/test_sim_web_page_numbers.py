@@ -68,6 +68,7 @@ def test_a_number_is_edited_while_the_robot_is_paused(person: Seen) -> None:
     person.shows(box, "4.5")
 
 
+@pytest.mark.slow
 def test_what_is_no_number_is_refused_with_the_reason(person: Seen) -> None:
     page = person.page
     kp = person.row(KP).locator("input")
@@ -88,7 +89,6 @@ def test_what_is_no_number_is_refused_with_the_reason(person: Seen) -> None:
     assert written(person) == []
 
 
-@pytest.mark.slow
 def test_a_list_is_edited_with_all_digits_of_its_numbers(person: Seen) -> None:
     page = person.page
     target = "nt:/SmartDashboard/gains"

@@ -85,6 +85,7 @@ def test_a_curve_is_shown_in_another_unit_as_a_derivative_or_without_another_one
     assert float(lines[-1].split(",")[3]) == pytest.approx(shown(drove, "sim.pose[1] (2)"), rel=0.01)
 
 
+@pytest.mark.slow
 def test_axes_are_zoomed_locked_and_typed(drove: Seen) -> None:
     page = drove.page
     automatic = limits(drove, "Left")
@@ -111,6 +112,7 @@ def test_axes_are_zoomed_locked_and_typed(drove: Seen) -> None:
     assert limits(drove, "Left") == pytest.approx(automatic, abs=0.1)
 
 
+@pytest.mark.slow
 def test_a_table_has_statistics_of_what_is_in_view(drove: Seen) -> None:
     page = drove.page
     drove.button("All").first.click()

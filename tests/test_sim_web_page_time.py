@@ -172,6 +172,7 @@ def test_looking_back_shows_the_past_everywhere_and_changes_nothing(person: Seen
     page.locator(".state em").wait_for(state="detached")
 
 
+@pytest.mark.slow
 def test_marks_and_moments_are_found_on_the_timeline(person: Seen) -> None:
     page = person.page
     drive(person)
@@ -338,6 +339,7 @@ def test_the_page_says_which_values_are_forgotten(browser, make_project, monkeyp
         page.locator(".timeline-tip", has_text="Values forgotten").wait_for()
 
 
+@pytest.mark.slow
 def test_the_page_says_that_the_simulation_was_closed(browser, make_project) -> None:
     with served(make_project(ROBOT), speed=1, paused=False) as server, page_of(browser, server) as person:
         server.front_end.close()

@@ -92,6 +92,7 @@ def workflow(project: RobotProject) -> list[list[str]]:
 
 
 @sampled_templates
+@pytest.mark.slow
 def test_its_workflow_passes_as_it_stands_in_the_file(project: RobotProject, tmp_path: Path) -> None:
     """Checking the config, and the tests with more than 80 % of the robot's lines run, when all is installed.
 

@@ -278,6 +278,7 @@ def test_a_line_that_is_printed_right_after_a_client_has_connected_reaches_it(mo
         console.close()
 
 
+@pytest.mark.slow
 def test_two_at_once_have_ports_consoles_and_programs_of_their_own(project: RobotProject, directory: Path) -> None:
     with started(project, directory) as one, started(project, directory.with_name("other")) as other:
         assert one.address != other.address
@@ -292,6 +293,7 @@ def test_two_at_once_have_ports_consoles_and_programs_of_their_own(project: Robo
         assert not any("version 1" in line for line in one.printed)
 
 
+@pytest.mark.slow
 def test_a_port_that_is_taken_and_a_directory_in_use_are_refused(project: RobotProject, directory: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]

@@ -129,6 +129,7 @@ def test_a_loop_that_waits_fails_and_names_its_line(
     assert "loop_seconds under [tool.pyfrc.test]" in result.output
 
 
+@pytest.mark.slow
 def test_what_ends_in_time_is_no_failure(make_project: MakeProject) -> None:
     """Two seconds to the microsecond in teleoperated, all of autonomous, and as long as it likes in robotInit."""
     robot = """

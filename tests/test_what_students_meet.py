@@ -67,7 +67,7 @@ def test_a_file_with_the_name_of_a_built_in_module_is_said_never_to_be_imported(
     ("content", "place", "what"),
     [
         (ROBOT.encode("utf-16"), "robot.py", "this file is in UTF-16"),
-        (ROBOT.encode("utf-16-le"), "robot.py", "this file is in UTF-16"),
+        pytest.param(ROBOT.encode("utf-16-le"), "robot.py", "this file is in UTF-16", marks=pytest.mark.slow),
         (b"import wpilib\n\n# \0\0\0\n", "robot.py:3", "null bytes"),
         ("import wpilib\nNAME = 'Jos\xe9'\n".encode("latin-1"), "robot.py:2", "0xe9, probably the character 'é'"),
     ],
@@ -84,6 +84,7 @@ def test_a_robot_in_another_encoding_is_explained(
     assert what in result.first_error
 
 
+@pytest.mark.slow
 def test_a_byte_order_mark_before_the_settings_does_no_harm(make_project: MakeProject) -> None:
     settings = "\ufeff[tool.pyfrc.test]\njobs = 1\n[tool.pytest.ini_options]\naddopts = '-v'\n"
     project = make_project({"robot.py": ROBOT, "pyproject.toml": settings, **TESTS})
@@ -220,7 +221,7 @@ IN_TELEOP = """
 """
 
 
-@pytest.mark.parametrize("where", [0, 1, 2], ids=["at-import", "in-robotInit", "in-teleopPeriodic"])
+@pytest.mark.parametrize("where", sampled([0, 1, 2], 0, 1), ids=["at-import", "in-robotInit", "in-teleopPeriodic"])
 def test_input_in_robot_code_is_refused_with_its_line(make_project: MakeProject, where: int) -> None:
     lines = ["pass"] * 3
     lines[where] = 'NAME = input("Speed? ")'
@@ -235,7 +236,7 @@ def test_input_in_robot_code_is_refused_with_its_line(make_project: MakeProject,
 @pytest.mark.parametrize(
     ("definition", "corrected"),
     [
-        ("def teleopPeriodic():", "def teleopPeriodic(self):"),
+        pytest.param("def teleopPeriodic():", "def teleopPeriodic(self):", marks=pytest.mark.slow),
         ("def helper(speed):", "def helper(self, speed):"),
         ("def __init__():", "def __init__(self):"),
     ],
@@ -327,10 +328,9 @@ MEANT = {
     "command",
     [
         "test",
-        "--pytest",
+        pytest.param("--pytest", marks=pytest.mark.slow),
         "sim --ui none --seconds 0.1",
-        "doctor --no-robot",
-        "test --late",
+        *(pytest.param(each, marks=pytest.mark.slow) for each in ("doctor --no-robot", "test --late")),
     ],
 )
 def test_a_method_that_wpilib_never_calls_is_named_once_with_what_was_meant(
@@ -383,6 +383,7 @@ NEVER_RUNS = """
 """
 
 
+@pytest.mark.slow
 def test_a_failure_of_a_test_that_never_ran_the_robot_says_so(make_project: MakeProject) -> None:
     ready_made = "from pyfrc.tests.docstring_test import *\n"  # looks at the code only
     project = make_project({"robot.py": ROBOT, "tests/test_a.py": NEVER_RUNS, "tests/test_b.py": ready_made})

@@ -140,6 +140,7 @@ def test_a_device_in_the_robots_class_is_named(make_project: MakeProject) -> Non
     assert "devices are made: pwm[3]" in explained
 
 
+@pytest.mark.slow
 def test_a_thread_of_a_test_file_is_named_with_its_line(make_project: MakeProject) -> None:
     tests = "    import vision_library\n" + TESTS.lstrip("\n")
     (explained,), outcomes = run(make_project({"robot.py": ROBOT, "tests/test_a.py": tests}))
@@ -148,6 +149,7 @@ def test_a_thread_of_a_test_file_is_named_with_its_line(make_project: MakeProjec
     assert outcomes == {"test_forked": "FAILED", "test_another": "PASSED"}
 
 
+@pytest.mark.slow
 def test_where_nothing_is_forked_interpreters_are_used_again(make_project: MakeProject) -> None:
     robot = ROBOT.replace("pass", "motor = wpilib.PWMSparkMax(3)")
     explained, outcomes = run(make_project({"robot.py": robot, "tests/test_a.py": TESTS}), "-p", "no_fork")

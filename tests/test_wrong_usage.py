@@ -67,6 +67,7 @@ def test_a_current_directory_that_was_removed(command: list[str], tmp_path: Path
     assert "Traceback" not in ended.stderr
 
 
+@pytest.mark.slow
 def test_a_project_without_tests_is_told_where_they_are_looked_for(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT})
     result = project.run("test")
