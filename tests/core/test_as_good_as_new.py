@@ -226,3 +226,9 @@ def test_libraries_of_a_rehearsal_stay_and_nothing_else(interpreters: Interprete
 def test_a_rehearsal_that_fails_changes_nothing(code: str, interpreters: Interpreters, tmp_path: Path) -> None:
     interpreters.rehearse(partial(do, code, tmp_path))
     assert result_of(interpreters, "found = 1", tmp_path) == 1
+
+
+def test_devices_of_the_xrp_can_be_made_only_once(interpreters: Interpreters, tmp_path: Path) -> None:
+    code = "import os, sys, types; sys.modules['xrp'] = types.ModuleType('xrp'); found = os.getpid()"
+    assert result_of(interpreters, code, tmp_path) != result_of(interpreters, code, tmp_path)
+    assert "the devices of xrp" in interpreters.why_not_again()

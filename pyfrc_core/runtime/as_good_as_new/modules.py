@@ -21,6 +21,9 @@ _PLAIN = ("builtins", "types", "unittest.mock")
 #: as the project's modules are.
 _IMPORTED_ANEW = ("pathplannerlib",)
 
+#: Libraries in C++ whose devices can be made only once in a process: an `XRPMotor` never gives its channel back.
+_MADE_ONCE = ("xrp",)
+
 
 class ProjectModules(Part):
     """What is imported, and from where."""
@@ -82,6 +85,7 @@ class ProjectModules(Part):
                     yield f"the module {name}"
                 else:
                     self._modules[name] = module  # a library, which was imported late
+        yield from (f"the devices of {name}, which can be made only once" for name in _MADE_ONCE if name in sys.modules)
         for name, values in self._paths.items():
             if getattr(sys, name) != values:
                 yield f"what was changed in sys.{name}"
