@@ -144,7 +144,7 @@ ROBOTS = {"commands": COMMANDS, "magic": MAGIC, "devices": DEVICES, "rev": REV, 
 
 
 def hashes(project: RobotProject, isolation: str) -> tuple[dict[str, str], str]:
-    """Run the ready-made tests; return the hash of each trace, and what is printed."""
+    """Run the tests, or the ready-made ones; return the hash of each trace, and what is printed."""
     result = project.run("test", "--builtin", "-j", "1", "--trace", isolation, "--isolation", isolation, "--", "-v")
     assert result.code == 0, result.output
     traces = sorted((project.path / isolation).iterdir())
@@ -161,3 +161,8 @@ def test_one_interpreter_runs_all_tests(name: str, make_project: MakeProject) ->
     assert reused == forked
     assert len(forked) == 4
     assert re.findall("pyfrc: .*", printed) == []
+
+
+def test_the_fuzz_test_has_the_same_inputs_in_a_fork(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": MAGIC, "tests/test_fuzz.py": "from pyfrc.tests.fuzz_test import *\n"})
+    assert hashes(project, "fork")[0] == hashes(project, "reuse")[0]

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import random
+from collections.abc import Sequence
 from pathlib import Path
+from types import FunctionType
 
 from ..fuzz.guidance.lines import RobotLines
 from ..fuzz.inputs.asked_controls import watch_controls
@@ -28,7 +31,7 @@ _SCRIPTS = Path(".pyfrc", "fuzz")
 _MOST_RUNS = 300
 
 
-def play_match(control: TestController, fake_time: FakeTime) -> None:
+def play_match(control: TestController, fake_time: FakeTime, robot: object) -> None:
     """Run the test's robot through a whole match with random inputs; if it fails, save the shortest script of that."""
     __tracebackhide__ = True
     clock, project, seed = fake_time.run.clock, control.project or find_project(), control.seed
@@ -42,7 +45,7 @@ def play_match(control: TestController, fake_time: FakeTime) -> None:
             plan=without_restarts(plan_match(rng, seconds, settings, project.game_specific_messages)),
             seconds=seconds,
             network_reads=reads,
-            constants=find_constants(RobotLines(project.files).functions),
+            constants=find_constants(_functions(project, robot)),
             asked_controls=asked.targets,
             auto_joysticks=project.auto_joysticks,
         )
@@ -56,6 +59,16 @@ def play_match(control: TestController, fake_time: FakeTime) -> None:
             )
             _save(project, fuzz_run.script(project.main_file.name, seed), generator, error)
             raise
+
+
+def _functions(project: Project, robot: object) -> Sequence[FunctionType]:
+    """Return the functions of the robot's code."""
+    functions = RobotLines(project.files).functions
+    if any(type(each) is FunctionType and each not in functions for each in vars(type(robot)).values()):
+        gc.unfreeze()  # those of the process that was forked
+        functions = RobotLines(project.files).functions
+        gc.freeze()
+    return functions
 
 
 def _save(project: Project, script: InputScript, generator: InputGenerator, error: BaseException) -> None:

@@ -20,4 +20,4 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
     __tracebackhide__ = True
     from .fuzz_match import play_match
 
-    play_match(control, fake_time)
+    play_match(control, fake_time, robot)
