@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import pytest
 from network_robots import AUTONOMOUS, DISABLED, TELEOP, WORD, NetworkRobot, link_to, network_robot
@@ -153,6 +154,37 @@ def test_values_are_set_only_after_the_switch(robot: NetworkRobot, tmp_path: Pat
         assert "Tuning is off" not in ask(page, "tune", on=True)
     with shown(tmp_path, robot.port) as there, there.page(there.viewing_address) as guest:
         assert "only shows" in ask(guest, "tune", on=True)
+
+
+def test_the_page_of_a_camera_may_load_its_addresses_and_nothing_else(robot: NetworkRobot, tmp_path: Path) -> None:
+    given = [
+        "mjpg:http://roborio-1234-frc.local:1181/?action=stream",
+        "mjpg:http://10.12.34.2:1181/stream.mjpg?name=a;b",
+        "mjpg:javascript:alert(1)",
+        "mjpg:http://evil.example/a b",
+        "mjpg:http://x';script-src:1/",
+        "rtsp://10.12.34.2/",
+    ]
+    robot.set("/CameraPublisher/<Front>/streams", "string[]", given)
+    with shown(tmp_path, robot.port) as there, there.page() as page:
+        page.until(lambda: "nt:/CameraPublisher/<Front>/streams" in page.values)
+        query = urlsplit(there.viewing_address).query
+        status, headers, content = there.get(f"/camera?{query}&name=%3CFront%3E")
+        assert status == 200
+        policy = dict(rule.split(" ", 1) for rule in headers["content-security-policy"].split("; "))
+        assert policy["img-src"] == "http://10.12.34.2:1181/stream.mjpg http://roborio-1234-frc.local:1181/"
+        assert (policy["default-src"], policy["frame-ancestors"]) == ("'none'", "'self'")
+        assert headers["x-frame-options"] == "SAMEORIGIN"
+        assert b"&lt;Front&gt;" in content
+        assert b"<Front>" not in content
+        assert b"evil" not in content
+        _, headers, content = there.get(f"/camera?{query}&name=none")
+        assert b"has published no address" in content
+        assert "img-src 'none'" in headers["content-security-policy"]
+        assert there.get("/camera?token=x&name=none")[0] == 403
+        _, headers, _ = there.get(f"/?{query}")
+        assert "img-src 'self' data: blob:;" in headers["content-security-policy"]
+        assert headers["x-frame-options"] == "DENY"
 
 
 def test_two_viewers_see_the_same(robot: NetworkRobot, tmp_path: Path) -> None:

@@ -113,7 +113,8 @@ function stop(name) {
 
 // The server's text without the seconds, which have a place of their own.
 function shortText(text) {
-  return (text ?? "").replace(/, -?\d+ s$/, "");
+  const short = (text ?? "").replace(/, -?\d+ s$/, "");
+  return model.isDriven ? short : short.replace("Driver station lost (F8)", "No driver station"); // no key connects it
 }
 
 function matchLeft(station) {
