@@ -222,14 +222,31 @@ def test_a_very_long_log_is_shown_as_far_as_memory_allows(tmp_path: Path) -> Non
     assert "its first 100 records are shown" in found.problem
 
 
-@settings(max_examples=300, deadline=None)
+def _whole(kind: str) -> bytes:
+    """Return a log of each kind, whole."""
+    if kind == "wpilog":
+        log = a_match()
+        log.values("systemTime", "int64", "q", (0, 1_750_000_000_000_000), (5, 1_750_000_005_000_000))
+        log.values("DS:joystick0/axes", "float[]", "", (1, struct.pack("<2f", 0.5, -1)))
+        return log.data
+    if kind == "dslog":
+        return struct.pack(">i", 4) + _stamp(0) + ds_record(DISABLED) * 20 + ds_record(AUTO) * 20
+    if kind == "dsevents":
+        event = b"<TagVersion>1 <time> 00.100 <message> Warning: low battery"
+        return struct.pack(">i", 4) + _stamp(0) + (_stamp(0.4) + struct.pack(">i", len(event)) + event) * 5
+    lines = ({"t": step / 50, "set": {"pwm[0].value": step, "control.enabled": step > 3}} for step in range(40))
+    return "".join(json.dumps(each) + "\n" for each in ({"format": "pyfrc-trace 2"}, *lines)).encode()
+
+
+@settings(max_examples=400, deadline=None)
 @given(st.data())
 def test_no_damage_is_more_than_a_sentence(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
     """Cut anywhere, with bytes changed anywhere: either a run comes of it, or an error for people."""
-    whole = bytearray(a_match().data)
+    kind = data.draw(st.sampled_from(["wpilog", "wpilog", "dslog", "dsevents", "jsonl"]))
+    whole = bytearray(_whole(kind))
     for _ in range(data.draw(st.integers(0, 4))):
-        whole[data.draw(st.integers(12, len(whole) - 1))] = data.draw(st.integers(0, 255))
-    file = tmp_path_factory.getbasetemp() / "damaged.wpilog"
+        whole[data.draw(st.integers(0, len(whole) - 1))] = data.draw(st.integers(0, 255))
+    file = tmp_path_factory.getbasetemp() / f"damaged.{kind}"
     file.write_bytes(whole[: data.draw(st.integers(0, len(whole)))])
     try:
         run = open_log(file, HEIGHT).run

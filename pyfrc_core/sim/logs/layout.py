@@ -23,8 +23,9 @@ from .columns import Column, LogHistory, ReadLog
 _HAL, _STATION = "/hal_data/", "DS:"
 #: The entries with the output of a robot.
 _OUTPUT = re.compile(r"(NT:)?/?((Real|Replay)Outputs/)?(messages|console|DSEvents)", re.IGNORECASE)
-#: The entries with the time of day, in microseconds since 1970; a robot without one begins at 1970.
-_CLOCKS, _NO_CLOCK = ("systemTime", "/SystemStats/EpochTimeMicros"), 1_500_000_000_000_000
+#: The entries with the time of day, in microseconds since 1970; and the times that can be: a robot that does not know
+#: it begins in 1970.
+_CLOCKS, _TIMES = ("systemTime", "/SystemStats/EpochTimeMicros"), range(1_500_000_000_000_000, 4_000_000_000_000_000)
 _EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
 #: The entries of the mode, in the order in which they are looked for: enabled, autonomous, test, emergency stop.
 _MODES = (
@@ -231,7 +232,7 @@ def when_of(log: ReadLog) -> datetime | None:
     for name in _CLOCKS:
         if (column := log.columns.get(name)) is not None and column.moments:
             moment, time = column.moments[-1], column.decode(len(column.moments) - 1, len(column.moments))[0]
-            if isinstance(time, int) and time > _NO_CLOCK:
+            if isinstance(time, int) and time in _TIMES:
                 return _EPOCH + timedelta(microseconds=time - moment + _begin(log))
     return log.when
 

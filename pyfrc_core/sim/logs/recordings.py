@@ -18,6 +18,8 @@ from ..engine.value_history import ValueHistory
 
 #: About how much memory the values of a trace may take.
 MOST_BYTES = 256 << 20
+#: No run is longer, in seconds.
+_LATEST = 1e6
 #: After how many lines the size is looked at.
 _LOOKED_AT = 500
 
@@ -70,6 +72,7 @@ def read_recording(file: Path, name: str, kind: str) -> PastRun:
 
 def _lines(opened: IO[bytes]) -> Iterator[tuple[float, dict[str, Any], tuple[str, ...]] | str]:
     """Yield time, values and gone paths of each line; what is wrong with a line that cannot be read."""
+    before = 0.0
     for line in opened:
         try:
             change = json.loads(line)
@@ -77,6 +80,9 @@ def _lines(opened: IO[bytes]) -> Iterator[tuple[float, dict[str, Any], tuple[str
                 return
             time, values = float(change["t"]), {**change["set"], **change.get(UNREPEATABLE, {})}
             gone = tuple(map(str, change.get("gone", ())))
+            if not before <= time <= _LATEST:
+                raise ValueError
+            before = time
         except (ValueError, KeyError, TypeError, RecursionError):
             yield "is cut" if not line.endswith(b"\n") else "is damaged"
             return
