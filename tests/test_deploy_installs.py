@@ -18,6 +18,10 @@ from package_index import PackageIndex, package_index
 from roborio import PATIENCE, Proxy
 from roborio.computer import Computer
 
+from pyfrc_core.deploy.robot_checks import PREPARE
+from pyfrc_core.doctor.robot import RobotSearch
+from pyfrc_core.doctor.steps import Step
+from pyfrc_core.project import find_project
 from pyfrc_core.season import CURRENT
 
 ROBOT = """
@@ -208,6 +212,20 @@ def test_a_cut_connection_leaves_the_robot_as_it_was(
             robot.said("plain program 1")
             remains = [*robot.home.glob(".pyfrc/pythons/.new*"), *robot.disk.glob("usr/local/pyfrc/*")]
             assert remains == []
+
+
+@pytest.mark.usefixtures("patient_doctor")
+@nightly
+def test_the_doctor_knows_the_next_step(blank: Computer, laptop: Laptop, project: RobotProject) -> None:
+    def next_step() -> tuple[Step, str] | None:
+        search = RobotSearch(find_project(project.path), blank.where)
+        search.findings()
+        return search.missing_step()
+
+    laptop.sync(spinner="1.0")
+    assert next_step() == (Step.PACKAGES, PREPARE)
+    laptop.deploy(blank)
+    assert next_step() == (Step.DRIVE, "")
 
 
 @pytest.mark.season_2026
