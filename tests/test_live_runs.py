@@ -144,6 +144,17 @@ def test_topics_are_gone_but_not_those_of_a_connection_that_is_being_lost() -> N
     assert "nt:/y" in robot.runs.values
 
 
+def test_a_chooser_that_went_away_and_is_back_is_one_chooser() -> None:
+    robot = Robot()
+    options = Received("/SmartDashboard/Auto/options", "string[]", ["a", "b"], ON - 1)
+    robot.connect(TYPE, options)
+    for second in range(1, 4):
+        robot.take(Gone(options.name), clock_us=ON + second * 1_000_000)
+        robot.take(clock_us=ON + second * 1_000_000 + 1)
+        robot.take(options._replace(time_us=ON + second * 1_000_000 + 2))
+    assert list(robot.runs.choosers) == ["/SmartDashboard/Auto"]
+
+
 def test_a_program_that_started_again_is_another_run() -> None:
     robot = Robot()
     robot.connect(TYPE, number("/x", 1.0, ON - 1))

@@ -65,7 +65,7 @@ class LiveRobot:
         self._where, self._console_of = where, console
         self._hal, self._network, self._output = ChangeFeed(), ChangeFeed(), OutputLog()
         self._runs = RobotRuns(self._hal.add, self._network.add)
-        self._shown = self._snapshot()
+        self._newest = self._snapshot()
         #: A mistake of pyfrc's own, which would leave the page without news.
         self._mistake: Exception | None = None
         self._console: RobotConsole | None = None
@@ -82,7 +82,7 @@ class LiveRobot:
         """The newest state."""
         if self._mistake is not None:
             raise self._mistake
-        return self._shown
+        return self._newest
 
     def output_cursor(self, from_start: bool = True) -> OutputCursor:
         """Return a reader of what the robot prints."""
@@ -192,7 +192,7 @@ class LiveRobot:
         self._reported_at = monotonic()
         runs = self._runs
         with self.reports:
-            self._shown = self._snapshot()
+            self._newest = self._snapshot()
             starts = max(runs.number, 1)
             self.status = replace(self.status, length=runs.now, starts=starts, responding=True)
             self.reports.notify_all()

@@ -69,7 +69,7 @@ class RobotRuns:
         #: The path of the seconds left in the match, if the robot publishes them.
         self.match_time_path: str | None = None
         #: The tables of choosers.
-        self.choosers: list[str] = []
+        self.choosers: dict[str, None] = {}
         #: When each topic got its value, on the robot's clock.
         self._times: dict[str, int] = {}
 
@@ -187,7 +187,7 @@ class RobotRuns:
         if self.match_time_path is None and is_match_time(VALUE + name):
             self.match_time_path = VALUE + name
         if name.endswith(_OPTIONS):
-            self.choosers.append(name.removesuffix(_OPTIONS))
+            self.choosers[name.removesuffix(_OPTIONS)] = None
 
     def _flush(self) -> None:
         """Add what has changed, at the moment `_end`."""
