@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -70,11 +71,7 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
     hal = run.histories["hal"]
     offset = _offset(script, run)
     is_own = any(path.startswith("control.") for path in hal.paths())
-    sensors = (
-        frozenset(path for path in hal.paths() if is_sensor(path) and is_input(path, hal.now))
-        if is_own
-        else frozenset()
-    )
+    sensors = frozenset(filter(partial(_is_measured, hal), hal.paths() if is_own else ()))
     if is_own:  # to its end; that of a robot's log ends soon after the match
         script = replace(script, end_us=max(script.end_us, round((run.end + offset) * 1_000_000) + PACKET_US))
     script = _with_sensors(_placed(project, script, run, is_own), hal, sensors, offset)
@@ -139,6 +136,16 @@ def _placed(project: Project, script: InputScript, run: PastRun, is_own: bool) -
     if place is MISSING or math.hypot(place[0] - start.x, place[1] - start.y) < _SAME_PLACE:
         return script
     return replace(script, steps=(Step(0, robot_at(field, Pose(*place))), *script.steps))
+
+
+def _is_measured(hal: ValueHistory, path: str) -> bool:
+    """Return whether a path is of a sensor that the log has; of devices on the CAN bus, one that moves in the log.
+
+    A motor controller has dozens of values for sensors that are not connected.
+    """
+    if not (is_sensor(path) and is_input(path, hal.now)):
+        return False
+    return not path.startswith("CAN[") or hal.moves(path)
 
 
 def _with_sensors(script: InputScript, hal: ValueHistory, sensors: frozenset[str], offset: float) -> InputScript:

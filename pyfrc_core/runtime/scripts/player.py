@@ -7,14 +7,15 @@ from contextlib import contextmanager
 
 from ...errors import PyfrcError
 from ...hal.kinds import UnknownKey
-from ..clock import INPUT, MEASURED
+from ...wpi import robots
+from ..clock import INPUT, MEASURED, PACKET_US, to_us
 from ..robot import RobotRun
 from .script import InputScript, ScriptError, Step
 from .sensors import HOLD
 from .targets import MATCH_TIME, Targets
 
 #: The shortest period of physics, in microseconds.
-_MEASURED_US = 10_000
+_SHORTEST_US = 10_000
 
 
 class Player:
@@ -57,11 +58,17 @@ class Player:
         if any(MATCH_TIME in step.writes for step in script.steps):
             run.clock.before_packet.append(self._on_packet)
         if any(target.startswith(HOLD) for step in script.steps for target in step.writes):
-            run.clock.every(_MEASURED_US, MEASURED, self._targets.held.apply)
+            run.clock.every(self._physics_us, MEASURED, self._targets.held.apply)
         if script.start_us > run.clock.now_us:
             run.run_until(script.start_us)
         self._write_until(script.start_us)
         run.start()
+
+    @property
+    def _physics_us(self) -> int:
+        """The period in which physics writes, in microseconds, at most."""
+        period_us = to_us(robots.period(self._run.robot, PACKET_US / 1_000_000))
+        return min(PACKET_US, max(_SHORTEST_US, period_us))
 
     def _on_packet(self, now: float) -> None:
         self._targets.count_down(self._run.clock.now_us)

@@ -183,6 +183,11 @@ class ValueHistory:
         last = self.packets if end is None else self._packet_at(end)
         return self._between(path, self._packet_at(begin) + 1, last)
 
+    def moves(self, path: str) -> bool:
+        """Return whether a value has had different values."""
+        values = self.changes(path)[1]
+        return any(value != values[0] for value in values)
+
     def changed_since(self, packet: int) -> dict[str, Any]:
         """Return the values that have changed since the packet with this number; `MISSING` for those that are gone."""
         changed = (path for path, changes in self._changes.items() if changes.packets[-1] >= packet)

@@ -152,8 +152,7 @@ def sensors_by_source(hal: ValueHistory, given: frozenset[str]) -> dict[str, lis
     found: dict[str, list[str]] = {"log": [], "physics": [], "nothing": []}
     for path in sorted(hal.now):
         if is_sensor(path) and is_input(path, hal.now):
-            moves = len(hal.changes(path)[0]) > 1
-            found["log" if path in given else "physics" if moves else "nothing"].append(path)
+            found["log" if path in given else "physics" if hal.moves(path) else "nothing"].append(path)
     return found
 
 
