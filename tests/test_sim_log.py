@@ -210,6 +210,11 @@ def test_what_a_person_has_set_on_a_dashboard_is_named(played: RobotProject) -> 
     assert "in kP" not in said
 
 
+def test_a_log_of_another_robot_has_nothing_to_compare(played: RobotProject) -> None:
+    (played.path / "robot.py").write_text("import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n", "utf-8")
+    assert "nothing to compare: match.wpilog has no value" in log_of(played, "match.wpilog")
+
+
 def test_a_log_that_has_no_inputs_is_refused_in_a_sentence(make_project: MakeProject) -> None:
     project = make_project({"robot.py": PUBLISHING, "drive.jsonl": DRIVEN})
     log = DataLogWriter(str(project.path / "turns.wpilog"))

@@ -59,6 +59,9 @@ class LogReport:
         by = found.by
         how = f"within {by.share * 100:g} % of their range" if by.share else "exactly"
         differing = found.sorted()
+        if not found.compared:
+            yield f"nothing to compare: {log.name} has no value that the robot's code sets here, too"
+            return
         if not differing:
             yield f"no difference: {counted(found.compared, 'value')} that {log.name} has, too, {how} the same"
             return
