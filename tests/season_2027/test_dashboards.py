@@ -137,6 +137,7 @@ def test_the_robot_begins_at_its_start_and_is_placed_on_the_field(make_project: 
         assert page.values["nt:/Tunables/Field/Robot/0/translation/x"] == pytest.approx(3.048)
 
 
+@pytest.mark.slow
 def test_fuzz_varies_what_the_robot_tunes(make_project: MakeProject) -> None:
     project = make_project(ROBOT)
     result = project.run("fuzz", "--runs", "100", "--seed", "1", "-j", "1")

@@ -164,6 +164,7 @@ def test_plain_pytest_runs_them_too(project: RobotProject) -> None:
     assert [name for name, what in outcomes(result).items() if what != "PASSED"] == ["tests/test_own.py::test_fails"]
 
 
+@pytest.mark.slow
 def test_a_line_of_the_robot_that_fails_is_named_by_both(make_project: MakeProject) -> None:
     project = make_project({"robot.py": BUG, "tests/robot_test.py": READY_MADE})
     ours = project.run("test", "--", "-v")
@@ -173,6 +174,7 @@ def test_a_line_of_the_robot_that_fails_is_named_by_both(make_project: MakeProje
     assert project.place("robot.py", "1 / 0") in ours.stdout
 
 
+@pytest.mark.slow
 def test_beside_pyfrc_it_is_as_without(make_project: MakeProject) -> None:
     """Also in a project that pyfrc would refuse. ``-p no:pyfrc`` leaves pyfrc out."""
     files = {"robot.py": ROBOT, "tests/test_own.py": OWN}

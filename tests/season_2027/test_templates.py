@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from conftest import SHORT_MATCH, MakeProject, add_settings
+from conftest import SHORT_MATCH, MakeProject, add_settings, sampled
 
 from pyfrc_core.scaffold import TEMPLATES
 
@@ -22,7 +22,7 @@ def test_there_is_one_for_robots_with_opmodes(make_project: MakeProject) -> None
     assert "opmode" in listed
 
 
-@pytest.mark.parametrize("template", TEMPLATES)
+@pytest.mark.parametrize("template", sampled(TEMPLATES, "command", "opmode"))
 def test_it_passes_its_tests_and_a_match_with_random_inputs(make_project: MakeProject, template: str) -> None:
     project = make_project({})
     made = project.run("init", "--template", template)
@@ -51,7 +51,7 @@ def test_what_the_seasons_share_is_there_once(make_project: MakeProject) -> None
     assert labels["buttons"]["0"] == "take in"  # buttons count from 0
 
 
-@pytest.mark.parametrize("template", ["mecanum", "opmode"])
+@pytest.mark.parametrize("template", sampled(["mecanum", "opmode"], "opmode"))
 def test_create_physics_finds_its_drivetrain(make_project: MakeProject, template: str) -> None:
     """What it writes passes the template's tests; a robot with opmodes is driven in one."""
     project = make_project({})
