@@ -64,7 +64,7 @@ def command(
     if page is not None:
         from pyfrc_core.text_files import check_writable
 
-        check_writable("--page", page)
+        check_writable("--page", page, (file,))
     result = replay(project, file, until=until, trace=trace)
     if page is not None:
         from pyfrc_core.sim.page_file import write_replay_page

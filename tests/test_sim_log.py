@@ -121,6 +121,26 @@ def test_sensors_measure_what_they_measured_in_the_log(recorded: RobotProject) -
     assert "hold:encoder[0].count" in writes
 
 
+def test_a_log_is_not_overwritten_by_what_is_written(recorded: RobotProject) -> None:
+    before = {file: file.read_bytes() for file in recorded.path.glob("match.*")}
+    for log, option, file in (
+        ("match.wpilog", "--wpilog", "match.wpilog"),
+        ("match.jsonl", "--record", "match.jsonl"),
+        ("match.trace.jsonl", "--page", "match.jsonl"),
+        ("match.jsonl", "--page", "match.trace.jsonl"),
+    ):
+        result = recorded.run(*SIM, "--log", log, option, file)
+        assert result.code == 2, result.output
+        assert result.first_error == f"{option} {file} cannot be written: this command reads it"
+    assert {file: file.read_bytes() for file in before} == before
+
+
+def test_a_log_that_is_cut_says_so(recorded: RobotProject) -> None:
+    log = recorded.path / "match.wpilog"
+    log.write_bytes(log.read_bytes()[:-2])
+    assert "match.wpilog: it is cut at byte" in log_of(recorded, "match.wpilog")
+
+
 def test_a_trace_stands_for_the_script_beside_it(recorded: RobotProject) -> None:
     assert "no difference: " in log_of(recorded, "match.trace.jsonl")
     (recorded.path / "match.jsonl").unlink()

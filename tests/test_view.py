@@ -106,6 +106,17 @@ def test_what_cannot_be_shown_is_said_in_a_sentence(make_project: Any) -> None:
     assert "cut.wpilog: it is cut at byte" in result.output
 
 
+def test_a_page_does_not_overwrite_a_log_that_it_shows(make_project: Any) -> None:
+    made = make_project({})
+    a_match().save(made.path / "match.wpilog")
+    log = (made.path / "match.wpilog").read_bytes()
+    for name in ("match.wpilog", f"../{made.path.name}/match.wpilog"):
+        result = made.run("view", "match.wpilog", "--page", name)
+        assert result.code == 2, result.output
+        assert "cannot be written: this command reads it" in result.output
+    assert (made.path / "match.wpilog").read_bytes() == log
+
+
 # -- the page ---------------------------------------------------------------------------------------------------------
 
 

@@ -45,10 +45,14 @@ class LogRun:
 
     :param script: the inputs that it has
     :param run: what it shows, as a branch
+    :param files: what was read
+    :param problem: how the file is damaged; empty: it is whole
     """
 
     script: InputScript
     run: PastRun
+    files: tuple[Path, ...]
+    problem: str
 
     @property
     def end(self) -> float:
@@ -67,7 +71,8 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
     file = _script_of(file)
     given = tuple(f"/{name.removeprefix(VALUE).removeprefix('/')}" for name in given)
     script = _inputs(file, given)
-    run = open_log(file, field_of(project).height).run
+    opened = open_log(file, field_of(project).height)
+    run = opened.run
     hal = run.histories["hal"]
     offset = _offset(script, run)
     is_own = any(path.startswith("control.") for path in hal.paths())
@@ -83,7 +88,7 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
     if repeats and not share:  # a data log does not tell what was there before the loop and what came after it
         late = PACKET_US / 1_000_000 if file.suffix.lower() == DATA_LOG else 0.0
     compared = Comparison(True, share, late, frozenset(written | sensors))
-    return LogRun(script, replace(run, offset=offset, compared=compared))
+    return LogRun(script, replace(run, offset=offset, compared=compared), (file, trace_beside(file)), opened.problem)
 
 
 def _script_of(file: Path) -> Path:

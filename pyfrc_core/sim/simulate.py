@@ -70,9 +70,11 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         opmodes=request.opmodes,
         network_values=kind.shows_network or request.page is not None or log is not None,
     )
+    if log is not None and log.problem:
+        say(f"{request.log}: {log.problem}.\n")
     simulation = Simulation(project, options, None if log is None else log.run)
     page = None if request.page is None else PageFile(request.page, _what(project, request))
-    files = OutputFiles(request.record, request.wpilog, request.picture, page)
+    files = OutputFiles(request.record, request.wpilog, request.picture, page, () if log is None else log.files)
     with ExitStack() as closing:
         interruption = closing.enter_context(ending_like_ctrl_c())
         if not kind.prints:
@@ -155,11 +157,17 @@ def draw_script(project: Project, script: Path, picture: Path, until: float | No
 class OutputFiles:
     """The files to write. They are checked before the simulation runs: an hour of driving must not be lost at the end.
 
+    :param read: the files of a log, which are not overwritten
     :raises UsageError: when one of them cannot be written
     """
 
     def __init__(
-        self, record: Path | None, wpilog: Path | None, picture: Path | None, page: PageFile | None = None
+        self,
+        record: Path | None,
+        wpilog: Path | None,
+        picture: Path | None,
+        page: PageFile | None = None,
+        read: tuple[Path, ...] = (),
     ) -> None:
         self._record, self._wpilog, self._picture, self._page = record, wpilog, picture, page
         if picture is not None:
@@ -168,12 +176,13 @@ class OutputFiles:
             check_pictures(picture)
         files = (
             ("--record", record),
+            ("--record", None if record is None else trace_beside(record)),
             ("--wpilog", wpilog),
             ("--picture", picture),
             ("--page", None if page is None else page.file),
         )
         for option, file in files:
-            check_writable(option, file)
+            check_writable(option, file, read)
         self._former_log = _stamp(wpilog)
 
     def write(self, simulation: Simulation) -> list[Path]:

@@ -69,7 +69,7 @@ def view(request: ViewRequest, say: Say) -> int:
             f"--offset is given {len(request.offsets)} times, for {len(request.files) - 1} logs beside the first one",
             remedy="Give it once for each of them, in their order.",
         )
-    check_writable("--page", request.page)
+    check_writable("--page", request.page, request.files)
     project = project_or_none() or _no_project()
     height = field_of(project).height
     first, *others = [_opened(file, height, request, say) for file in request.files]
