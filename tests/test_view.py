@@ -197,6 +197,16 @@ def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:
         page.locator(".console", has_text="ValueError: it broke").wait_for()
         page.get_by_role("tab", name="Changes", exact=True).click()
         page.locator(".change", has_text="speed").first.wait_for()
+        page.mouse.click(box["x"] + box["width"] - 1, box["y"] + 12)
+        page.locator(".state b", has_text="Autonomous enabled").wait_for(state="detached")
+        page.get_by_role("button", name="Add value").first.click()
+        page.keyboard.type("speed")
+        page.keyboard.press("Enter")
+        plot = page.locator(".u-over").first
+        box = plot.bounding_box()
+        assert box is not None
+        plot.click(position={"x": box["width"] * 0.25, "y": box["height"] / 2})
+        page.locator(".state b", has_text="Autonomous enabled").wait_for()
         drop = """([name, bytes]) => {
           const transfer = new DataTransfer();
           transfer.items.add(new File([new Uint8Array(bytes)], name));

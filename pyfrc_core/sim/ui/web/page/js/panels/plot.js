@@ -1,5 +1,5 @@
 // Values over time, or over another value. Curves are added by "+" or by dragging a value here; dragging in the plot
-// zooms, a double click follows again.
+// zooms, a double click follows again. In a log, a click goes to that moment; while a robot is driven, Alt and a click.
 import { ElementSize } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
 import { ask } from "#js/connection.js";
@@ -255,7 +255,9 @@ export class PlotPanel extends Live {
     );
     if (xCurve) return;
     this.plot.over.addEventListener("wheel", this.wheel, { passive: false });
-    this.plot.over.addEventListener("click", (event) => event.detail === 1 && event.altKey && look(this.plot.posToVal(event.offsetX, "x")));
+    // While a robot is driven, a slip of the hand must not lead to the past.
+    const isMeant = (event) => event.detail === 1 && (event.altKey || !model.isDriven);
+    this.plot.over.addEventListener("click", (event) => isMeant(event) && look(this.plot.posToVal(event.offsetX, "x")));
   }
 
   resize() {
