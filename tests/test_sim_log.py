@@ -132,6 +132,8 @@ def test_a_log_is_not_overwritten_by_what_is_written(recorded: RobotProject) -> 
         result = recorded.run(*SIM, "--log", log, option, file)
         assert result.code == 2, result.output
         assert result.first_error == f"{option} {file} cannot be written: this command reads it"
+    result = recorded.run("replay", "match.jsonl", "--page", "match.jsonl")
+    assert result.first_error == "--page match.jsonl cannot be written: this command reads it"
     assert {file: file.read_bytes() for file in before} == before
 
 

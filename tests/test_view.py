@@ -100,7 +100,10 @@ def test_what_cannot_be_shown_is_said_in_a_sentence(make_project: Any) -> None:
     assert result.code == 2
     result = made.run("view", "match.wpilog", "--offset", "1")
     assert result.code == 2
-    assert "Give it once for each of them" in result.output
+    assert result.first_error == "--offset is given 1 time, for 0 logs beside the first one"
+    result = made.run("view", "match.wpilog", "--page", "a.html", "--port", "8000")
+    assert result.code == 2
+    assert result.first_error == "--page writes a file, and serves no page"
     result = made.run("view", "cut.wpilog", "match.wpilog", "--page", "a.html")
     assert result.code == 0
     assert "cut.wpilog: it is cut at byte" in result.output

@@ -12,6 +12,7 @@ from ..errors import ProjectError, UsageError
 from ..interruption import ending_like_ctrl_c
 from ..project import MAIN_FILE, Project, find_project
 from ..text_files import check_writable
+from ..wording import counted
 from .engine.field import field_of
 from .engine.past_run import PastRun
 from .engine.source import Source
@@ -66,8 +67,13 @@ def view(request: ViewRequest, say: Say) -> int:
         raise UsageError("nothing to show", remedy="Name a log: pyfrc view FILE. For a robot: pyfrc view --robot")
     if len(request.offsets) >= len(request.files):
         raise UsageError(
-            f"--offset is given {len(request.offsets)} times, for {len(request.files) - 1} logs beside the first one",
+            f"--offset is given {counted(len(request.offsets), 'time')}, for "
+            f"{counted(len(request.files) - 1, 'log')} beside the first one",
             remedy="Give it once for each of them, in their order.",
+        )
+    if request.page is not None and any((request.share, request.port, request.allow_host)):
+        raise UsageError(
+            "--page writes a file, and serves no page", remedy="Leave out --share, --port and --allow-host, or --page."
         )
     check_writable("--page", request.page, request.files)
     project = project_or_none() or _no_project()
