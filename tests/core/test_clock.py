@@ -9,6 +9,7 @@ from wpilib import RobotController
 from pyfrc_core.runtime.clock import (
     CHECK,
     INPUT,
+    MEASURED,
     OBSERVE,
     PACKET,
     PACKET_US,
@@ -55,7 +56,7 @@ def test_packets_come_every_20_ms_for_ever(timeline: Timeline) -> None:
     assert timeline.run_until(60) == ["20 packet", "40 packet", "60 packet"]
     assert timeline.clock.next_packet_us == 80_000
     assert PACKET_US == 20_000
-    assert tuple(sorted(range(7))) == (INPUT, PACKET, WAKE_UP, ROBOT_LOOP, CHECK, PHYSICS, OBSERVE)
+    assert tuple(sorted(range(8))) == (INPUT, PACKET, WAKE_UP, ROBOT_LOOP, CHECK, PHYSICS, MEASURED, OBSERVE)
 
 
 def test_what_recurs_keeps_its_period_whatever_its_action_takes(timeline: Timeline) -> None:

@@ -167,7 +167,7 @@ class LiveRobot:
             self._console = RobotConsole(address, self._print, self._console_is_missing)
 
     def _lost(self) -> None:
-        self._say(f"The connection to {self.status.network_address} was lost. Trying again…")
+        self._say(f"The connection to {self.status.network_address} was lost. Trying again...")
         self.status = replace(self.status, network_address=None)
         self._close_console()
 

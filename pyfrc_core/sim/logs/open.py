@@ -16,7 +16,7 @@ from .wpilog import is_wpilog, read_wpilog
 
 #: Endings of logs that only their makers' tools can read, with what converts them.
 _FOREIGN = {
-    ".hoot": "CTRE's format is closed. Phoenix Tuner X (“Log Extractor”) or CTRE's command owlet writes it as a "
+    ".hoot": "CTRE's format is closed. Phoenix Tuner X (Log Extractor) or CTRE's command owlet writes it as a "
     ".wpilog: owlet -f wpilog FILE.hoot FILE.wpilog",
     ".rlog": "This is AdvantageKit's format before 2023. AdvantageScope opens it, and exports it as a .wpilog.",
     ".revlog": "REV's format is not read here. AdvantageScope opens it, and exports it as a .wpilog.",

@@ -312,7 +312,7 @@ def _text_list(raw: bytes) -> Any:
 
 def _json(raw: bytes) -> Any:
     text = _text(raw)
-    return text if len(text) < 4096 else text[:4096] + "…"
+    return text if len(text) < 4096 else text[:4096] + "..."
 
 
 def _unknown(raw: bytes) -> Any:
