@@ -103,7 +103,10 @@ class LiveRobot:
     def start(self) -> None:
         """Begin to look for the robot."""
         where = self._where
-        self._say(f"Looking for the robot at {', '.join(map(_shown, where.servers))}.")
+        self._say(
+            f"Looking for the robot at {', '.join(map(_shown, where.servers))}. "
+            "Is its program running, and this computer in its network?"
+        )
         self._client = network_client.Client("pyfrc view", where.servers, where.asks_driver_station)
         self._thread.start()
 

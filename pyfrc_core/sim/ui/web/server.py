@@ -103,6 +103,7 @@ class Server:
             ws_ping_timeout=_GONE_SECONDS,
             timeout_graceful_shutdown=1,
         )
+        config.load()  # here, not on the thread: a program that is to end at once would wait for its imports
         self._app, self._server = app, uvicorn.Server(config)
         self._thread = threading.Thread(target=self._serve, name="pyfrc sim: web server", daemon=True)
         self._thread.start()
