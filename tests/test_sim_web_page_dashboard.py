@@ -76,10 +76,12 @@ def test_a_team_makes_a_dashboard(file: Path, person: Seen) -> None:
         page.keyboard.press(key)
     person.button("Settings of flag").click()
     page.get_by_label("Show as").select_option("switch")
+    switch = shown(person, "switch")
+    switch.wait_for()  # its settings are drawn anew with it
     page.get_by_label("Title").fill("Arm it")
     page.keyboard.press("Enter")
+    switch.get_by_text("Arm it").wait_for()
     page.keyboard.press("Escape")
-    shown(person, "switch").get_by_text("Arm it").wait_for()
     # A page that was reloaded goes on; a dashboard is in the file when it was saved.
     page.reload()
     number.wait_for()

@@ -3,6 +3,7 @@ import { KINDS, kindsFor } from "#js/dashboard/kinds.js";
 import { pathOf, topicOf } from "#js/dashboard/topics.js";
 import { typedNumber } from "#js/format.js";
 import { model } from "#js/model.js";
+import { TextBox } from "#js/text_box.js";
 import { html } from "#js/view.js";
 
 const MOST_OFFERED = 500;
@@ -25,7 +26,7 @@ export function WidgetSettings({ widget, change }) {
 }
 
 function TextSetting({ label, text, set, list = undefined }) {
-  return html`<label>${label} <input type="text" value=${text ?? ""} list=${list} spellcheck="false" onKeyDown=${commit} onChange=${(event) => set(event.target.value.trim())} /></label>`;
+  return html`<label>${label} <${TextBox} text=${text ?? ""} list=${list} spellcheck="false" onKeyDown=${commit} onChange=${(event) => set(event.target.value.trim())} /></label>`;
 }
 
 function NumberSetting({ name, value, change }) {
@@ -37,7 +38,7 @@ function NumberSetting({ name, value, change }) {
       model.set("problem", `${NUMBERS[name]}: ${error.message}.`);
     }
   };
-  return html`<label>${NUMBERS[name]} <input type="text" class="number" inputmode="decimal" value=${value ?? ""} onKeyDown=${commit} onChange=${set} /></label>`;
+  return html`<label>${NUMBERS[name]} <${TextBox} class="number" inputmode="decimal" text=${value ?? ""} onKeyDown=${commit} onChange=${set} /></label>`;
 }
 
 function commit(event) {
