@@ -214,9 +214,11 @@ def _serve(listener: socket.socket) -> _Request | None:
                     asking.send(b"cold")
             elif pid := os.fork():
                 forks[os.pidfd_open(pid)] = pid, asking
-                with suppress(OSError):
-                    asking.send(str(pid).encode())
             else:
+                if request.own_session:
+                    os.setsid()
+                with suppress(OSError):  # now that who knows this number can end the session, too
+                    asking.send(str(os.getpid()).encode())
                 for end, (_, other) in forks.items():
                     os.close(end)
                     other.close()
@@ -259,8 +261,6 @@ def _search_path(environment: Mapping[str, str]) -> list[str]:
 
 def _become(request: _Request) -> None:
     """Do what ``python arguments`` does, and end this process."""
-    if request.own_session:
-        os.setsid()
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGHUP, signal.SIG_IGN if request.ignores_hangup else signal.SIG_DFL)
     os.chdir(request.directory)
