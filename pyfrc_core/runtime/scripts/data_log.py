@@ -21,6 +21,7 @@ from typing import Any
 from ...season import CURRENT
 from ...wpi import logs, station
 from ..robot_time import PACKET_US
+from .modes import DS_ATTACHED, FMS_ATTACHED, mode_name, selected
 from .network_entries import entry_target
 from .script import InputScript, ScriptError, Step
 from .targets import MATCH_TIME, MODE, OPMODE, REMAINING, plugged
@@ -42,9 +43,6 @@ _FROM_OUTSIDE = re.compile(r"NT:(/.+/selected|/Preferences/[^.].*|/limelight[^/]
 
 #: The part of a robot's log before and after it is enabled that is replayed, in microseconds.
 _BEFORE_US, _AFTER_US = 5_000_000, 3_000_000
-
-#: The bits of ``FMSControlData``.
-_FMS_ATTACHED, _DS_ATTACHED = 16, 32
 
 _STATIONS = ("unknown", "red1", "red2", "red3", "blue1", "blue2", "blue3")
 _MATCH_TYPES = ("none", "practice", "qualification", "elimination")
@@ -155,7 +153,7 @@ class _State:
 
     def _attached(self) -> bool:
         if (control := self.values.get(f"{_FMS}FMSControlData")) is not None:
-            return bool(control & _DS_ATTACHED)
+            return bool(control & DS_ATTACHED)
         return bool(self.values.get(f"{_HAL}control.dsAttached", True))
 
     def _station(self) -> Iterator[tuple[str, Any, Any]]:
@@ -167,7 +165,7 @@ class _State:
             place = int(fms["StationNumber"]) + (0 if fms.get("IsRedAlliance", True) else 3)
         yield "alliance_station", _named(_STATIONS, place), "red1"
         yield "control.eStop", bool(self.values.get("DS:estop")), False
-        fms_attached = bool(fms.get("FMSControlData", 0) & _FMS_ATTACHED) or bool(ours.get("control.fmsAttached"))
+        fms_attached = bool(fms.get("FMSControlData", 0) & FMS_ATTACHED) or bool(ours.get("control.fmsAttached"))
         yield "control.fmsAttached", fms_attached, False
         yield "event.name", fms.get("EventName", ours.get("event.name", station.EVENT_NAME)), station.EVENT_NAME
         yield "event.match_number", int(fms.get("MatchNumber", ours.get("event.match_number", 0))), 0
@@ -181,10 +179,8 @@ class _State:
         yield MODE, self._mode(), "disabled"
 
     def _mode(self) -> str:
-        selected = next((mode for mode in ("autonomous", "test") if self.values.get(f"DS:{mode}")), "")
-        if self.values.get("DS:enabled"):
-            return selected or "teleop"
-        return f"disabled {selected}" if selected else "disabled"
+        enabled, autonomous, test = (self.values.get(f"DS:{name}") for name in ("enabled", "autonomous", "test"))
+        return mode_name(enabled, selected(autonomous, test))
 
     def _joystick(self, stick: int) -> Iterator[tuple[str, Any]]:
         controls = {sort: self.values.get(f"DS:joystick{stick}/{sort}") for sort in _CONTROLS}

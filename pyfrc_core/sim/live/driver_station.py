@@ -10,15 +10,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ...runtime.scripts.modes import (
+    AUTONOMOUS,
+    DS_ATTACHED,
+    ENABLED,
+    SELECTED_BY_NUMBER,
+    STOPPED,
+    TEST,
+    mode_name,
+    selected,
+)
 from ..engine.messages import UNKNOWN_MODE, VALUE
 
 _TABLES = (f"{VALUE}/FMSInfo", f"{VALUE}/DriverStation")
-#: The bits of the word until 2026.
-_ENABLED, _AUTONOMOUS, _TEST, _STOPPED, _DS_ATTACHED = 1, 2, 4, 8, 32
-#: Its parts that are as those bits from 2027 on.
+#: The parts of the word from 2027 on that are as its bits until 2026.
 _FLAGS = ("enabled", "eStop", "dsAttached")
-#: The modes of the word from 2027 on; others are teleoperated.
-_MODES = {1: "autonomous", 3: "test"}
 #: The name of a topic with the seconds left, in small letters without spaces and the like.
 _MATCH_TIME = "matchtime"
 
@@ -43,26 +49,24 @@ def driver_station_in(values: Mapping[str, Any]) -> DriverStation:
     before, after = _TABLES
     word = values.get(f"{before}/FMSControlData")
     if isinstance(word, int):
-        selected = "autonomous" if word & _AUTONOMOUS else "test" if word & _TEST else ""
-        flags = bool(word & _ENABLED), bool(word & _STOPPED), bool(word & _DS_ATTACHED)
-        return _station(before, values, selected, flags, "GameSpecificMessage")
+        flags = bool(word & ENABLED), bool(word & STOPPED), bool(word & DS_ATTACHED)
+        return _station(before, values, selected(word & AUTONOMOUS, word & TEST), flags, "GameSpecificMessage")
     word_path = f"{after}/ControlWord"
     if f"{word_path}/enabled" in values:
-        selected = _MODES.get(values.get(f"{word_path}/robotMode", 0), "")
+        chosen = SELECTED_BY_NUMBER.get(values.get(f"{word_path}/robotMode", 0), "")
         enabled, stopped, attached = (bool(values.get(f"{word_path}/{name}")) for name in _FLAGS)
-        return _station(after, values, selected, (enabled, stopped, attached), "GameData")
+        return _station(after, values, chosen, (enabled, stopped, attached), "GameData")
     return DriverStation(UNKNOWN_MODE)
 
 
 def _station(
-    table: str, values: Mapping[str, Any], selected: str, flags: tuple[bool, bool, bool], message: str
+    table: str, values: Mapping[str, Any], chosen: str, flags: tuple[bool, bool, bool], message: str
 ) -> DriverStation:
     enabled, stopped, attached = flags
-    mode = (selected or "teleop") if enabled else f"disabled {selected}".strip()
     place = values.get(f"{table}/StationNumber")
     is_red = bool(values.get(f"{table}/IsRedAlliance", True))
     return DriverStation(
-        mode=mode,
+        mode=mode_name(enabled, chosen),
         attached=attached,
         emergency_stopped=stopped,
         alliance_station=place + (0 if is_red else 3) if isinstance(place, int) and 1 <= place <= 3 else 0,

@@ -14,6 +14,7 @@ from typing import Any
 
 from ...physics.pose import METRES_PER_FOOT
 from ...runtime.robot_time import PACKET_US
+from ...runtime.scripts.modes import AUTONOMOUS, ENABLED, SELECTED_BY_NUMBER, STOPPED, TEST, mode_name, selected
 from ...season import CURRENT
 from ..engine.messages import MODE, POSE, TYPE, VALUE
 from ..engine.past_run import Happened, PastRun, Stream
@@ -38,8 +39,8 @@ _MODES = (
     ("/DSLog/Enabled", "/DSLog/Autonomous", "", ""),
 )
 _CONTROL = "NT:/FMSInfo/FMSControlData"
-#: The words of 2027's driver station, and their modes by number.
-_WORDS, _WORD_MODES = ("DS:controlWord", "NT:/DriverStation/ControlWord"), {1: "autonomous", 3: "test"}
+#: The words of 2027's driver station.
+_WORDS = ("DS:controlWord", "NT:/DriverStation/ControlWord")
 #: What only logs of 2027 have; their POVs have a bit for each direction: up, right, down, left.
 _OF_2027 = ("DS:controlWord/enabled", "DS:opMode")
 _POVS = {1: 0, 3: 45, 2: 90, 6: 135, 4: 180, 12: 225, 8: 270, 9: 315}
@@ -142,26 +143,23 @@ def _held(column: Column | None, moments: Iterable[int]) -> Iterator[Any]:
 def _mode(columns: Mapping[str, Column]) -> Column | None:
     for names in _MODES:
         if names[0] in columns:
-            return together([columns.get(name) for name in names], _mode_name)
+            return together([columns.get(name) for name in names], _mode_of)
     for word in _WORDS:
         parts = [columns.get(f"{word}/{part}") for part in ("enabled", "robotMode", "eStop")]
         if parts[0] is not None:
             return together(parts, _word_mode)
     if (control := columns.get(_CONTROL)) is not None:
-        return together([control], lambda bits: _mode_name(*(bool((bits or 0) & bit) for bit in (1, 2, 4, 8))))
+        flags = ENABLED, AUTONOMOUS, TEST, STOPPED
+        return together([control], lambda bits: _mode_of(*((bits or 0) & flag for flag in flags)))
     return None
 
 
-def _word_mode(enabled: Any, mode: Any, stopped: Any) -> str:
-    name = _WORD_MODES.get(mode)
-    return _mode_name(enabled, name == "autonomous", name == "test", stopped)
+def _word_mode(enabled: Any, number: Any, stopped: Any) -> str:
+    return mode_name(enabled and not stopped, SELECTED_BY_NUMBER.get(number, ""))
 
 
-def _mode_name(enabled: Any, autonomous: Any, test: Any, stopped: Any) -> str:
-    mode = "autonomous" if autonomous else "test" if test else ""
-    if enabled and not stopped:
-        return mode or "teleop"
-    return f"disabled {mode}" if mode else "disabled"
+def _mode_of(enabled: Any, autonomous: Any, test: Any, stopped: Any) -> str:
+    return mode_name(enabled and not stopped, selected(autonomous, test))
 
 
 # -- the driver station -----------------------------------------------------------------------------------------------

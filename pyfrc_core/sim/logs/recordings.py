@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any
 
+from ...runtime.scripts.modes import mode_name, selected
 from ...runtime.scripts.script import FORMAT as SCRIPT
 from ...runtime.scripts.script import trace_beside
 from ...runtime.scripts.trace import FORMAT as TRACE
@@ -92,7 +93,5 @@ def _lines(opened: IO[bytes]) -> Iterator[tuple[float, dict[str, Any], tuple[str
 def _mode_of(values: Any) -> str:
     if "mode" in values:  # of a script
         return str(values["mode"])
-    chosen = next((each for each in ("autonomous", "test") if values.get(f"control.{each}")), "")
-    if values.get("control.enabled"):
-        return chosen or "teleop"
-    return f"disabled {chosen}" if chosen else "disabled"
+    enabled, autonomous, test = (values.get(f"control.{name}") for name in ("enabled", "autonomous", "test"))
+    return mode_name(enabled, selected(autonomous, test))

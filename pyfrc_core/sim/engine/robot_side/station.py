@@ -12,6 +12,7 @@ from ....errors import UsageError
 from ....runtime.match import MatchPeriods
 from ....runtime.robot import RobotRun
 from ....runtime.scripts.joysticks import CONTROL, NEUTRAL
+from ....runtime.scripts.modes import mode_name
 from ....runtime.scripts.script import InputScript
 from ....runtime.scripts.targets import MODE, OPMODE
 from ....wpi import station
@@ -66,7 +67,7 @@ class Station:
     def _choose(self, mode: ChosenMode) -> None:
         """Disable the robot, and choose a mode."""
         self._end_practice()
-        self._enter({"teleop": "disabled"}.get(mode, f"disabled {mode}"))
+        self._enter(mode_name(False, mode))
 
     def _choose_opmode(self, command: ChooseOpmode) -> str:
         mode, name = command.mode, command.name
@@ -149,7 +150,7 @@ class Station:
         self._end_practice()
         mode = station.mode_name()
         if not mode.startswith("disabled"):
-            self._enter("disabled" if mode == "teleop" else f"disabled {mode}")
+            self._enter(mode_name(False, mode))
 
     def _enter(self, mode: str) -> None:
         before, after = self._delivers(station.mode_name()), self._delivers(mode)
