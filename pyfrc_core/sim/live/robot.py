@@ -16,12 +16,13 @@ from ...season import CURRENT
 from ...wpi import network_client
 from ...wpi.network_news import Connected, Gone, Lost, Received
 from ..engine.changes import ReportSignal
+from ..engine.choosers import chooser_at
 from ..engine.field import field_of
-from ..engine.messages import NO_CONNECTION, VALUE
+from ..engine.messages import NO_CONNECTION
 from ..engine.output_log import OWN, OutputCursor, OutputLog
 from ..engine.past_run import PastRun
 from ..engine.scene import Scene
-from ..engine.snapshot import Chooser, Snapshot, Status
+from ..engine.snapshot import Snapshot, Status
 from ..engine.source import Abilities, ChangeFeed, FedReader
 from .addresses import RobotAddresses
 from .robot_console import RobotConsole
@@ -30,10 +31,6 @@ from .tuning import Tuner, checked_write
 
 #: How often to look at what was received, and how often at least to report that time has passed, in wall seconds.
 _LOOK_SECONDS, _TIME_SECONDS = 0.02, 0.1
-#: The tables of WPILib's choosers, by the name of their widget.
-_CHOOSERS = ("String Chooser", "Selectable")
-#: The option that a robot uses, in one of these tables.
-_ACTIVE = ("active", "selected/value")
 
 
 def console_of(host: str) -> Address | None:
@@ -213,23 +210,12 @@ class LiveRobot:
             mode=station.mode,
             scene=Scene(self.field),
             values=MappingProxyType(values),
-            choosers=tuple(self._choosers()),
+            choosers=tuple(filter(None, (chooser_at(runs.values, table) for table in runs.choosers))),
             emergency_stopped=station.emergency_stopped,
             station_attached=station.attached,
             practice_since=None if left is None else 0.0,
             match_left=0.0 if left is None else float(left),
         )
-
-    def _choosers(self) -> list[Chooser]:
-        values, found = self._runs.values, []
-        for table in self._runs.choosers:
-            path = VALUE + table
-            options = values.get(f"{path}/options")
-            if values.get(f"{path}/.type") in _CHOOSERS and isinstance(options, list):
-                default = str(values.get(f"{path}/default", ""))
-                active = next((values[each] for name in _ACTIVE if (each := f"{path}/{name}") in values), default)
-                found.append(Chooser(table, tuple(map(str, options)), default, str(active)))
-        return found
 
     # -- what is written ------------------------------------------------------------------------------------------
 

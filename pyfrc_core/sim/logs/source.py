@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from types import MappingProxyType
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 from ...project import Project
 from ..engine.changes import ReportSignal
+from ..engine.choosers import chooser_at
 from ..engine.field import field_of
 from ..engine.messages import MODE, POSE, VALUE
 from ..engine.output_log import OutputCursor, OutputLog
@@ -22,6 +23,8 @@ from .open import OpenedLog
 _MOST_POINTS = 4000
 #: How long after the enabling code may set its place, in seconds.
 _SETTLED = 0.1
+#: Where the type of a table is.
+_TYPE = "/.type"
 
 
 class LogSource:
@@ -57,7 +60,7 @@ class LogSource:
             mode=str(network.now.get(MODE, "disabled")),
             scene=Scene(self.field, None if pose is MISSING else Pose(*pose), _trail(run)),
             values=run.histories["hal"].now,
-            choosers=_choosers(network.now),
+            choosers=tuple(_choosers(network.now)),
         )
 
     def output_cursor(self, from_start: bool = True) -> OutputCursor:
@@ -92,14 +95,10 @@ def _trail(run: PastRun) -> tuple[Point, ...]:
     return tuple((pose[0], pose[1]) for pose in poses[::every] if pose is not MISSING)
 
 
-def _choosers(values: MappingProxyType[str, object]) -> tuple[Chooser, ...]:
-    """Return the choosers among values of NetworkTables."""
-    found = []
-    for path, value in values.items():
-        if value == "String Chooser" and path.endswith("/.type"):
-            place = path.removesuffix("/.type")
-            options = values.get(f"{place}/options")
-            default, active = (str(values.get(f"{place}/{name}", "")) for name in ("default", "active"))
-            texts = tuple(map(str, options)) if isinstance(options, tuple) else ()
-            found.append(Chooser(place.removeprefix(VALUE), texts, default, active or default))
-    return tuple(found)
+def _choosers(values: Mapping[str, Any]) -> Iterator[Chooser]:
+    """Yield the choosers among values of NetworkTables."""
+    for path in values:
+        if path.startswith(VALUE) and path.endswith(_TYPE):
+            found = chooser_at(values, path.removeprefix(VALUE).removesuffix(_TYPE))
+            if found is not None:
+                yield found
