@@ -57,7 +57,7 @@ def read_ds_log(file: Path) -> ReadLog:
     data = file.read_bytes()
     version, when = _header(data)
     if version not in _VERSIONS:
-        return ReadLog(problem=f"it has version {version} of the driver station's format; versions 3 and 4 can be read")
+        return _of_another_version(version)
     found = ReadLog(when=when)
     records = list(_records(data, found, version))
     moments = array("q", range(0, _PERIOD_US * len(records), _PERIOD_US))
@@ -84,7 +84,7 @@ def read_ds_events(file: Path) -> ReadLog:
     data = file.read_bytes()
     version, when = _header(data)
     if version not in _VERSIONS:
-        return ReadLog(problem=f"it has version {version} of the driver station's format; versions 3 and 4 can be read")
+        return _of_another_version(version)
     found, place = ReadLog(when=when), _HEADER.size
     begin = _seconds(*_HEADER.unpack_from(data)[1:])
     while place < len(data):
@@ -102,6 +102,10 @@ def read_ds_events(file: Path) -> ReadLog:
         found.happened += [Happened(at, "", text, is_mark=True) for text in texts]
         place = after
     return found
+
+
+def _of_another_version(version: int) -> ReadLog:
+    return ReadLog(problem=f"it has version {version} of the driver station's format; versions 3 and 4 can be read")
 
 
 def _plain(text: str) -> str:

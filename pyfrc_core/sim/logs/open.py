@@ -69,7 +69,7 @@ def open_log(file: Path, height: float, name: str = "") -> OpenedLog:
         run = recordings.read_recording(file, name, kind)
         return OpenedLog(run, _changed(file), _problem_of(run))
     read: ReadLog
-    if is_wpilog(file):
+    if is_wpilog(head):
         read = read_wpilog(file)
     elif is_ds_log(head):
         read = _read_station(file, Path(name).suffix.lower() == ".dsevents")

@@ -68,10 +68,9 @@ class _Entry:
             self.places = array("I", [self.places[each] for each in order])
 
 
-def is_wpilog(file: Path) -> bool:
-    """Return whether a file begins as a data log does."""
-    with file.open("rb") as opened:
-        return opened.read(len(_MAGIC)) == _MAGIC
+def is_wpilog(head: bytes) -> bool:
+    """Return whether a file begins as data logs do."""
+    return head.startswith(_MAGIC)
 
 
 def read_wpilog(file: Path, most: int = MOST_RECORDS) -> ReadLog:
