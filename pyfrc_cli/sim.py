@@ -11,6 +11,7 @@ import click
 
 from pyfrc_core.processes.loading import loading
 
+from .page_options import allow_host_option, port_option
 from .project_options import chosen_project, project_options
 from .verbosity import verbosity
 
@@ -103,18 +104,8 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
     flag_value="view",
     help="Serve the page to the network, too, to look only or to drive; to drive: also NetworkTables.",
 )
-@click.option(
-    "--port",
-    type=click.IntRange(1, 65535),
-    metavar="PORT",
-    help="Serve the page at this port. Default: any free one.",
-)
-@click.option(
-    "--allow-host",
-    multiple=True,
-    metavar="HOST",
-    help="Also serve the page under this host name, to which a port of this computer is forwarded.",
-)
+@port_option
+@allow_host_option
 def command(directory: Path | None, main: Path | None, robot_class: str | None, **request: Any) -> None:
     """Drive the robot on the desk: simulate it, with its physics, on a page in your browser.
 

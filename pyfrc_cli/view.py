@@ -11,6 +11,7 @@ import click
 
 from pyfrc_core.processes.loading import loading
 
+from .page_options import allow_host_option, port_option
 from .verbosity import verbosity
 
 
@@ -42,18 +43,8 @@ from .verbosity import verbosity
     flag_value="view",
     help="Serve the page to the network, too.",
 )
-@click.option(
-    "--port",
-    type=click.IntRange(1, 65535),
-    metavar="PORT",
-    help="Serve the page at this port. Default: any free one.",
-)
-@click.option(
-    "--allow-host",
-    multiple=True,
-    metavar="HOST",
-    help="Also serve the page under this host name, to which a port of this computer is forwarded.",
-)
+@port_option
+@allow_host_option
 @click.option(
     "--robot",
     is_flag=False,
