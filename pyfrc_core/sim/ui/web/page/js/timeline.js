@@ -1,13 +1,14 @@
 // The timeline: modes as colours, marks, and the moment that the panels show.
-import { ElementSize, Picture, font, sizeCanvas } from "#js/canvas.js";
+import { font, sizeCanvas } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
+import { Drawn } from "#js/drawn.js";
 import { clock, clockTick } from "#js/format.js";
 import { gapsOf, hatch } from "#js/gaps.js";
 import { model } from "#js/model.js";
 import { isForgotten, length, live, look, lookBy, lookByPackets } from "#js/past.js";
 import { watch, unwatch } from "#js/series.js";
 import { color } from "#js/settings.js";
-import { Live, createRef, html } from "#js/view.js";
+import { html } from "#js/view.js";
 
 const MODE_COLORS = { autonomous: "mode-auto", teleop: "mode-teleop", test: "mode-test" };
 const MARK_COLORS = { failure: "red", error: "red", warning: "amber", overrun: "amber", press: "accent", own: "own", run: "muted" };
@@ -18,21 +19,17 @@ const EDGE = 8; // pixels at both ends
 const LIVE_INTERVAL = 150; // milliseconds: the present moves slowly
 const SHORTEST = 10; // seconds on the timeline at least, until it is over
 
-export class Timeline extends Live {
+export class Timeline extends Drawn {
   parts = ["t", "status", "shown", "series", "marks", "settings", "window", "branches", "compared", "known_from"];
-  canvas = createRef();
-  picture = new Picture();
   state = { hover: null };
 
   componentDidMount() {
     super.componentDidMount();
     this.modes = watch("sim.mode");
-    this.size = new ElementSize(this.canvas.current.parentElement, () => this.draw());
   }
 
   componentWillUnmount() {
     super.componentWillUnmount();
-    this.size.disconnect();
     unwatch("sim.mode");
   }
 

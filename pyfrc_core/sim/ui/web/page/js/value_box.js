@@ -3,29 +3,12 @@
 import { write } from "#js/connection.js";
 import { plain, quoted, shownNumber, typedNumber } from "#js/format.js";
 import { model } from "#js/model.js";
-import { Component, createRef, html } from "#js/view.js";
+import { Bound, createRef, html } from "#js/view.js";
 
 const LISTS = { number: "[1, 2.5]", boolean: "[true, false]", string: '["one", "two"]' };
 
-export class ValueBox extends Component {
+export class ValueBox extends Bound {
   element = createRef();
-
-  componentDidMount() {
-    this.follow();
-  }
-
-  componentDidUpdate(before) {
-    if (before.path !== this.props.path) this.follow();
-  }
-
-  componentWillUnmount() {
-    this.unbind();
-  }
-
-  follow() {
-    this.unbind?.();
-    this.unbind = model.bind(this.props.path, () => this.paint());
-  }
 
   get value() {
     return plain(model.shown.values.get(this.props.path));

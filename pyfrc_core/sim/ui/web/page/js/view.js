@@ -42,6 +42,34 @@ export class Live extends Component {
   }
 }
 
+// A component that shows one value, by its path, and paints it whenever it changes.
+export class Bound extends Component {
+  componentDidMount() {
+    this.follow();
+  }
+
+  componentDidUpdate(before) {
+    if (before.path !== this.props.path) this.follow();
+  }
+
+  componentWillUnmount() {
+    this.unbind();
+  }
+
+  follow() {
+    this.unbind?.();
+    this.unbind = model.bind(this.boundPath, () => this.paint());
+  }
+
+  get boundPath() {
+    return this.props.path;
+  }
+
+  paint() {
+    this.setState({});
+  }
+}
+
 // The names of the classes whose condition is true: classes({ button: true, active: isActive }).
 export function classes(conditions) {
   return Object.keys(conditions).filter((name) => conditions[name]).join(" ");

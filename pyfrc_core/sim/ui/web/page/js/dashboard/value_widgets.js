@@ -6,25 +6,12 @@ import { unitOfPath } from "#js/names.js";
 import { valueIn } from "#js/parts.js";
 import { boundPath } from "#js/dashboard/topics.js";
 import { ValueBox } from "#js/value_box.js";
-import { Component, html } from "#js/view.js";
+import { Bound, html } from "#js/view.js";
 
 // Renders again whenever its value changes.
-class ValueWidget extends Component {
-  componentDidMount() {
-    this.follow();
-  }
-
-  componentDidUpdate(before) {
-    if (before.path !== this.props.path) this.follow();
-  }
-
-  componentWillUnmount() {
-    this.unbind();
-  }
-
-  follow() {
-    this.unbind?.();
-    this.unbind = model.bind(boundPath(this.props.path), () => this.setState({}));
+class ValueWidget extends Bound {
+  get boundPath() {
+    return boundPath(this.props.path);
   }
 
   get value() {

@@ -1,6 +1,7 @@
 // The field: the season's picture, the robot, its path, and what robot code publishes. The wheel zooms, dragging moves.
-import { ElementSize, Picture, font, sizeCanvas } from "#js/canvas.js";
+import { font, sizeCanvas } from "#js/canvas.js";
 import { command } from "#js/connection.js";
+import { Drawn } from "#js/drawn.js";
 import { numberText } from "#js/format.js";
 import { COORDINATES, originOf, unitOf, written } from "#js/field/coordinates.js";
 import * as draw from "#js/field/draw.js";
@@ -12,7 +13,7 @@ import { Menu } from "#js/menu.js";
 import { model } from "#js/model.js";
 import { compared } from "#js/compare.js";
 import { color, settings } from "#js/settings.js";
-import { Icon, Live, createRef, html } from "#js/view.js";
+import { Icon, html } from "#js/view.js";
 
 const LAYERS = [
   ["trail", "Path of the robot"],
@@ -31,22 +32,14 @@ const TURN = 15; // degrees by an arrow key
 // A robot elsewhere shows itself as an object of a Field2d.
 const WITHOUT_POSE = { simulation: "No physics.py: pyfrc create-physics writes one", log: "Where the robot is, is not known" };
 
-export class FieldPanel extends Live {
+export class FieldPanel extends Drawn {
   parts = ["t", "robot", "shown", "values", "trail", "former_trail", "drawings", "targets", "hello", "field", "settings", "window", "compared", "compared-series"];
-  canvas = createRef();
-  picture = new Picture();
 
   componentDidMount() {
     super.componentDidMount();
     this.view = new Viewport(model.hello.field);
-    this.size = new ElementSize(this.canvas.current.parentElement, () => this.draw());
     this.canvas.current.addEventListener("wheel", this.wheel, { passive: false });
     this.loadImage();
-  }
-
-  componentWillUnmount() {
-    super.componentWillUnmount();
-    this.size.disconnect();
   }
 
   componentDidUpdate() {

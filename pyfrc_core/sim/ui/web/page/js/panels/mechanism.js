@@ -1,24 +1,13 @@
 // The Mechanism2d drawings that robot code publishes.
-import { ElementSize, Picture, font, sizeCanvas } from "#js/canvas.js";
+import { font, sizeCanvas } from "#js/canvas.js";
+import { Drawn } from "#js/drawn.js";
 import { plain } from "#js/format.js";
 import { model } from "#js/model.js";
 import { color } from "#js/settings.js";
-import { Live, createRef, html } from "#js/view.js";
+import { html } from "#js/view.js";
 
-export class MechanismPanel extends Live {
+export class MechanismPanel extends Drawn {
   parts = ["values", "paths", "shown", "settings", "window", "hello"];
-  canvas = createRef();
-  picture = new Picture();
-
-  componentDidMount() {
-    super.componentDidMount();
-    this.size = new ElementSize(this.canvas.current.parentElement, () => this.draw());
-  }
-
-  componentWillUnmount() {
-    super.componentWillUnmount();
-    this.size.disconnect();
-  }
 
   componentDidUpdate() {
     if (this.picture.changes(JSON.stringify(this.found))) this.draw();

@@ -1,30 +1,19 @@
 // A swerve drive from above: measured and wanted states of its modules, the chassis' speeds, the robot's heading.
-import { ElementSize, Picture, sizeCanvas } from "#js/canvas.js";
+import { sizeCanvas } from "#js/canvas.js";
+import { Drawn } from "#js/drawn.js";
 import { arrow } from "#js/field/draw.js";
 import { swerveDrive, swerveNeeds } from "#js/field/swerve.js";
 import { numberText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { color } from "#js/settings.js";
-import { Live, createRef, html } from "#js/view.js";
+import { html } from "#js/view.js";
 
 const FASTEST = 4.5; // metres per second, unless the dashboard says otherwise
 const STANDING = 0.01; // metres or radians per second: slower is no movement
 const DEGREES = 180 / Math.PI;
 
-export class SwervePanel extends Live {
+export class SwervePanel extends Drawn {
   parts = ["values", "paths", "types", "robot", "shown", "settings", "window", "hello"];
-  canvas = createRef();
-  picture = new Picture();
-
-  componentDidMount() {
-    super.componentDidMount();
-    this.size = new ElementSize(this.canvas.current.parentElement, () => this.draw());
-  }
-
-  componentWillUnmount() {
-    super.componentWillUnmount();
-    this.size.disconnect();
-  }
 
   componentDidUpdate() {
     if (this.picture.changes(JSON.stringify([this.drive, this.props.fastest]))) this.draw();
