@@ -210,7 +210,9 @@ def test_menus_tabs_and_borders_by_keys_and_mouse(person: Seen) -> None:
         page.keyboard.press(key)
     page.locator(".menu-list").wait_for(state="detached")
     expect(menu).to_be_focused()
-    for key in ("Enter", "ArrowDown", "ArrowDown", "Enter"):
+    page.keyboard.press("Enter")
+    page.locator(".menu-list").wait_for()
+    for key in ("ArrowDown", "ArrowDown", "ArrowDown", "Enter"):
         page.keyboard.press(key)
     expect(menu).to_have_text("Tuning")
     first = page.get_by_role("tablist").nth(0).get_by_role("tab").first

@@ -321,7 +321,7 @@ def test_panels_are_moved_sized_closed_and_stay_so(person: Seen) -> None:
 
 @pytest.mark.slow
 def test_the_page_says_which_values_are_forgotten(browser, make_project, monkeypatch) -> None:
-    monkeypatch.setattr("pyfrc_core.sim.ui.web.collector.Runs", partial(Runs, 1))
+    monkeypatch.setattr("pyfrc_core.sim.ui.web.collector.Runs", partial(Runs, most_bytes=1))
     with served(make_project(ROBOT)) as server, page_of(browser, server) as person:
         page = person.page
         person.simulation.enable()
