@@ -64,14 +64,22 @@ def plot(page: Page, panel: str, *paths: str) -> None:
     )
 
 
+def drive_in_a_curve(server: Served, last: float) -> None:
+    """Drive a swerve robot forwards and to both sides.
+
+    :param last: how long to the second side, in seconds
+    """
+    for sideways, turn, seconds in ((0.0, 0.0, 0.8), (0.35, 0.1, 1.2), (-0.5, -0.12, last)):
+        for axis, value in ((1, -0.6), (0, sideways), (4, turn)):
+            server.simulation.set_axis(0, axis, value)
+        run_for(server, seconds)
+
+
 def drive_swerve(browser: Browser, server: Served) -> None:
     """The driving layout: a swerve robot in a curve, with its arrows."""
     page = open_page(browser, server, "light")
     server.simulation.enable()
-    for sideways, turn, seconds in ((0.0, 0.0, 0.8), (0.35, 0.1, 1.2), (-0.5, -0.12, 1.6)):
-        for axis, value in ((1, -0.6), (0, sideways), (4, turn)):
-            server.simulation.set_axis(0, axis, value)
-        run_for(server, seconds)
+    drive_in_a_curve(server, 1.6)
     server.simulation.pause()
     save(page, "browser")
     page.close()
@@ -130,10 +138,7 @@ def show_dashboard(browser: Browser, server: Served) -> None:
     choose_layout(page, "Dashboard")
     server.simulation.practice()
     run_for(server, 19)
-    for sideways, turn, seconds in ((0.0, 0.0, 0.8), (0.35, 0.1, 1.2), (-0.5, -0.12, 1.2)):
-        for axis, value in ((1, -0.6), (0, sideways), (4, turn)):
-            server.simulation.set_axis(0, axis, value)
-        run_for(server, seconds)
+    drive_in_a_curve(server, 1.2)
     server.simulation.pause()
     save(page, "dashboard")
     page.close()

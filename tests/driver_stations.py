@@ -52,7 +52,7 @@ def _alone_on_port(port: int) -> socket.socket:
             return socket.create_server(("127.0.0.1", port))
         except OSError:
             threading.Event().wait(0.1)
-    raise AssertionError(f"somebody listens on port {port} all the time: a Driver Station?")
+    raise AssertionError(f"port {port} is in use all the time: by a Driver Station?")
 
 
 def deploy_on_field(project: RobotProject, port: int, says: Mapping[str, object]) -> subprocess.CompletedProcess[str]:

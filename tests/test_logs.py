@@ -1,4 +1,4 @@
-"""Logs that nobody here has driven: what readers find in them, and what they say about those that are damaged."""
+"""Logs from elsewhere: what readers find in them, and what they say about those that are damaged."""
 
 from __future__ import annotations
 

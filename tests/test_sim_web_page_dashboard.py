@@ -77,7 +77,7 @@ def test_a_team_makes_a_dashboard(file: Path, person: Seen) -> None:
     person.button("Settings of flag").click()
     page.get_by_label("Show as").select_option("switch")
     switch = shown(person, "switch")
-    switch.wait_for()  # its settings are drawn anew with it
+    switch.wait_for()  # the settings are drawn again with it
     page.get_by_label("Title").fill("Arm it")
     page.keyboard.press("Enter")
     switch.get_by_text("Arm it").wait_for()

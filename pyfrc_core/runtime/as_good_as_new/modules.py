@@ -17,7 +17,7 @@ from .part import Part
 _PLAIN = ("builtins", "types", "unittest.mock")
 
 
-#: Libraries that keep what a robot has configured in their classes, with no call to forget it: they are imported anew,
+#: Libraries that keep what a robot has configured in their classes, with no call to forget it: they are imported again,
 #: as the project's modules are.
 _IMPORTED_ANEW = ("pathplannerlib",)
 

@@ -97,7 +97,7 @@ class Recording:
         """Return a recording of the part until a moment, which can grow from there."""
         past = self._script_until(time_us)
         values = {target: value for step in past.steps for target, value in step.writes.items()}
-        if free := released(values):  # whoever goes on from there has no log
+        if free := released(values):  # the run that goes on from there has no log
             past = replace(past, steps=(*past.steps, Step(min(time_us + 1, past.end_us), free)))
         part = Recording(past, self._known)
         part.length_us = time_us
