@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import struct
+import subprocess
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,6 +15,8 @@ from urllib.parse import urlsplit
 import pytest
 from network_robots import AUTONOMOUS, DISABLED, TELEOP, WORD, NetworkRobot, link_to, network_robot
 from ports import lasting_port
+from roborio import require_roborio
+from skips import missing_programs, require
 from web_pages import Page, Served, served_source
 
 from pyfrc_core.project import Project
@@ -220,3 +224,44 @@ def test_a_flood_of_changes_leaves_the_page_alive(robot: NetworkRobot, tmp_path:
         page.until(lambda: page.values["nt:/flood/0"] == last)
         assert changes[0] > 90_000
         assert sum(len(curve(page, f"nt:/flood/{number}")) for number in range(250)) == changes[0]
+
+
+#: A robot at an address that only this computer's Driver Station knows, and what finds it by its team's number.
+_KNOWN_TO_DRIVER_STATION = """
+import json, pathlib, socket, subprocess, threading
+from pyfrc_core.project import Project
+from pyfrc_core.sim.live.addresses import addresses_for
+from pyfrc_core.sim.live.robot import LiveRobot
+from pyfrc_core.wpi import network
+
+robot = "10.12.34.77"
+subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
+subprocess.run(["ip", "address", "add", robot + "/24", "dev", "lo"], check=True)
+server = network.Server(robot, 5810)
+number = int.from_bytes(socket.inet_aton(robot), "big")
+with socket.create_server(("127.0.0.1", 1742)) as listener:
+    def serve():
+        connected = listener.accept()[0]
+        connected.sendall(json.dumps({"robotIP": number}).encode() + b"\\n")
+        connected.recv(1)
+    threading.Thread(target=serve, daemon=True).start()
+    found = LiveRobot(Project(pathlib.Path("robot.py").resolve()), addresses_for("1234", None), lambda host: None)
+    found.start()
+    with found.reports:
+        found.reports.wait_for(lambda: found.status.network_address, 60)
+    print(found.status.network_address)
+    found.close()
+"""
+
+
+def test_a_robot_is_found_at_the_address_that_the_driver_station_knows(tmp_path: Path) -> None:
+    require_roborio()  # for its namespaces: the port of the Driver Station is one for the whole computer
+    require("asking the Driver Station for the robot's address", missing_programs("ip"))
+    done = subprocess.run(
+        ["unshare", "-n", sys.executable, "-c", _KNOWN_TO_DRIVER_STATION],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout == "10.12.34.77:5810\n", done.stderr
