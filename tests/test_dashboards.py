@@ -122,6 +122,10 @@ def test_a_page_gets_them_when_they_have_changed(root: Path) -> None:
     [
         ({"dashboard": " ", "content": {}}, "A dashboard needs a name."),
         ({"dashboard": "n" * 61, "content": {}}, "at most 60 characters"),
+        (
+            {"dashboard": "Drive", "content": None, "stamp": "old"},
+            "sim/dashboards.json has just been changed. Nothing was saved",
+        ),
         ({"dashboard": "Drive", "content": "no"}, "dashboards.Drive = 'no': input should be an object"),
         ({"dashboard": "Drive", "content": {"columns": 1e9}}, "dashboards.Drive.columns = 1000000000.0"),
         ({"dashboard": "Drive", "content": {"widgets": [{}] * 1001}}, "at most 1000 of them, not 1001"),

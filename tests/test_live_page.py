@@ -43,11 +43,18 @@ def test_a_person_looks_at_a_robot(browser: Any, tmp_path: Path) -> None:
         page.get_by_role("switch", name="Tune").uncheck(force=True)
         page.locator("[data-path='nt:/SmartDashboard/kP'] input:disabled").wait_for()
         # A connection that is lost is said, and what is known stays.
+        badge = page.locator(".live-now")
+        badge.and_(page.locator(".live")).get_by_text("Live").wait_for()
         link.cut()
         person.state("No connection")
+        badge.and_(page.locator(".lost")).get_by_text("No connection").wait_for()
         person.shows(box, "0.25")
+        page.locator(".timeline").press("Home")  # in the past, too, the present is not promised
+        page.get_by_role("button", name="Live").and_(page.locator(".lost")).click()
+        badge.get_by_text("No connection").wait_for()
         link.mend()
         person.state("Teleoperated enabled")
+        badge.and_(page.locator(".live")).get_by_text("Live").wait_for()
         page.locator(".line.pyfrc", has_text="was lost").wait_for()
         page.locator(".timeline").press("Home")
         person.state("Teleoperated disabled")
@@ -63,5 +70,9 @@ def test_a_person_looks_at_a_robot(browser: Any, tmp_path: Path) -> None:
             back = page.frame_locator("iframe[title='Camera Back']")
             back.get_by_text(f"No picture from 127.0.0.1:{silent}").wait_for()
         assert robot.get(WORD) == TELEOP
+        # pyfrc has ended: what the robot does is not known any more.
+        there.front_end.close()
+        badge.and_(page.locator(".over")).get_by_text("Ended").wait_for()
+        person.state("Ended")
         assert not [text for text in person.wrong if "ERR_CONNECTION_REFUSED" not in text]
         context.close()

@@ -37,10 +37,14 @@ class Dashboards:
     def save(self, message: Message) -> dict[str, Any]:
         """Save what a page has arranged, and return the dashboards.
 
+        A page sends the stamp of what it has seen, so that it does not replace what it has not.
+
         :raises CommandError: when that is not possible
         """
         name, content = message.text("dashboard").strip(), message.raw("content")
         former = message.text("former_name") if "former_name" in message else None
+        if "stamp" in message and message.text("stamp") != self._stamp():
+            raise CommandError(f"{DASHBOARDS.as_posix()} has just been changed. Nothing was saved: try again.")
         if not name:
             raise CommandError("A dashboard needs a name.")
         try:

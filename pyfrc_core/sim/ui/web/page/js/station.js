@@ -3,6 +3,7 @@ import { command } from "#js/connection.js";
 import { countdown } from "#js/format.js";
 import { toggle } from "#js/layout/open.js";
 import { PRESETS, panelsOf } from "#js/layout/presets.js";
+import { robotState } from "#js/link.js";
 import { Menu } from "#js/menu.js";
 import { model } from "#js/model.js";
 import { PANELS, panelTitle } from "#js/panels/all.js";
@@ -19,13 +20,13 @@ export class StationBar extends Live {
   parts = ["station", "opmodes", "shown", "hello", "connection", "settings", "clients", "hint", "tuning"];
 
   render() {
-    const { station } = model.shown;
-    const left = model.past || model.isOver ? "" : matchLeft(model.station);
+    const { text, kind } = robotState();
+    const left = model.past || model.isOver || model.connection !== "open" ? "" : matchLeft(model.station);
     return html`<header class="station">
       <div class="brand" title=${model.hello.project.root || model.hello.project.name}><img src=${ICON} alt="" /><span>${model.hello.project.name}</span></div>
       ${model.isDriven ? this.driving() : html`<${SourceLabel} />`}
-      <div class=${`state ${station.kind}`} role="status" aria-live="polite">
-        <i class="lamp"></i><b>${shortText(station.text)}</b>
+      <div class=${`state ${kind}`} role="status" aria-live="polite">
+        <i class="lamp"></i><b>${shortText(text)}</b>
         ${model.past && !model.isOver && html`<em>past</em>`}
         ${left && html`<span class="countdown">${left}</span>`}
       </div>

@@ -3,6 +3,7 @@ import { command } from "#js/connection.js";
 import { askText, askWhether } from "#js/dialog.js";
 import { BranchesMenu } from "#js/branches.js";
 import { clock, speedText } from "#js/format.js";
+import { link } from "#js/link.js";
 import { Menu } from "#js/menu.js";
 import { model } from "#js/model.js";
 import { driveOn, live, lookByPackets } from "#js/past.js";
@@ -33,7 +34,7 @@ export class TimeBar extends Live {
         ${past
           ? html`<span class="past-actions">
               ${model.hello.source.rewinds && html`<button class="primary" disabled=${locked} onClick=${driveOn} title="Go back to this moment. What came later is kept as a branch.">Drive on from here</button>`}
-              <button class="live" onClick=${live}><i class="lamp"></i>Live</button></span>`
+              <${ToPresent} /></span>`
           : html`<${Present} />`}
         ${model.isDriven && html`<label class="speed" title="Robot seconds per second">Speed
           <input type="range" min="0" max="1" step="0.005" value=${sliderOf(status.speed ?? 1)} disabled=${locked}
@@ -65,9 +66,28 @@ class Clock extends Live {
 }
 
 // Whether what is shown is what the robot does now.
-function Present() {
-  const text = model.connection !== "open" ? "No connection" : model.status.state === "failed" ? "Ended" : "Live";
-  return html`<span class=${text === "Live" ? "live-now" : "live-now over"}><i class="lamp"></i>${text}</span>`;
+class Present extends Live {
+  parts = ["connection", "status", "station"];
+
+  shouldComponentUpdate(_, state) {
+    return state !== this.state;
+  }
+
+  render() {
+    const { text, kind } = link();
+    return html`<span class=${`live-now ${kind}`}><i class="lamp"></i>${text}</span>`;
+  }
+}
+
+// The way back to the present, or to the last that is known.
+class ToPresent extends Live {
+  parts = ["connection", "status", "station"];
+
+  render() {
+    const { text, kind } = link();
+    const title = kind === "live" ? "Show the present" : `Show the last state that is known: ${text.toLowerCase()}`;
+    return html`<button class=${`live ${kind}`} title=${title} onClick=${live}><i class="lamp"></i>Live</button>`;
+  }
 }
 
 async function mark() {

@@ -1,6 +1,9 @@
-// The team's dashboards, as the project's file has them, and the draft of the one that is being arranged.
+// The team's dashboards, as the project's file has them, the draft of the one that is being arranged, and the steps of
+// arranging.
 import { ask } from "#js/connection.js";
+import { askWhether } from "#js/dialog.js";
 import { fitted } from "#js/dashboard/grid.js";
+import { Steps, same } from "#js/dashboard/steps.js";
 import { model } from "#js/model.js";
 import { isRecorded } from "#js/recorded.js";
 import { settings } from "#js/settings.js";
@@ -14,9 +17,11 @@ export const EMPTY = { columns: 12, rows: 8, widgets: [] };
 class Dashboards {
   saved = {}; // by name
   problem = ""; // what is wrong with the file
-  draft = null; // { name, formerName, columns, rows, widgets } while one is arranged
+  draft = null; // { name, columns, rows, widgets, base } while one is arranged; base: what the file had; null for a new one
+  steps = new Steps(); // what this page has changed since it was opened
+  #stepsBefore = this.steps; // when arranging began
   #stamp = "";
-  #draftText = ""; // to see whether it was changed
+  #isWriting = false;
 
   get names() {
     return Object.keys(this.saved);
@@ -31,11 +36,24 @@ class Dashboards {
 
   // The one that is shown; null if there is none.
   get shown() {
-    return this.draft ?? (this.name ? fitted(this.saved[this.name]) : null);
+    return this.draft ?? this.inFile(this.name);
+  }
+
+  // A dashboard as the file has it; null if it has none of this name.
+  inFile(name) {
+    return name in this.saved ? fitted({ name, ...this.saved[name] }) : null;
   }
 
   get isChanged() {
-    return Boolean(this.draft) && JSON.stringify(this.draft) !== this.#draftText;
+    const { draft } = this;
+    return Boolean(draft) && (draft.base ? !same(draft, draft.base) : draft.widgets.length > 0);
+  }
+
+  // Whether Git, an editor or another page has written something else in the place of the draft since arranging began.
+  get isOvertaken() {
+    if (!this.draft || this.problem) return false;
+    const { name, base } = this.draft;
+    return Boolean(base && !same(base, this.inFile(base.name))) || (name !== base?.name && this.inFile(name) !== null);
   }
 
   choose(name) {
@@ -45,45 +63,119 @@ class Dashboards {
 
   // -- the draft
 
-  // Arrange a new one, or the one that is shown.
-  arrange(name = null) {
-    const dashboard = name === null ? this.shown : EMPTY;
-    this.draft = structuredClone({ ...dashboard, name: name ?? this.name, formerName: name === null ? this.name : null });
-    this.#draftText = name === null ? JSON.stringify(this.draft) : "";
+  // Arrange the one that is shown, or a new one that has this name.
+  arrange(name = "", content = EMPTY) {
+    const dashboard = name ? fitted({ ...content, name }) : this.shown;
+    this.#stepsBefore = this.steps;
+    this.draft = structuredClone({ ...dashboard, base: name ? null : dashboard });
+    if (name) this.#record(null, this.draft);
     this.#keep();
   }
 
   change(change) {
-    this.draft = fitted({ ...this.draft, ...change });
+    const { draft } = this;
+    this.draft = fitted({ ...draft, ...change });
+    this.#record(draft, this.draft);
     this.#keep();
   }
 
   discard() {
     this.draft = null;
+    this.steps = this.#stepsBefore;
+    this.#keep();
+  }
+
+  // Go on with what the file has now. It is a step: undone, it brings the draft back.
+  takeOver() {
+    const { draft } = this;
+    const found = this.inFile(draft.base?.name) ?? this.inFile(draft.name);
+    if (!found) return;
+    this.draft = { ...found, base: found };
+    this.#record(draft, this.draft);
     this.#keep();
   }
 
   async save() {
-    const { name, formerName, columns, rows, widgets } = this.draft;
-    if (await this.#write(name, { columns, rows, widgets }, formerName)) {
-      this.draft = null;
-      this.choose(name);
-      this.#keep();
+    await this.look();
+    const { draft } = this;
+    if (!draft) return; // a second click
+    const found = this.inFile(draft.name) ?? this.inFile(draft.base?.name);
+    if (this.isOvertaken && !(await askWhether(overtakenText(draft.base?.name ?? draft.name, found), found ? "Replace it" : "Save"))) return;
+    if (!(await this.#write(draft.base, draft))) return;
+    if (found && !same(found, draft.base)) this.#record(found, draft); // undone, it brings the other one back
+    this.draft = null;
+    this.choose(draft.name);
+    this.#keep();
+  }
+
+  // -- what is written at once
+
+  async rename(name) {
+    const dashboard = this.shown;
+    await this.#write(dashboard, { ...dashboard, name }, true);
+    this.choose(name);
+  }
+
+  async remove() {
+    await this.#write(this.shown, null, true);
+  }
+
+  // -- steps
+
+  // Undo a step, or do the next one again: in the draft while one is arranged, otherwise in the file.
+  async go(isUndo) {
+    const way = this.way(isUndo);
+    if (!way || this.#isWriting) return;
+    if (!this.draft) await this.look();
+    const { from, to } = way;
+    if (!this.fits(way)) {
+      const what = isUndo ? "can no longer be undone" : "can no longer be done again";
+      return model.set("problem", `“${(from ?? to).name}” was changed elsewhere since then: this step ${what}.`);
     }
+    const steps = this.steps.after(isUndo);
+    if (this.draft) this.draft = { ...to, base: this.draft.base };
+    else if (await this.#write(from, to)) this.choose((to ?? from).name);
+    else return;
+    this.steps = steps;
+    this.#keep();
   }
 
-  async remove(name) {
-    if (await this.#write(name, null, null)) this.discard();
+  // From which dashboard to which one the next step leads; null if there is none. A draft has only its own steps.
+  way(isUndo) {
+    const step = this.steps.next(isUndo);
+    if (!step) return null;
+    const way = isUndo ? { from: step.after, to: step.before, step } : { from: step.before, to: step.after, step };
+    return this.draft && (!way.to || way.from?.name !== this.draft.name) ? null : way;
   }
 
-  async #write(name, content, formerName) {
+  // Whether a dashboard is as the step has left it, so that undoing it loses nothing else.
+  fits({ from, to }) {
+    if (this.draft) return same(from, this.draft);
+    const isNew = to && to.name !== from?.name;
+    return same(from, from && this.inFile(from.name)) && !(isNew && to.name in this.saved);
+  }
+
+  #record(before, after) {
+    this.steps = this.steps.with(before && content(before), after && content(after));
+  }
+
+  // -- writing
+
+  // Have the file contain another dashboard in the place of one; null: none. Nothing is written if the file is not as this page knows it.
+  async #write(from, to, isStep = false) {
+    const { name } = to ?? from;
+    const written = to && { columns: to.columns, rows: to.rows, widgets: to.widgets };
+    this.#isWriting = true;
     try {
-      this.#take(await ask("save_dashboard", { dashboard: name, content, former_name: formerName }));
-      return true;
+      this.#take(await ask("save_dashboard", { dashboard: name, content: written, former_name: from?.name ?? null, stamp: this.#stamp }));
     } catch (error) {
       model.set("problem", error.message);
       return false;
+    } finally {
+      this.#isWriting = false;
     }
+    if (isStep) this.#record(from, to);
+    return true;
   }
 
   #keep() {
@@ -124,6 +216,15 @@ class Dashboards {
     this.problem = problem;
     model.announce("dashboards");
   }
+}
+
+function content({ name, columns, rows, widgets }) {
+  return { name, columns, rows, widgets };
+}
+
+function overtakenText(name, found) {
+  const what = found ? "changed" : "removed";
+  return `“${name}” was ${what} in sim/dashboards.json since you began to arrange it. ${found ? "Replace it? Undo brings the other one back." : "Save it again?"}`;
 }
 
 export const dashboards = new Dashboards();

@@ -15,9 +15,9 @@ export function titleOf(widget) {
   return widget.topic ? widget.topic.split("/").pop() : (KINDS[widget.kind]?.title ?? widget.kind);
 }
 
-// board: { arranging, cell() → [width, height] in pixels, change(index, changes), remove(index) }
+// board: { arranging, chosen: an index, choose(index), cell() → [width, height] in pixels, change(index, changes), remove(index) }
 export class WidgetFrame extends Component {
-  state = { blocked: false };
+  state = { place: null, blocked: false }; // place: while it is dragged
   element = createRef();
 
   // As it is in the draft, which may be newer than what is drawn.
@@ -25,22 +25,26 @@ export class WidgetFrame extends Component {
     return dashboards.shown.widgets[this.props.index];
   }
 
-  render({ widget, index, board }, { blocked }) {
+  render({ widget, index, board }, { place, blocked }) {
     const title = titleOf(widget);
-    const style = { gridColumn: `${widget.x + 1} / span ${widget.w}`, gridRow: `${widget.y + 1} / span ${widget.h}` };
+    const { x, y, w, h } = place ?? widget;
+    const style = { gridColumn: `${x + 1} / span ${w}`, gridRow: `${y + 1} / span ${h}` };
     const { arranging } = board;
-    const edit = arranging && { tabindex: "0", onPointerDown: this.begin("move"), onPointerMove: this.drag, onPointerUp: this.end, onPointerCancel: this.end, onKeyDown: this.key };
+    const chosen = arranging && board.chosen === index;
+    const { columns, rows } = dashboards.shown;
+    const side = y > 0 ? "above" : h < rows ? "below" : "inside"; // of its tools, for fingers
+    const edit = arranging && { tabindex: "0", onFocusIn: () => board.choose(index), onPointerDown: this.begin("move"), onPointerMove: this.drag, onPointerUp: this.end, onPointerCancel: this.end, onKeyDown: this.key };
     const help = arranging ? `${title}. Arrow keys move this widget, with Shift they change its size, Delete removes it` : title;
-    return html`<section class=${classes({ widget: true, [`widget-${widget.kind}`]: true, arranging, blocked })} style=${style} ref=${this.element}
+    return html`<section class=${classes({ widget: true, [`widget-${widget.kind}`]: true, arranging, chosen, blocked })} style=${style} ref=${this.element}
         aria-label=${help} data-topic=${widget.topic} data-kind=${widget.kind} ...${edit || {}}>
       <header><span class="widget-title" title=${widget.topic}>${title}</span>
-        ${arranging && html`<span class="widget-tools" onPointerDown=${(event) => event.stopPropagation()} onKeyDown=${(event) => event.key !== "Escape" && event.stopPropagation()}>
+        ${arranging && html`<span class=${`widget-tools ${side}`} onPointerDown=${(event) => event.stopPropagation()} onKeyDown=${(event) => event.key !== "Escape" && event.stopPropagation()}>
           <${Dropdown} label=${html`<${Icon} name="gear" />`} name=${`Settings of ${title}`} title="Settings" className="tool always"
             content=${() => html`<${WidgetSettings} widget=${widget} change=${(changes) => board.change(index, changes)} />`} />
           <button class="tool always" aria-label=${`Remove ${title}`} title="Remove" onClick=${() => board.remove(index)}><${Icon} name="close" /></button></span>`}
       </header>
       <div class="widget-body" inert=${arranging}>${this.content(widget, index, title)}</div>
-      ${arranging && html`<i class="widget-corner" onPointerDown=${this.begin("size")}></i>`}
+      ${arranging && html`<i class=${classes({ "widget-corner": true, right: x + w === columns, bottom: y + h === rows })} onPointerDown=${this.begin("size")}></i>`}
     </section>`;
   }
 
@@ -56,34 +60,36 @@ export class WidgetFrame extends Component {
   // -- the pointer and the keys
 
   begin = (what) => (event) => {
-    if (event.button !== 0) return;
+    if (event.button !== 0 || this.held) return;
     event.stopPropagation();
     this.element.current.setPointerCapture(event.pointerId);
+    this.element.current.focus({ preventScroll: true });
+    this.props.board.choose(this.props.index);
     const { x, y, w, h } = this.widget;
-    this.held = { what, x, y, w, h, from: [event.clientX, event.clientY], cell: this.props.board.cell() };
+    this.held = { what, x, y, w, h, pointer: event.pointerId, from: [event.clientX, event.clientY], cell: this.props.board.cell() };
   };
 
   drag = (event) => {
-    if (!this.held) return;
+    if (event.pointerId !== this.held?.pointer) return;
     const { what, x, y, w, h, from, cell } = this.held;
     const columns = Math.round((event.clientX - from[0]) / cell[0]);
     const rows = Math.round((event.clientY - from[1]) / cell[1]);
-    this.put(what === "move" ? { x: x + columns, y: y + rows, w, h } : { x, y, w: Math.max(w + columns, 1), h: Math.max(h + rows, 1) });
+    const place = what === "move" ? { x: x + columns, y: y + rows, w, h } : { x, y, w: Math.max(w + columns, 1), h: Math.max(h + rows, 1) };
+    // Where another widget is in the way, it stays where it fitted last.
+    const free = isFree(dashboards.shown, place, this.props.index);
+    if (free) this.setState({ place, blocked: false });
+    else if (!this.state.blocked) this.setState({ blocked: true });
   };
 
-  end = () => {
-    this.held = null;
-    if (this.state.blocked) this.setState({ blocked: false });
-  };
-
-  // Have the widget here, if no other one is in the way: otherwise it stays where it fitted last.
-  put(place) {
+  // Only the release changes the dashboard, so that a drag is one step; what the system takes away changes nothing.
+  end = (event) => {
+    if (event.pointerId !== this.held?.pointer) return;
     const { index, board } = this.props;
-    const { widget } = this;
-    const free = isFree(dashboards.shown, place, index);
-    if (free === this.state.blocked) this.setState({ blocked: !free });
-    if (free && ["x", "y", "w", "h"].some((each) => place[each] !== widget[each])) board.change(index, place);
-  }
+    const { place } = this.state;
+    this.held = null;
+    this.setState({ place: null, blocked: false });
+    if (event.type === "pointerup" && place && this.widget && isFree(dashboards.shown, place, index)) board.change(index, place);
+  };
 
   key = (event) => {
     const { index, board } = this.props;

@@ -1,6 +1,7 @@
 // Widgets of the match: the time that is left, and what the robot is doing.
 import { countdown, plain } from "#js/format.js";
 import { boundPath } from "#js/dashboard/topics.js";
+import { robotState } from "#js/link.js";
 import { model } from "#js/model.js";
 import { valueIn } from "#js/parts.js";
 import { Live, html } from "#js/view.js";
@@ -28,10 +29,10 @@ function practiceLeft() {
 }
 
 export class RobotState extends Live {
-  parts = ["station", "shown"];
+  parts = ["station", "shown", "connection"];
 
   render() {
-    const { station } = model.shown;
-    return html`<div class=${`robot-state ${station.kind}`}><i class="lamp"></i><b>${(station.text ?? "").replace(/, -?\d+ s$/, "")}</b></div>`;
+    const { text, kind } = robotState();
+    return html`<div class=${`robot-state ${kind}`}><i class="lamp"></i><b>${(text ?? "").replace(/, -?\d+ s$/, "")}</b></div>`;
   }
 }

@@ -1,11 +1,13 @@
 // A dashboard that the team has made: widgets on a grid, arranged here, and full screen for the drivers.
 import { dashboards } from "#js/dashboard/dashboards.js";
-import { WidgetFrame } from "#js/dashboard/frame.js";
+import { WidgetFrame, titleOf } from "#js/dashboard/frame.js";
 import { firstFree, nearestFree } from "#js/dashboard/grid.js";
 import { KINDS, otherTables, firstSettings, kindsFor } from "#js/dashboard/kinds.js";
+import { stepText } from "#js/dashboard/steps.js";
 import { topicOf } from "#js/dashboard/topics.js";
 import { askText, askWhether } from "#js/dialog.js";
 import { Dropdown } from "#js/dropdown.js";
+import { link } from "#js/link.js";
 import { Menu } from "#js/menu.js";
 import { model } from "#js/model.js";
 import { sendables } from "#js/panels/widgets.js";
@@ -18,7 +20,7 @@ const MOST_CELLS = 48; // columns or rows, as in config/dashboards.py
 
 export class DashboardPanel extends Live {
   parts = ["dashboards", "settings", "hello", "paths", "types", "shown"];
-  state = { full: false };
+  state = { full: false, chosen: -1 }; // chosen: the widget that was touched last while it is arranged
   element = createRef();
   grid = createRef();
 
@@ -27,6 +29,7 @@ export class DashboardPanel extends Live {
     this.unfollow = dashboards.follow();
     document.addEventListener("fullscreenchange", this.left);
     document.addEventListener("keydown", this.escape, true);
+    document.addEventListener("keydown", this.stepKey);
   }
 
   componentWillUnmount() {
@@ -34,6 +37,7 @@ export class DashboardPanel extends Live {
     this.unfollow();
     document.removeEventListener("fullscreenchange", this.left);
     document.removeEventListener("keydown", this.escape, true);
+    document.removeEventListener("keydown", this.stepKey);
   }
 
   get arranging() {
@@ -45,7 +49,9 @@ export class DashboardPanel extends Live {
     this.interval = dashboards.draft ? 0 : QUIET_INTERVAL;
     return html`<div class=${classes({ dashboard: true, full })} ref=${this.element}>
       ${full ? html`<button class="leave-full quiet" title="Leave the full screen: Escape" aria-label="Leave the full screen" onClick=${this.leaveFull}><${Icon} name="close" /></button>` : this.tools(shown)}
+      ${full && html`<${NotPresent} />`}
       ${problem && html`<p class="dashboard-problem" role="alert"><${Icon} name="warning" /><span>${problem}</span></p>`}
+      ${this.arranging && dashboards.isOvertaken && this.overtaken()}
       ${shown ? this.board(shown) : !problem && this.nothing()}
     </div>`;
   }
@@ -57,13 +63,35 @@ export class DashboardPanel extends Live {
       ${arranging ? html`<b class="dashboard-name">${dashboards.name}</b>` : html`<${Menu} label=${dashboards.name || "Dashboards"} title="Dashboards of this project" items=${this.items()} />`}
       <div class="spacer"></div>
       ${arranging
-        ? html`<${PlotPicker} label="Add widget" more=${this.offered()} add=${this.add} />
+        ? html`${this.step(true)}${this.step(false)}
+          <${PlotPicker} label="Add widget" more=${this.offered()} add=${this.add} />
           <${Dropdown} label="Grid" title="Columns and rows of the grid" content=${() => this.gridSettings(shown)} />
           <button class="quiet" onClick=${this.discard}>${dashboards.isChanged ? "Discard" : "Cancel"}</button>
           <button class="primary" title="Write it into sim/dashboards.json" disabled=${Boolean(dashboards.problem)} onClick=${() => dashboards.save()}>Save</button>`
-        : html`${shown && !readonly && html`<button class="quiet" title="Add, move and remove widgets" onClick=${() => dashboards.arrange()}>Arrange</button>`}
+        : html`${this.step(true)}${this.step(false)}
+          ${shown && !readonly && html`<button class="quiet" title="Add, move and remove widgets" onClick=${() => dashboards.arrange()}>Arrange</button>`}
           ${shown && html`<button class="quiet" title="Full screen, for the drivers" onClick=${this.enterFull}><${Icon} name="fit" /><span>Full screen</span></button>`}`}
     </div>`;
+  }
+
+  // The button that undoes a step, or does it again. A dashboard that is only looked at has it after a change.
+  step(isUndo) {
+    const way = dashboards.problem ? null : dashboards.way(isUndo);
+    if (!way && !(this.arranging || dashboards.way(!isUndo))) return null;
+    const [name, keys] = isUndo ? ["Undo", "Ctrl+Z"] : ["Redo", "Ctrl+Shift+Z"];
+    const title = way ? `${name} “${stepText(way.step, titleOf)}”: ${keys}` : `Nothing to ${name.toLowerCase()}: ${keys}`;
+    return html`<button class="quiet" title=${title} aria-label=${name} disabled=${!way} onClick=${() => dashboards.go(isUndo)}><${Icon} name=${name.toLowerCase()} /></button>`;
+  }
+
+  // The file has something else in the place of what is arranged.
+  overtaken() {
+    const { draft } = dashboards;
+    const found = dashboards.inFile(draft.base?.name) ?? dashboards.inFile(draft.name);
+    const text = found
+      ? `“${found.name}” was changed in sim/dashboards.json by another page, an editor or Git. Yours is not saved yet.`
+      : `“${draft.base.name}” was removed from sim/dashboards.json meanwhile. “Save” writes yours again.`;
+    return html`<p class="dashboard-problem" role="alert"><${Icon} name="warning" /><span>${text}</span>
+      ${found && html`<button title="It is a step: undone, it brings yours back" onClick=${() => dashboards.takeOver()}>Take the other one</button>`}</p>`;
   }
 
   items() {
@@ -77,18 +105,13 @@ export class DashboardPanel extends Live {
     const copy = async () => {
       const given = await newName(`A copy of “${name}” is called`, `${name} 2`);
       if (!given) return;
-      const { columns, rows, widgets } = dashboards.shown;
-      dashboards.arrange(given);
-      dashboards.change({ columns, rows, widgets });
+      dashboards.arrange(given, dashboards.shown);
     };
     const rename = async () => {
       const given = await newName(`The new name of “${name}”`, name);
-      if (!given) return;
-      dashboards.arrange();
-      dashboards.change({ name: given });
-      await dashboards.save();
+      if (given) await dashboards.rename(given);
     };
-    const remove = async () => (await askWhether(`Remove the dashboard “${name}” from sim/dashboards.json?`, "Remove")) && dashboards.remove(name);
+    const remove = async () => (await askWhether(`Remove the dashboard “${name}” from sim/dashboards.json?`, "Remove")) && dashboards.remove();
     return [...items, { text: "Copy…", act: copy, disabled }, { text: "Rename…", act: rename, disabled }, { text: "Remove…", act: remove, disabled }];
   }
 
@@ -100,9 +123,9 @@ export class DashboardPanel extends Live {
 
   board(shown) {
     const { arranging } = this;
-    const board = { arranging, cell: this.cell, change: this.change, remove: this.remove };
+    const board = { arranging, chosen: this.state.chosen, choose: this.choose, cell: this.cell, change: this.change, remove: this.remove };
     const style = { "--columns": shown.columns, "--rows": shown.rows };
-    return html`<div class=${classes({ grid: true, arranging })} ref=${this.grid} style=${style} onDragOver=${this.over} onDrop=${this.drop}>
+    return html`<div class=${classes({ grid: true, arranging })} ref=${this.grid} style=${style} onPointerDown=${this.leaveWidgets} onDragOver=${this.over} onDrop=${this.drop}>
       ${shown.widgets.map((widget, index) => html`<${WidgetFrame} key=${index} widget=${widget} index=${index} board=${board} />`)}
       ${!shown.widgets.length && html`<p class="empty grid-empty">${arranging ? "Drag a value here from NetworkTables, or choose “Add widget”." : "This dashboard has no widgets. Choose “Arrange”."}</p>`}
     </div>`;
@@ -145,7 +168,14 @@ export class DashboardPanel extends Live {
     dashboards.change({ widgets });
   };
 
-  remove = (index) => dashboards.change({ widgets: dashboards.draft.widgets.filter((_, other) => other !== index) });
+  remove = (index) => {
+    this.choose(-1);
+    dashboards.change({ widgets: dashboards.draft.widgets.filter((_, other) => other !== index) });
+  };
+
+  choose = (index) => index !== this.state.chosen && this.setState({ chosen: index });
+
+  leaveWidgets = (event) => event.target === event.currentTarget && this.choose(-1);
 
   discard = async () => {
     if (!dashboards.isChanged || (await askWhether("Discard what you have changed?", "Discard"))) dashboards.discard();
@@ -178,6 +208,15 @@ export class DashboardPanel extends Live {
     this.add(path, { x: Math.floor((event.clientX - box.left) / width), y: Math.floor((event.clientY - box.top + this.grid.current.scrollTop) / height) });
   };
 
+  // Boxes for text have an undo of their own.
+  stepKey = (event) => {
+    const name = event.key.toLowerCase();
+    if (!this.arranging || !(event.ctrlKey || event.metaKey) || event.altKey || !["z", "y"].includes(name)) return;
+    if (event.target.closest?.("input:not([type=checkbox], [type=radio], [type=range]), textarea, dialog")) return;
+    event.preventDefault();
+    dashboards.go(name === "z" && !event.shiftKey);
+  };
+
   // -- full screen
 
   enterFull = () => {
@@ -197,6 +236,17 @@ export class DashboardPanel extends Live {
   escape = (event) => {
     if (event.key === "Escape" && this.state.full) this.leaveFull();
   };
+}
+
+// Drivers must not take what they see for the present when it is not: the rest of the page does not say so in the full screen.
+class NotPresent extends Live {
+  parts = ["connection", "status", "station", "shown"];
+
+  render() {
+    const { text, kind } = link();
+    const why = model.past && !model.isOver ? "This is the past." : kind === "live" || model.isOver ? "" : `${text}. These are the last values.`;
+    return why && html`<p class="dashboard-problem" role="alert"><${Icon} name="warning" /><span>${why}</span></p>`;
+  }
 }
 
 async function newName(question, text) {

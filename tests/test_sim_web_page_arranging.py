@@ -1,0 +1,216 @@
+"""A dashboard that is arranged: steps that are undone, what others write meanwhile, and fingers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser_pages import Seen, page_of, person_at_page, shared_browser, shared_server  # noqa: F401 - `person`
+from conftest import sampled
+from test_sim_web_page_dashboard import TABLE, dashboards_file, shown, widgets, with_widgets  # noqa: F401 - `file`
+from test_sim_web_page_tablet import LEAST, LOOK, Fingers
+
+LAMP = {"kind": "lamp", "topic": f"{TABLE}flag", "x": 8, "y": 5, "w": 1, "h": 1}
+GAUGE = {"kind": "gauge", "topic": f"{TABLE}doubled", "x": 2, "y": 1, "w": 2, "h": 2}
+
+#: The draft, or what the file has: its name, and the place of each widget.
+ARRANGED = """async () => {
+  const { dashboards } = await module("js/dashboard/dashboards.js");
+  const { name, widgets } = dashboards.shown ?? { name: "", widgets: [] };
+  return [name, ...widgets.map(({ kind, title, x, y, w, h }) => [title || kind, x, y, w, h].join(" "))];
+}"""
+
+
+def arranged(person: Seen) -> list[str]:
+    found: list[str] = person.page.evaluate(ARRANGED)
+    return found
+
+
+def places(file: Path, name: str = "Drive") -> list[str]:
+    keys = ("x", "y", "w", "h")
+    return [
+        " ".join(map(str, (each.get("title") or each["kind"], *map(each.get, keys)))) for each in widgets(file, name)
+    ]
+
+
+def test_each_step_is_undone_and_done_again(file: Path, person: Seen) -> None:
+    page = person.page
+    with_widgets(file, LAMP, GAUGE)
+    person.choose("Layout", "Dashboard")
+    person.button("Arrange").click()
+    undo, redo = person.button("Undo"), person.button("Redo")
+    undo.and_(page.locator(":disabled")).wait_for()
+    redo.and_(page.locator(":disabled")).wait_for()
+    seen = [arranged(person)]
+
+    def step(text: str) -> None:
+        page.get_by_title(f"Undo “{text}”: Ctrl+Z").wait_for()
+        seen.append(arranged(person))
+        assert seen[-1] != seen[-2], text
+
+    box = page.locator(".grid").bounding_box()
+    cell = (box["width"] / 12, box["height"] / 8)
+    for kind, text, spot in (("gauge", "doubled: moved", 0.5), ("lamp", "flag: moved", 0.5)):
+        # A drag is one step, however far it goes.
+        person.drag(shown(person, kind), (spot, spot), (spot + cell[0] / 20, spot))
+        step(text)
+    corner = shown(person, "gauge").locator(".widget-corner")
+    person.drag(corner, (0.5, 0.5), (0.5, 0.5 + 1.2 * cell[1] / corner.bounding_box()["height"]))
+    step("doubled: size changed")
+    person.button("Add widget").click()
+    page.get_by_label("Search all values").fill("kP")
+    page.keyboard.press("Enter")
+    step("kP added")
+    person.button("Settings of kP").click()
+    page.get_by_label("Title").fill("P")
+    page.keyboard.press("Control+z")  # a box undoes what was typed
+    page.get_by_label("Title").fill("P")
+    page.keyboard.press("Enter")
+    step("P: settings changed")
+    page.keyboard.press("Escape")
+    person.button("Remove flag").click()
+    step("flag removed")
+    person.button("Grid").click()
+    page.get_by_role("spinbutton", name="Rows").fill("3")
+    page.keyboard.press("Tab")
+    step("grid changed")
+    page.locator(".grid").click(position={"x": 3, "y": 3})
+    # Back to the beginning and again to the end, by keys and by buttons.
+    for each in reversed(seen[:-1]):
+        page.keyboard.press("Control+z")
+        assert arranged(person) == each
+    undo.and_(page.locator(":disabled")).wait_for()
+    person.button("Cancel").wait_for()  # nothing is left to be saved
+    for each in seen[1:]:
+        redo.click()
+        assert arranged(person) == each
+    redo.and_(page.locator(":disabled")).wait_for()
+    undo.click()
+    page.keyboard.press("Control+Shift+z")
+    assert arranged(person) == seen[-1]
+    # Steps outlast saving: then they are undone in the file. A reload forgets them.
+    person.button("Save").click()
+    person.button("Arrange").wait_for()
+    assert places(file) == seen[-1][1:]
+    undo.click()
+    redo.and_(page.locator(":enabled")).wait_for()
+    assert places(file) == seen[-2][1:]
+    person.button("Arrange").click()
+    undo.click()
+    assert arranged(person) == seen[-3]
+    person.button("Discard").click()
+    page.locator("dialog").get_by_text("Discard", exact=True).click()
+    person.button("Arrange").wait_for()
+    assert places(file) == seen[-2][1:]
+    redo.click()
+    undo.and_(page.get_by_title("grid changed", exact=False)).wait_for()
+    assert places(file) == seen[-1][1:]
+    page.reload()
+    person.button("Arrange").wait_for()
+    assert undo.count() == 0
+
+
+def test_dashboards_that_were_renamed_and_removed_come_back(file: Path, person: Seen) -> None:
+    page = person.page
+    with_widgets(file, LAMP)
+    before = places(file)
+    menu = "Dashboards of this project"
+    person.choose("Layout", "Dashboard")
+    person.choose(menu, "Rename…")
+    page.keyboard.type("Pit")
+    page.keyboard.press("Enter")
+    page.get_by_title(menu).get_by_text("Pit").wait_for()
+    person.choose(menu, "Remove…")
+    page.locator("dialog").get_by_text("Remove", exact=True).click()
+    person.button("New dashboard…").wait_for()
+    person.button("Undo").click()
+    page.get_by_title(menu).get_by_text("Pit").wait_for()
+    assert places(file, "Pit") == before
+    person.button("Undo").click()
+    page.get_by_title(menu).get_by_text("Drive").wait_for()
+    assert places(file) == before
+    person.button("Redo").click()
+    page.get_by_title(menu).get_by_text("Pit").wait_for()
+    assert places(file, "Pit") == before
+    # The file has something else meanwhile: the step is refused, and nothing is lost.
+    with_widgets(file, GAUGE, name="Pit")
+    shown(person, "gauge").wait_for()
+    person.button("Undo").click()
+    page.get_by_text("“Pit” was changed elsewhere since then: this step can no longer be undone.").wait_for()
+    assert places(file, "Pit") == ["gauge 2 1 2 2"]
+
+
+def test_what_others_write_meanwhile_is_not_lost(file: Path, person: Seen) -> None:
+    page = person.page
+    with_widgets(file, LAMP)
+    person.choose("Layout", "Dashboard")
+    person.button("Arrange").click()
+    person.button("Save").wait_for()
+    shown(person, "lamp").focus()
+    page.keyboard.press("ArrowRight")
+    mine, theirs = "lamp 9 5 1 1", "gauge 2 1 2 2"
+    with_widgets(file, GAUGE)
+    alert = page.get_by_role("alert").get_by_text("“Drive” was changed in sim/dashboards.json by another page")
+    alert.wait_for()
+    assert arranged(person) == ["Drive", mine]
+    # Saving asks first.
+    person.button("Save").click()
+    page.locator("dialog").get_by_text("Cancel", exact=True).click()
+    assert places(file) == [theirs]
+    # The other one is taken as a step, which is undone and done again.
+    person.button("Take the other one").click()
+    alert.wait_for(state="detached")
+    assert arranged(person) == ["Drive", theirs]
+    person.button("Undo").click()
+    assert arranged(person) == ["Drive", mine]
+    # Another change, which is replaced on purpose: it can be had again.
+    with_widgets(file, {**GAUGE, "x": 5})
+    alert.wait_for()
+    person.button("Save").click()
+    page.locator("dialog").get_by_text("Replace it", exact=True).click()
+    person.button("Arrange").wait_for()
+    assert places(file) == [mine]
+    person.button("Undo").click()
+    shown(person, "gauge").wait_for()
+    assert places(file) == ["gauge 5 1 2 2"]
+
+
+@pytest.mark.parametrize("size", sampled([(1180, 820), (820, 1180)], (820, 1180)))
+def test_fingers_arrange(size: tuple[int, int], browser: Any, server: Any, file: Path) -> None:
+    with_widgets(file, LAMP, GAUGE, {"kind": "number", "topic": f"{TABLE}kP", "x": 0, "y": 0, "w": 1, "h": 1})
+    with page_of(browser, server, has_touch=True) as tablet:
+        page = tablet.page
+        page.set_viewport_size({"width": size[0], "height": size[1]})
+        tablet.choose("Layout", "Dashboard")
+        tablet.button("Arrange").tap()
+        fingers = Fingers(tablet)
+        grid = page.locator(".grid")
+        for finger_at, until in (((8.5, 5.5), (10.5, 2.5)), ((10.5, 2.5), (5.5, 6.5))):
+            fingers.put(1, grid, finger_at[0] / 12, finger_at[1] / 8)
+            fingers.put(2, grid, 0.9, 0.9)  # a second finger changes nothing
+            fingers.put(1, grid, until[0] / 12, until[1] / 8)
+            fingers.lift()
+        assert arranged(tablet)[1] == "lamp 5 6 1 1"
+        shown(tablet, "lamp").tap()
+        corner = shown(tablet, "lamp").locator(".widget-corner")
+        fingers.put(1, corner, 0.5, 0.5)
+        fingers.put(1, grid, 7.6 / 12, 7.8 / 8)
+        fingers.lift()
+        page.locator(".widget-lamp").get_by_text("false").wait_for()
+        assert arranged(tablet)[1] == "lamp 5 6 3 2"
+        # The tools of the one that was touched are large enough, and can be reached at each edge.
+        for kind in ("lamp", "gauge", "number"):
+            shown(tablet, kind).tap(position={"x": 15, "y": 12})
+            assert page.locator(".widget-tools:visible").count() == 1
+            assert page.evaluate(LOOK) == {"hidden": [], "small": []}, kind
+            box = shown(tablet, kind).locator(".widget-corner").bounding_box()
+            assert min(box["width"], box["height"]) >= LEAST
+        tablet.button("Settings of kP").tap()
+        page.get_by_label("Title").fill("P")
+        page.keyboard.press("Enter")
+        page.keyboard.press("Escape")
+        tablet.button("Remove P").tap()
+        for _ in range(5):
+            tablet.button("Undo").tap()
+        assert arranged(tablet) == ["Drive", "lamp 8 5 1 1", "gauge 2 1 2 2", "number 0 0 1 1"]
