@@ -223,6 +223,54 @@ def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:
         assert wrong == []
 
 
+def test_curves_of_another_log_are_kept_for_it_and_not_shown(tmp_path: Path, browser: Browser) -> None:
+    require("the page of pyfrc view in a browser", missing_browser())
+    first, second = a_match(), practice()
+    for log, name in ((first, "BatteryVoltage"), (second, "arm")):
+        log.values(f"NT:/{name}", "double", "d", *((step / 10, 12.0) for step in range(90)))
+    logs = {
+        name: open_log(log.save(tmp_path / name), HEIGHT) for name, log in (("a.wpilog", first), ("b.wpilog", second))
+    }
+    opened: list[Any] = []
+
+    def shown(name: str, expected: list[str]) -> Any:
+        """Open a log, and wait for its curves."""
+        page = browser.new_page(viewport={"width": 1180, "height": 820})
+        page.set_default_timeout(PATIENCE * 1000)
+        opened.append(page)
+        page.goto(opened_server.address)
+        page.locator(".recorded code", has_text=name).wait_for()
+        page.get_by_role("button", name="Remove nt:").first.wait_for()
+        names = page.locator("[data-panel='plot:1'] .legend .curve")
+        assert names.all_inner_texts() == expected
+        return page
+
+    def add(page: Any, name: str) -> None:
+        page.get_by_role("button", name="Add value").first.click()
+        page.keyboard.type(name)
+        page.keyboard.press("Enter")
+        page.get_by_role("button", name=f"Remove nt:/{name}").wait_for()
+        page.wait_for_function("() => !sessionStorage.getItem('pyfrc-unsaved')")  # it is saved
+
+    project = Project(tmp_path / "robot.py")
+    with served_source(LogSource(project, logs["a.wpilog"])) as opened_server:
+        add(shown("a.wpilog", ["BatteryVoltage"]), "SmartDashboard/speed")
+    with served_source(LogSource(project, logs["b.wpilog"])) as opened_server:
+        # It has the speed, too.
+        page = shown("b.wpilog", ["speed"])
+        add(page, "arm")
+        page.get_by_role("button", name="1 not in this log").click()
+        page.locator(".absent-list", has_text="BatteryVoltage").wait_for()
+    with served_source(LogSource(project, logs["a.wpilog"])) as opened_server:
+        page = shown("a.wpilog", ["BatteryVoltage", "speed"])
+        page.get_by_role("button", name="1 not in this log").click()
+        page.get_by_role("button", name="Remove it").click()
+        page.locator(".absent").wait_for(state="detached")
+        assert page.locator("[data-panel='plot:1'] .legend .curve").count() == 2
+    for page in opened:
+        page.close()
+
+
 def test_the_code_of_a_project_can_be_run_with_a_log(tmp_path: Path, browser: Browser) -> None:
     require("the page of pyfrc view in a browser", missing_browser())
     log = open_log(a_match().save(tmp_path / "match.wpilog"), HEIGHT)

@@ -108,8 +108,9 @@ def _looking(source: Source, saved: Any) -> dict[str, Any]:
     plots = {name: plot for name, plot in plots.items() if isinstance(plot, dict)}
     known = _paths(source)
     text = json.dumps(plots)
-    if not any(json.dumps(path) in text for path in known):  # they are of another log
-        plots = {"plot:1": {"curves": _battery(source)}, "plot:2": {"curves": []}}
+    if not any(json.dumps(path) in text for path in known):  # all are of another log, for which the page keeps them
+        curves = plots.get("plot:1", {}).get("curves")
+        plots = {**plots, "plot:1": {"curves": [*(curves if isinstance(curves, list) else ()), *_battery(source)]}}
     whole = {name: {**plot, "seconds": 0} for name, plot in plots.items()}
     return {**layout, "version": 1, "layout": "log", "plots": whole}
 

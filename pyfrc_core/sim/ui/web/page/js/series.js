@@ -11,13 +11,13 @@ const NEWEST_POINTS = 20000;
 
 const LATEST = 1e9; // seconds: whatever the newest moment is when the server answers
 
-const series = new Map(); // path: { kind, t: [], v: [], users, exactFrom: since when each change is there }
+const series = new Map(); // path: { kind, t: [], v: [], users, isLoaded, exactFrom: since when each change is there }
 
 // Watch a path, and return its series, which grows. Each `watch` needs an `unwatch`.
 export function watch(path) {
   let one = series.get(path);
   if (!one) {
-    one = { path, kind: "number", t: [], v: [], users: 0, exactFrom: 0 };
+    one = { path, kind: "number", t: [], v: [], users: 0, isLoaded: false, exactFrom: 0 };
     series.set(path, one);
     subscribe();
     load(one);
@@ -43,7 +43,8 @@ async function load(one, until = LATEST) {
   try {
     const answer = await ask("plot", { paths: [one.path], from: 0, to: until, points: FIRST_POINTS, branch: null });
     const past = answer.series[one.path];
-    if (!past) return;
+    one.isLoaded = true;
+    if (!past) return model.announce("series");
     // What is newer than the answer follows it.
     const last = until < LATEST ? until : (past.t[past.t.length - 1] ?? -1);
     const newer = one.t.findIndex((t) => t > last);

@@ -16,6 +16,7 @@ import { addCurve, addToPlot, carriedPath, changePlot, hasPath, plotOf } from "#
 import { unwatch, watch } from "#js/series.js";
 import { color } from "#js/settings.js";
 import { Icon, Live, classes, createRef, html } from "#js/view.js";
+import { AbsentCurves, isAbsent } from "#js/panels/absent_curves.js";
 import { PlotAxes } from "#js/panels/plot_axes.js";
 import { PlotLegend } from "#js/panels/plot_legend.js";
 
@@ -67,14 +68,21 @@ export class PlotPanel extends Live {
     return this.config.ranges ?? {};
   }
 
+  // The curves that there are, without those of another log.
+  get curves() {
+    return this.config.curves.filter(({ path }) => !isAbsent(this.watched.get(path), this.others.get(path)));
+  }
+
   // The curve that the others are drawn over; undefined over time.
   get xCurve() {
-    const { curves, x } = this.config;
-    return x && curves.find((curve) => keyOf(curve) === x && this.isNumber(curve.path));
+    const { x } = this.config;
+    return x && this.curves.find((curve) => keyOf(curve) === x && this.isNumber(curve.path));
   }
 
   render({ id, plot: widget }, { over, at }) {
-    const { curves, seconds, table: isTable } = this.config;
+    const { seconds, table: isTable } = this.config;
+    const { curves } = this;
+    const absent = this.config.curves.filter((curve) => !curves.includes(curve));
     this.interval = isTable ? TABLE_INTERVAL : 0;
     const moment = at ?? model.past?.t ?? model.t;
     const isNumber = ({ path }) => this.isNumber(path);
@@ -87,12 +95,13 @@ export class PlotPanel extends Live {
         </div>
         ${this.zoom && html`<button class="quiet" onClick=${() => this.follow(seconds)}>Follow again</button>`}
         <div class="spacer"></div>
+        <${AbsentCurves} curves=${absent} remove=${() => this.set({ curves: this.curves })} />
         <${PlotPicker} add=${(path) => addToPlot(path, id)} />
         ${curves.length > 0 && html`<${PlotAxes} axes=${this.axes()} ranges=${this.ranges} limits=${this.limits} setRange=${this.setRange}
           hold=${Boolean(this.zoom)} setHold=${(hold) => (hold ? this.zoomTo(...this.range()) : this.follow(seconds))} />
         <button class=${classes({ quiet: true, chosen: isTable })} aria-pressed=${Boolean(isTable)} title="Minimum, mean, maximum and percentiles of what is in view" onClick=${() => this.set({ table: !isTable })}>Table</button>`}
         <button class="quiet" title="Save the values as CSV" aria-label="Save the values as CSV" disabled=${!curves.length} onClick=${this.save}><${Icon} name="download" />CSV</button>
-        <button class="quiet" title="Remove all curves" disabled=${!curves.length} onClick=${() => this.set({ curves: [], ranges: {}, x: null })}>Clear</button>
+        <button class="quiet" title="Remove all curves" disabled=${!curves.length} onClick=${() => this.set({ curves: absent, ranges: {}, x: null })}>Clear</button>
       </div>`}
       <${PlotLegend} plot=${plot} bare=${Boolean(widget)} isTable=${isTable && curves.length > 0} hasBranch=${compared.id !== null} isNumber=${isNumber}
         shownOf=${(curve) => this.valueOf(curve, moment)} statisticsOf=${(curve) => this.statisticsOf(curve)} />
@@ -122,7 +131,7 @@ export class PlotPanel extends Live {
 
   // The axes whose limits can be set, and what they show.
   axes() {
-    const used = new Set(this.config.curves.filter((curve) => this.isNumber(curve.path) && curve !== this.xCurve).map((curve) => curve.axis));
+    const used = new Set(this.curves.filter((curve) => this.isNumber(curve.path) && curve !== this.xCurve).map((curve) => curve.axis));
     return [...(this.xCurve ? ["x"] : []), ...["left", "right"].filter((axis) => used.has(axis))];
   }
 
@@ -161,7 +170,7 @@ export class PlotPanel extends Live {
     if (!this.area.current) return;
     this.watchCurves();
     if (compared.key !== this.otherKey || [...this.watched.keys()].some((path) => !this.others.has(path))) this.loadOthers();
-    const shape = JSON.stringify([this.config.curves, this.config.curves.map(({ path }) => this.isNumber(path)), document.documentElement.dataset.theme, compared.id, this.xCurve]);
+    const shape = JSON.stringify([this.curves, this.curves.map(({ path }) => this.isNumber(path)), document.documentElement.dataset.theme, compared.id, this.xCurve]);
     if (shape !== this.shape) {
       this.shape = shape;
       this.build();
@@ -228,7 +237,7 @@ export class PlotPanel extends Live {
   build() {
     this.plot?.destroy();
     this.plot = null;
-    const curves = this.config.curves.filter(({ path }) => this.isNumber(path));
+    const curves = this.curves.filter(({ path }) => this.isNumber(path));
     if (!curves.length) return;
     const { xCurve } = this;
     const drawn = curves.filter((curve) => curve !== xCurve);
@@ -350,7 +359,7 @@ export class PlotPanel extends Live {
   drawBands() {
     const canvas = this.bands.current;
     if (!canvas || !this.size.width) return;
-    const curves = this.config.curves.filter(({ path, hidden }) => !hidden && !this.isNumber(path));
+    const curves = this.curves.filter(({ path, hidden }) => !hidden && !this.isNumber(path));
     canvas.style.display = curves.length ? "block" : "none";
     if (!curves.length) return;
     const { width } = this.size;
@@ -366,7 +375,7 @@ export class PlotPanel extends Live {
     if (!answer?.series) return;
     const rawOf = (path) => ({ ...answer.series[path], exactFrom: answer.series[path].thinned ? to : 0 });
     const before = (curve) => () => (from ? (curveValue(this.computed.of(curve, keyOf(curve), (path) => this.watched.get(path), length()), from) ?? 0) : 0);
-    const columns = this.config.curves.map((curve) => [
+    const columns = this.curves.map((curve) => [
       isComputed(curve) ? [titleOf(curve), unitOf(curve)].filter(Boolean).join(", ") : curve.path,
       new Computed().of(curve, "saved", rawOf, Math.min(to, length()), before(curve)),
     ]);
