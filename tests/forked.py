@@ -39,6 +39,7 @@ import pytest
 import pyfrc_cli
 import pyfrc_core
 from pyfrc_cli import start
+from pyfrc_core.config.settings import load_settings
 from pyfrc_core.deploy.agent_stream import agent_package
 from pyfrc_core.processes import spawn
 from pyfrc_core.project.loaded_modules import loaded_modules
@@ -339,6 +340,7 @@ def main() -> None:
     spawn.popen = functools.partial(popen, listener.getsockname().decode())
     loaded_modules.look()  # a fork then goes only through what it has imported itself
     agent_package()  # packed once
+    load_settings(Path(__file__).parent / "robots/competition/magic_swerve/pyproject.toml")  # builds their validator
     gc.collect()
     gc.freeze()
     if (request := _serve(listener)) is not None:

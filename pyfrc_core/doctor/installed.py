@@ -107,15 +107,16 @@ def find_installed() -> Installed:
 
 
 def _package(found: importlib.metadata.Distribution) -> Package | None:
-    name = found.metadata["Name"]
+    about = found.metadata  # parsed each time that a distribution is asked for it, as for its version
+    name = about["Name"]
     if not name:  # left over from an incomplete removal
         return None
     needs = []
-    for text in found.requires or ():
+    for text in about.get_all("Requires-Dist") or ():
         try:
             needed = Requirement(text)
         except InvalidRequirement:
             continue
         if needed.marker is None or needed.marker.evaluate({"extra": ""}):
             needs.append(needed)
-    return Package(name, found.version, tuple(needs), str(found.locate_file("")))
+    return Package(name, about["Version"], tuple(needs), str(found.locate_file("")))

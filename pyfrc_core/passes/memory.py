@@ -11,7 +11,7 @@ import platform
 import sys
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from functools import cache
 from hashlib import sha256
@@ -99,13 +99,13 @@ def hash_of_file(file: Path) -> str:
         return "unreadable"
 
 
-def version_of_file(file: Path) -> str:
+def version_of_file(file: str) -> str:
     """Return the size of a file outside the project and the time of its last change, as of an installed package.
 
     Not its hash: these may be hundreds of files, where pyfrc itself is installed as an editable package.
     """
     try:
-        status = file.stat()
+        status = os.stat(file)  # noqa: PTH116 - hundreds of files
     except OSError:
         return "unreadable"
     return f"{status.st_size} {status.st_mtime_ns}"
@@ -188,7 +188,7 @@ class Passes:
         rules = {project.files.relative(str(file)) for file in project.invariant_files}
         conditions = [seed, builtin, project.main_file.name, project.class_name]
         self._basis = _basis_of(self._begin, conditions, rules)
-        self._version_elsewhere = cache(lambda file: version_of_file(Path(file)))
+        self._version_elsewhere = cache(version_of_file)
         self._kept = replace(_load(self._file), left_over="")
         # Files from elsewhere are known only after a run has imported them.
         if self._kept.basis != self._basis or any(
@@ -245,7 +245,7 @@ class Passes:
         if changed:
             self._kept = _Kept(left_over=self._kept.left_over)
         with suppress(OSError):  # the next run runs everything
-            write_whole(self._file, [json.dumps(asdict(self._kept))])
+            write_whole(self._file, [json.dumps(vars(self._kept))])
             keep_out_of_version_control(self._file.parent)
         return changed
 

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from conftest import MakeProject, RobotProject, sampled
+from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings, sampled
 from skips import require
 
 pytest.importorskip("libcst")
@@ -48,5 +48,7 @@ def test_a_sample_robot(make_project: MakeProject, name: str) -> None:
 def test_a_competition_robot(make_project: MakeProject, name: str, module: str, package: str) -> None:
     """What its vendor's package needs is in docs/migrate.md."""
     require("a robot with a vendor's devices", [] if find_spec(module) else [package])
-    result = migrated(make_project, ROBOTS / "competition" / name).run("test")
+    project = migrated(make_project, ROBOTS / "competition" / name)
+    add_settings(project.path, SHORT_MATCH)  # phoenix6 goes on in real time: the whole match took 14 minutes
+    result = project.run("test")
     assert result.code == 0, result.output
