@@ -33,6 +33,7 @@ IN_2027 = frozenset(
         "sim_headless",
         "sim_scene",
         "sim_session",
+        "sim_wpilog",
         "visionsim",
     }
 )

@@ -26,6 +26,7 @@ DRIVE = """{"format": "pyfrc-input 1", "end": 5.0}
 {"t": 4.6, "set": {"mode": "disabled", "match_time": 0.0}}
 """
 #: A line of each robot, what it becomes, the output that it acts on, and from when on: rev_swerve shoots in autonomous.
+#: Then what the robot publishes of it, which data logs have, too.
 CHANGES = {
     "magic_swerve": (
         "components/shooter.py",
@@ -33,9 +34,17 @@ CHANGES = {
         "idle_rpm = tunable(1500)",
         "SPARK MAX [9]",
         3.0,
+        "components/shooter/idle_rpm",
     ),
-    "rev_swerve": ("constants.py", "MAX_ACCELERATION = 4.0", "MAX_ACCELERATION = 2.0", "SPARK MAX [21]", 0.5),
-    "tank_arm": ("constants.py", "MAX_ACCELERATION = 3.2", "MAX_ACCELERATION = 1.6", "pwm[", 3.0),
+    "rev_swerve": (
+        "constants.py",
+        "MAX_ACCELERATION = 4.0",
+        "MAX_ACCELERATION = 2.0",
+        "SPARK MAX [21]",
+        0.5,
+        "Elevator/Controller/maxAcceleration",
+    ),
+    "tank_arm": ("constants.py", "MAX_ACCELERATION = 3.2", "MAX_ACCELERATION = 1.6", "pwm[", 3.0, "Elevator/volts"),
 }
 
 
@@ -65,13 +74,16 @@ def test_a_changed_line_differs_where_it_acts(name: str, make_project: MakeProje
     drive(project, name, "--record", "match.jsonl", "--wpilog", "match.wpilog")
     for log in ("match.jsonl", "match.wpilog"):
         assert "no difference: " in log_of(project, log)
-    file, old, new, output, since = CHANGES[name]
+    file, old, new, output, since, published = CHANGES[name]
     change(project, file, old, new)
-    for log in ("match.jsonl", "match.wpilog"):
-        said = re.search(r"differs first at 0:0(\d\.\d\d), in (.*?): ", log_of(project, log))
-        assert said is not None
-        assert since <= float(said[1]) < since + 0.5
-        assert output in said[2]
+    said = re.search(r"differs first at 0:0(\d\.\d\d), in (.*?): ", log_of(project, "match.jsonl"))
+    assert said is not None
+    assert since <= float(said[1]) < since + 0.5
+    assert output in said[2]
+    differing = log_of(project, "match.wpilog")
+    assert "differs first at 0:0" in differing
+    assert output in differing
+    assert published in differing
 
 
 def test_a_robot_whose_devices_are_simulated_in_real_time_is_compared_by_what_it_publishes(
@@ -81,8 +93,10 @@ def test_a_robot_whose_devices_are_simulated_in_real_time_is_compared_by_what_it
     drive(project, "ctre_swerve", "--record", "match.jsonl", "--wpilog", "match.wpilog")
     (log,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
     log.rename(project.path / "robot.wpilog")
-    for name in ("match.jsonl", "match.wpilog"):
-        assert "no difference: " in log_of(project, name)
-    assert "Elevator/" not in log_of(project, "robot.wpilog")
+    assert "no difference: " in log_of(project, "match.jsonl")  # which has no more than devices
+    logs = ("robot.wpilog", "match.wpilog")
+    for name in logs:
+        assert "Elevator/Goal" not in log_of(project, name)
     change(project, "constants.py", "SCORE_HIGH = 0.0, 0.05, 0.45, 1.1", "SCORE_HIGH = 0.0, 0.05, 0.45, 0.9")
-    assert re.search(r"in .*Elevator/Goal \(0:03\.\d\d\)", log_of(project, "robot.wpilog"))
+    for name in logs:
+        assert re.search(r"in .*Elevator/Goal \(0:03\.\d\d\)", log_of(project, name))

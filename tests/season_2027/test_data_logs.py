@@ -213,7 +213,8 @@ def test_the_simulators_own_log(make_project: MakeProject) -> None:
     sim = ("sim", "--ui", "none", "--script", "drive.jsonl", "--record", "a.jsonl", "--wpilog", "own.wpilog")
     assert project.run(*sim).code == 0
     log = records(project.path / "own.wpilog")
-    assert log["/hal_data/pwm[0].value"][1] == (500_000_000, 0.5)  # its times are robot time
+    assert log["/hal_data/pwm[0].value"][1] == (ZERO + 500_000_000, 0.5)
+    assert log["NT:/robot/turns"][-1] == (ZERO + 3_980_000_000, 199)
     assert project.run("replay", "own.wpilog", "--trace", "replayed.jsonl").code == 0
     assert outputs(project.path / "replayed.jsonl") == outputs(project.path / "a.trace.jsonl")
 

@@ -152,26 +152,28 @@ class _State:
             yield target, value
 
     def _attached(self) -> bool:
-        if (control := self.values.get(f"{_FMS}FMSControlData")) is not None:
-            return bool(control & DS_ATTACHED)
-        return bool(self.values.get(f"{_HAL}control.dsAttached", True))
+        if (attached := self.values.get(f"{_HAL}control.dsAttached")) is not None:
+            return bool(attached)
+        return bool(self.values.get(f"{_FMS}FMSControlData", DS_ATTACHED) & DS_ATTACHED)
 
     def _station(self) -> Iterator[tuple[str, Any, Any]]:
-        """Return targets with their values now, and at the start of a run."""
+        """Return targets with their values now, and at the start of a run.
+
+        A log of a simulation has both: what the robot has made of a packet comes with a turn of its loop.
+        """
         fms = {name.removeprefix(_FMS): value for name, value in self.values.items() if name.startswith(_FMS)}
         ours = {name.removeprefix(_HAL): value for name, value in self.values.items() if name.startswith(_HAL)}
-        place = int(ours.get("alliance_station", 1))
-        if "StationNumber" in fms:
-            place = int(fms["StationNumber"]) + (0 if fms.get("IsRedAlliance", True) else 3)
+        place = int(fms.get("StationNumber", 1)) + (0 if fms.get("IsRedAlliance", True) else 3)
+        place = int(ours.get("alliance_station", place))
         yield "alliance_station", _named(_STATIONS, place), "red1"
         yield "control.eStop", bool(self.values.get("DS:estop")), False
-        fms_attached = bool(fms.get("FMSControlData", 0) & FMS_ATTACHED) or bool(ours.get("control.fmsAttached"))
+        fms_attached = bool(ours.get("control.fmsAttached", fms.get("FMSControlData", 0) & FMS_ATTACHED))
         yield "control.fmsAttached", fms_attached, False
-        yield "event.name", fms.get("EventName", ours.get("event.name", station.EVENT_NAME)), station.EVENT_NAME
-        yield "event.match_number", int(fms.get("MatchNumber", ours.get("event.match_number", 0))), 0
-        match_type = int(fms.get("MatchType", ours.get("event.match_type", 0)))
+        yield "event.name", ours.get("event.name", fms.get("EventName", station.EVENT_NAME)), station.EVENT_NAME
+        yield "event.match_number", int(ours.get("event.match_number", fms.get("MatchNumber", 0))), 0
+        match_type = int(ours.get("event.match_type", fms.get("MatchType", 0)))
         yield "event.match_type", _named(_MATCH_TYPES, match_type), "none"
-        message = fms.get("GameSpecificMessage", ours.get("event.game_specific_message", ""))
+        message = ours.get("event.game_specific_message", fms.get("GameSpecificMessage", ""))
         yield "event.game_specific_message", message, ""
         if (left := ours.get(REMAINING)) is not None:
             yield REMAINING, left, 0.0

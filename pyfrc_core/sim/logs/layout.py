@@ -28,6 +28,8 @@ _OUTPUT = re.compile(r"(NT:)?/?((Real|Replay)Outputs/)?(messages|console|DSEvent
 #: it begins in 1970.
 _CLOCKS, _TIMES = ("systemTime", "/SystemStats/EpochTimeMicros"), range(1_500_000_000_000_000, 4_000_000_000_000_000)
 _EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
+#: At a multiple of this, in microseconds, the time of a simulation begins on the HAL's clock: at 0 until 2026.
+_SIMULATED_BOOT = 10**12
 #: The entries of the mode, in the order in which they are looked for: enabled, autonomous, test, emergency stop.
 _MODES = (
     ("DS:enabled", "DS:autonomous", "DS:test", "DS:estop"),
@@ -70,7 +72,7 @@ def run_of(log: ReadLog, name: str, height: float) -> PastRun:
     network: dict[str, Column] = {}
     for each, column in columns.items():
         if each.startswith(_HAL):
-            hal.setdefault(each.removeprefix(_HAL), column)
+            hal[each.removeprefix(_HAL)] = column
         else:
             network[_path(each)] = column
     for each, type_name in log.types.items():
@@ -103,7 +105,8 @@ def _begin(log: ReadLog) -> int:
     firsts = [column.moments[0] for column in columns if len(column.moments) > 1]
     firsts = sorted(firsts or [column.moments[0] for column in columns if column.moments])
     first = min([*firsts[len(firsts) // 20 :][:1], *(round(each.time * 1e6) for each in log.happened[:1])], default=0)
-    return 0 if first <= PACKET_US else first // PACKET_US * PACKET_US
+    since_boot = first % _SIMULATED_BOOT
+    return first - since_boot if since_boot <= PACKET_US else first // PACKET_US * PACKET_US
 
 
 def _path(name: str) -> str:

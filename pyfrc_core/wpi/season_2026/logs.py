@@ -144,6 +144,10 @@ class LogWriter:
         entry = log.start(name, f"struct:{wpistruct.getTypeName(Pose2d)}", "", stamp)
         return lambda pose, stamp: log.appendRaw(entry, wpistruct.pack(pose), stamp)
 
+    def network(self) -> Callable[[], None]:
+        """Log all changes of NetworkTables, until the function that is returned is called, before `close`."""
+        return log_network(self._log)
+
     def flush(self) -> None:
         """Write WPILib's buffer to the file."""
         self._log.flush()

@@ -25,6 +25,7 @@ from wpilog import (
 from wpimath import Pose2d
 from wpiutil import wpistruct
 
+from . import timing
 from .station import angle_of, pov_of
 
 __all__ = [
@@ -110,7 +111,7 @@ def povs(angles: list[int]) -> list[int]:
 class Record(NamedTuple):
     """A value in a log.
 
-    :param at_us: when it was logged, in microseconds of the robot's clock
+    :param at_us: when it was logged, in microseconds of the robot's clock; in a simulation, of robot time
     :param type_name: the name of its type in the log, such as ``int64``
     """
 
@@ -139,7 +140,7 @@ def _records(reader: DataLogReader, beginnings: tuple[str, ...]) -> Iterator[Rec
                 entries[start.entry] = _AS_IN_2026.get(start.name, start.name), start.type
         elif not record.is_control() and record.get_entry() in entries:
             name, type_name = entries[record.get_entry()]
-            at_us, value = record.get_timestamp() // 1_000, _READ[type_name](record)
+            at_us, value = record.get_timestamp() % timing.ROUND // 1_000, _READ[type_name](record)
             if name == "DS:controlWord":
                 yield from (Record(at_us, part, "boolean", get(value)) for part, get in _OF_CONTROL_WORD.items())
             else:
@@ -162,8 +163,8 @@ class LogWriter:
 
     @staticmethod
     def stamp(now_us: int) -> int:
-        """Return the log's number for a time, from microseconds of robot time."""
-        return max(1, now_us) * 1_000  # to WPILib, 0 is "now"
+        """Return the log's number for a time, from microseconds of robot time: that of NetworkTables, the HAL's."""
+        return timing.hal_time(now_us)
 
     def entry(self, name: str, kind: Kind) -> Callable[[Any, int], object]:
         """Add an entry, and return what appends a value to it, with the value's time."""
@@ -177,6 +178,10 @@ class LogWriter:
         log.add_struct_schema(Pose2d, stamp)
         entry = log.start(name, f"struct:{wpistruct.get_type_name(Pose2d)}", "", stamp)
         return lambda pose, stamp: log.append_raw(entry, wpistruct.pack(pose), stamp)
+
+    def network(self) -> Callable[[], None]:
+        """Log all changes of NetworkTables, until the function that is returned is called, before `close`."""
+        return log_network(self._log)
 
     def flush(self) -> None:
         """Write WPILib's buffer to the file."""

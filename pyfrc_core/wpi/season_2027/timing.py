@@ -25,7 +25,7 @@ from hal.simulation import (
 
 NS_PER_US = 1_000
 #: Runs begin at multiples of this, in nanoseconds: 11.6 days. As seconds, floats have 0.1 ns left there.
-_ROUND = 10**15
+ROUND = 10**15
 
 #: How many notifiers of C++ code there are.
 count_notifiers = get_num_notifiers
@@ -60,9 +60,9 @@ def stop_and_zero() -> None:
     pause_timing()
     restart_timing()
     now = get_monotonic_time()
-    if now % _ROUND:  # else no time has passed since it was stopped there
+    if now % ROUND:  # else no time has passed since it was stopped there
         # Not `step_timing`, which waits for the threads of notifiers.
-        step_timing_async(_ROUND - now % _ROUND)
+        step_timing_async(ROUND - now % ROUND)
     _zero = get_monotonic_time()
 
 

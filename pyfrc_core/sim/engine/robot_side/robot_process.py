@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 from ....compat.unrepeatable import explain_unrepeatable
 from ....errors import PyfrcError
@@ -125,12 +124,10 @@ def _failure(error: BaseException, project: Project, now: float) -> Failure:
 def _logged(run: RobotRun, file: Path) -> Iterator[None]:
     log = WpiLog(file)
     before_sudden_exit["--wpilog"] = log.close
-    before: dict[str, Any] = {}
+    changes = run.hal_data.changes()
 
     def look(now: float) -> None:
-        values = dict(run.hal_data.leaves())
-        changed = {path: value for path, value in values.items() if path not in before or before[path] != value}
-        before.update(changed)
+        changed, _ = changes.look_at_values()
         controller = getattr(run.physics, "controller", None)
         log.write(run.clock.now_us, changed, None if controller is None else controller.get_pose())
 

@@ -42,6 +42,7 @@ class WpiLog:
             raise UsageError(f"{file} cannot be written: {error.strerror}", remedy="--wpilog names a file.") from None
         self._file = file
         self._log = logs.LogWriter(file, "pyfrc sim")
+        self._stop_network = self._log.network()
         self._entries: dict[str, Any] = {}
         self._pose: Callable[[geometry.Pose2d, int], object] | None = None
         self._flush_us = 0
@@ -61,6 +62,7 @@ class WpiLog:
 
     def close(self) -> None:
         """Write what is still in the buffer, and close the file."""
+        self._stop_network()
         self._log.flush()
         if check_disk_space(self._file):
             self._log.abandon()

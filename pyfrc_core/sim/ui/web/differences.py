@@ -28,7 +28,8 @@ _MOST_NAMED = 20
 _ROUNDING, _SMALLEST = 1e-6, 1e-9
 #: Values that both runs have from outside, and those that robot code does not set.
 _GIVEN = re.compile(
-    rf"joysticks\[\d\]\.(axes|buttons|povs)|control\.|event\.|alliance_station|time\.|{VALUE}/(FMSInfo|DS)/"
+    rf"joysticks\[\d\]\.(axes|buttons|povs)|control\.|event\.|alliance_station|time\."
+    rf"|{VALUE}/(FMSInfo|DS|DriverStation)/|{VALUE}/Robot/ProgramStartTime"
     rf"|{VALUE}/.*( \(physics\)/|/Ids$)"  # the simulated field, and the numbers of commands
     rf"|{re.escape(TYPE)}|{re.escape(MODE)}|{re.escape(POSE)}"
 )

@@ -1,0 +1,93 @@
+"""`pyfrc sim --wpilog`: the log has what the robot publishes, as the robot's own data log has it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from conftest import MakeProject, RobotProject
+
+from pyfrc_core.sim.engine.past_run import PastRun
+from pyfrc_core.sim.logs import open_log
+
+ROBOT = """
+    import ntcore
+    import wpilib
+    from wpimath.geometry import Pose2d, Rotation2d
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            wpilib.DataLogManager.start()
+            table = ntcore.NetworkTableInstance.getDefault().getTable("Lift")
+            self.count = table.getIntegerTopic("count").publish()
+            self.state = table.getStringTopic("state").publish()
+            self.volts = table.getDoubleArrayTopic("volts").publish()
+            self.pose = table.getStructTopic("pose", Pose2d).publish()
+            self.turns = 0
+            self.state.set("ready")
+
+        def teleopPeriodic(self):
+            self.turns += 1
+            self.count.set(self.turns)
+            self.state.set("up" if self.turns >= 25 else "ready")
+            self.volts.set([self.turns / 4, 12.0])
+            self.pose.set(Pose2d(self.turns / 50, 2.0, Rotation2d(0.5)))
+"""
+#: What WPILib 2027 publishes: when the process was started.
+PROGRAM_START = "nt:/Robot/ProgramStartTime"
+SIM = ("sim", "--ui", "none", "--mode", "teleop", "--seconds", "1", "--wpilog")
+
+
+def logged(project: RobotProject, name: str) -> PastRun:
+    result = project.run(*SIM, name)
+    assert result.code == 0, result.output
+    return open_log(project.path / name, 27.0).run
+
+
+def changes(run: PastRun, *beginnings: str) -> dict[str, tuple[list[float], list[Any]]]:
+    """The times and values of what the log has, by path."""
+    found = {}
+    for history in run.histories.values():
+        for path in history.paths():
+            if path.startswith(beginnings or "") and path != PROGRAM_START:
+                times, values = history.changes(path)
+                found[path] = list(times), list(values)
+    return found
+
+
+def test_the_log_has_what_the_robot_publishes(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT})
+    run = logged(project, "a.wpilog")
+    found = changes(run, "nt:/Lift")
+    assert found["nt:/Lift/state"] == ([0.0, 0.5], ["ready", "up"])
+    assert found["nt:/Lift/count"] == ([turn / 50 for turn in range(1, 51)], list(range(1, 51)))
+    assert found["nt:/Lift/volts"][1][-1] == (12.5, 12.0)
+    assert found["nt:/Lift/pose/translation/x"][1][-1] == 1.0
+    assert found["nt:/Lift/pose/rotation/value"][1][-1] == 0.5
+    types = {path: value for path, value in run.histories["network"].now.items() if path.startswith("type:/Lift")}
+    assert types == {
+        "type:/Lift/count": "int",
+        "type:/Lift/state": "string",
+        "type:/Lift/volts": "double[]",
+        "type:/Lift/pose": "struct:Pose2d",
+    }
+    (own,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
+    assert changes(open_log(own, 27.0).run, "nt:/Lift") == found
+
+
+def test_two_runs_write_the_same(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT})
+    first = changes(logged(project, "a.wpilog"))
+    assert len(first) > 100
+    assert changes(logged(project, "b.wpilog")) == first
+
+
+@pytest.mark.parametrize("fails", ["1 / 0", "os._exit(3)"])
+def test_the_log_of_a_robot_that_fails_is_whole(fails: str, make_project: MakeProject) -> None:
+    turn = f"self.turns += 1\n            if self.turns == 30:\n                import os\n                {fails}"
+    project = make_project({"robot.py": ROBOT.replace("self.turns += 1", turn)})
+    result = project.run(*SIM, "a.wpilog")
+    assert result.code == 1, result.output
+    opened = open_log(project.path / "a.wpilog", 27.0)
+    assert opened.problem == ""
+    assert opened.run.histories["network"].now["nt:/Lift/count"] == 29
