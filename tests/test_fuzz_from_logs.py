@@ -90,6 +90,7 @@ def test_the_course_of_the_match_is_the_recorded_one() -> None:
     steps = (
         Step(0, {"alliance_station": "red2"}),
         Step(1_000_000, {"mode": "teleop", "joysticks[0].axes[1]": 1.0}),
+        Step(1_200_000, {"hold:nt:/limelight/tx": 2.5, "hold:encoder[0].count": 3}),  # of a log; physics goes on here
         Step(2_000_000, {"joysticks[0].axes[1]": 0.0, "packet": True}),
         Step(3_000_000, {"mode": "disabled"}),
     )
@@ -97,6 +98,7 @@ def test_the_course_of_the_match_is_the_recorded_one() -> None:
     assert [(event.at_us, event.writes) for event in base.plan()] == [
         (0, {"alliance_station": "red2"}),
         (1_000_000, {"mode": "teleop", "joysticks[0].axes[1]": 1.0}),
+        (1_200_000, {"nt:/limelight/tx": 2.5}),
         (3_000_000, {"mode": "disabled"}),
     ]
     assert base.end_us(1_000_000) == 2_500_000

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -366,3 +367,83 @@ def test_a_person_sees_where_the_log_differs(recorded: RobotProject, browser: Br
         page.get_by_role("button", name="Close", exact=True).click()
         page.close()
         assert wrong == []
+
+
+CAMERAS = """
+    import ntcore
+    import wpilib
+    from wpimath.geometry import Pose2d
+
+    TABLES = ntcore.NetworkTableInstance.getDefault()
+    TABLE = TABLES.getTable("limelight")
+    GAIN = 1.0
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            wpilib.DataLogManager.start()
+            wpilib.DriverStation.startDataLog(wpilib.DataLogManager.getLog())
+            self.poses = TABLE.getDoubleArrayTopic("botpose").subscribe([])
+            self.angle = TABLE.getEntry("tx")
+            self.tag = TABLE.getIntegerTopic("tid").subscribe(0)
+            self.place = TABLES.getStructTopic("/photonvision/front/pose", Pose2d).subscribe(Pose2d())
+            self.seen = 0
+
+        def robotPeriodic(self):
+            for pose in self.poses.readQueue():
+                self.seen += 1
+                wpilib.SmartDashboard.putNumber("sum", sum(pose.value))
+            wpilib.SmartDashboard.putNumber("seen", self.seen)
+            wpilib.SmartDashboard.putNumber("angle", GAIN * self.angle.getDouble(0))
+            wpilib.SmartDashboard.putNumber("tag", self.tag.get())
+            wpilib.SmartDashboard.putNumber("x", self.place.get().X())
+"""
+#: A camera that measures by chance, as one does that sees a robot whose motors have the noise of SPARKs.
+CHANCE = """
+    import random
+
+    import ntcore
+    from wpimath.geometry import Pose2d
+
+    class PhysicsEngine:
+        def __init__(self, physics_controller):
+            self.chance = random.SystemRandom()
+            tables = ntcore.NetworkTableInstance.getDefault()
+            table = tables.getTable("limelight")
+            self.seen_at = tables.getStructTopic("/photonvision/front/pose", Pose2d).publish()
+            self.table, self.angle = table, table.getEntry("tx")
+            self.poses = table.getDoubleArrayTopic("botpose").publish()
+            self.tag = table.getIntegerTopic("tid").publish()
+
+        def update_sim(self, hal_data, now, tm_diff):
+            noise = [self.chance.uniform(-0.5, 0.5) for _ in range(3)]
+            self.poses.set(noise)
+            self.seen_at.set(Pose2d(noise[1], 0.0, 0.0))
+            self.tag.set(self.chance.randint(1, 30))
+            if now < 1.0:
+                self.angle.setDouble(noise[0])
+            else:
+                self.table.putNumber("tx", noise[0])
+"""
+
+
+@pytest.mark.parametrize("log", ["match.wpilog", "robot.wpilog"])
+def test_cameras_measure_what_they_measured_in_the_log(log: str, make_project: MakeProject) -> None:
+    project = make_project({"robot.py": CAMERAS, "physics.py": CHANCE, "drive.jsonl": DRIVEN})
+    result = project.run(*SIM, "--script", "drive.jsonl", "--wpilog", "match.wpilog")
+    assert result.code == 0, result.output
+    (own,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
+    own.rename(project.path / "robot.wpilog")
+    said = log_of(project, log, "--tolerance", "0", "--record", "again.jsonl")
+    assert "no difference: " in said
+    assert "sensors from the log: limelight, photonvision/front" in said
+    result = project.run("replay", "again.jsonl")  # the recording of this run has them, too
+    assert result.code == 0, result.output
+    change(project, "robot.py", "GAIN = 1.0", "GAIN = 0.5")
+    assert re.search(r"differs first at 0:00.\d\d, in angle: ", log_of(project, log))
+
+
+def test_a_camera_that_a_log_does_not_have_comes_from_physics(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": CAMERAS, "physics.py": CHANCE, "drive.jsonl": DRIVEN})
+    result = project.run(*SIM, "--script", "drive.jsonl", "--record", "match.jsonl")
+    assert result.code == 0, result.output
+    assert "sensors from physics: limelight, photonvision/front" in log_of(project, "match.jsonl")

@@ -7,6 +7,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from ..hal.paths import format_path, parse_path
+from ..runtime.scripts.sensors import camera_of
 from ..wording import counted
 from .engine.messages import VALUE
 from .engine.past_run import PastRun
@@ -81,6 +82,9 @@ def _devices(paths: Iterable[str]) -> list[str]:
     """Return the devices of some sensors, in their order."""
     found: dict[str, None] = {}
     for path in paths:
+        if (camera := camera_of(path.removeprefix(VALUE))) is not None:
+            found[camera] = None
+            continue
         segments = parse_path(path)
         found[str(segments[1]) if segments[0] == "CAN" else format_path(segments[:-1] or segments)] = None
     return list(found)

@@ -19,6 +19,7 @@ from ..errors import UsageError
 from ..project import Project
 from ..runtime.robot_time import PACKET_US
 from ..runtime.scripts.inputs_file import DATA_LOG, load_inputs
+from ..runtime.scripts.network_entries import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript, Step, trace_beside
 from ..runtime.scripts.sensors import HOLD, INFINITE, is_input, is_sensor
 from ..wording import from_here
@@ -83,7 +84,7 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
     repeats = is_own and not any(map(may_not_repeat, hal.paths()))
     if share is None:
         share = 0.0 if repeats else SHARE
-    written = {target.removeprefix(HOLD) for step in script.steps for target in step.writes}
+    written = {_path_of(target.removeprefix(HOLD)) for step in script.steps for target in step.writes}
     late = _LATE
     if repeats and not share:  # a data log does not tell what was there before the loop and what came after it
         late = PACKET_US / 1_000_000 if file.suffix.lower() == DATA_LOG else 0.0
@@ -141,6 +142,11 @@ def _placed(project: Project, script: InputScript, run: PastRun, is_own: bool) -
     if place is MISSING or math.hypot(place[0] - start.x, place[1] - start.y) < _SAME_PLACE:
         return script
     return replace(script, steps=(Step(0, robot_at(field, Pose(*place))), *script.steps))
+
+
+def _path_of(target: str) -> str:
+    """Return the path of what a target writes: of an entry of NetworkTables, without its type."""
+    return VALUE + parse_entry_target(target)[0] if target.startswith(NETWORK) else target
 
 
 def _is_measured(hal: ValueHistory, path: str) -> bool:

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from .season_2026 import network as network
     from .season_2026 import network_client as network_client
     from .season_2026 import network_reads as network_reads
+    from .season_2026 import network_writes as network_writes
     from .season_2026 import reports as reports
     from .season_2026 import robots as robots
     from .season_2026 import sim_devices as sim_devices

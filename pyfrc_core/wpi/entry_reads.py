@@ -28,7 +28,7 @@ def of_entry(real: Any, name_of: Callable[[Any], str], type_name: str, reads: Re
 
     :param name_of: returns an entry's full name
     """
-    call = _unbound(real)
+    call = unbound(real)
 
     def get(self: Any, *args: Any, **kwargs: Any) -> Any:
         name = name_of(self)
@@ -44,7 +44,7 @@ def of_table(real: Any, path_of: Callable[[Any], str], type_name: str, reads: Re
 
     :param path_of: returns a table's path
     """
-    call = _unbound(real)
+    call = unbound(real)
 
     def get(self: Any, key: str, *args: Any, **kwargs: Any) -> Any:
         name = f"{path_of(self)}/{key}"
@@ -76,7 +76,7 @@ def of_topic(
     :param default_name: the name of the parameter for the default
     :param type_of: returns the name of a default's type; empty when it is not reported
     """
-    call = _unbound(real)
+    call = unbound(real)
 
     def subscribe(self: Any, *args: Any, **kwargs: Any) -> Any:
         name, default = name_of(self), args[0] if args else kwargs.get(default_name)
@@ -87,7 +87,7 @@ def of_topic(
     return subscribe
 
 
-def _unbound(real: Any) -> Callable[..., Any]:
+def unbound(real: Any) -> Callable[..., Any]:
     """Return the function of a method: the bindings' methods cannot be called as their class has them."""
     function: Callable[..., Any] = getattr(real, "__func__", real)
     return function

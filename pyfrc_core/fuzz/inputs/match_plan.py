@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from ...config.settings import MatchSettings
 from ...runtime.clock import PACKET_US
 from ...runtime.scripts.script import InputScript
+from ...runtime.scripts.sensors import written_once
 from ...runtime.scripts.targets import MATCH_TIME, MODE, PACKET, REMAINING, RESTART, plugged
 from ...wpi import station
 from .values import Value
@@ -342,7 +343,7 @@ class BaseMatch:
         for step in self.script.steps:
             writes = {
                 target: value
-                for target, value in step.writes.items()
+                for target, value in written_once(step.writes).items()
                 if target != PACKET and (step.at_us < self.until_us or _COURSE.fullmatch(target))
             }
             if writes:

@@ -9,16 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import starmap
-from types import FrameType
 
 from ...compat.cpython_private import get_frame
 from ...project.robot_files import RobotFiles
 from ...runtime.patch_table import Patch, patched
+from ...runtime.simulation_code import is_of_simulation
 from ...wpi import names, network_reads
 from .network_values import STRUCTS, NetworkRead
-
-#: The file that runs in simulations only.
-_PHYSICS = "physics.py"
 
 
 class NetworkReads:
@@ -40,21 +37,11 @@ class NetworkReads:
         file = frame.f_code.co_filename
         if not self._files.is_robot_code(file) and not file.endswith(names.TUNABLES_FILE):
             return
-        if _is_of_simulation(frame):  # the robot may read it later
+        if is_of_simulation(frame):  # the robot may read it later
             return
         default = values[-1] if values else next(iter(named.values()), None)
         read = self.found[name] = NetworkRead(name, type_name, default)
         self.on_first(read)
-
-
-def _is_of_simulation(frame: FrameType | None) -> bool:
-    """Return whether simulation code calls: what it alone reads is no input of a robot."""
-    while frame is not None:
-        code = frame.f_code
-        if code.co_name in names.OF_SIMULATION or code.co_filename.endswith(_PHYSICS):
-            return True
-        frame = frame.f_back
-    return False
 
 
 @contextmanager

@@ -14,6 +14,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -22,8 +23,9 @@ from ...season import CURRENT
 from ...wpi import logs, station
 from ..robot_time import PACKET_US
 from .modes import DS_ATTACHED, FMS_ATTACHED, mode_name, selected
-from .network_entries import entry_target
+from .network_entries import data_target, entry_target
 from .script import InputScript, ScriptError, Step
+from .sensors import HOLD, camera_of
 from .targets import MATCH_TIME, MODE, OPMODE, REMAINING, plugged
 
 #: The types of NetworkTables that a target has to name, by their names in a log.
@@ -39,7 +41,8 @@ _NAMED_TYPES = {
 
 _FMS = "NT:/FMSInfo/"
 _HAL = "/hal_data/"
-_FROM_OUTSIDE = re.compile(r"NT:(/.+/selected|/Preferences/[^.].*|/limelight[^/]*/.+|/photonvision/.+)", re.DOTALL)
+_CAMERAS = ("NT:/limelight", "NT:/photonvision/")
+_FROM_OUTSIDE = re.compile(r"NT:(/.+/selected|/Preferences/[^.].*)", re.DOTALL)
 
 #: The part of a robot's log before and after it is enabled that is replayed, in microseconds.
 _BEFORE_US, _AFTER_US = 5_000_000, 3_000_000
@@ -75,7 +78,11 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
     begin_us, end_us = _part(sent, records[-1].at_us)
     first_us = PACKET_US if begin_us else 0  # what was logged before is there with the first packet
     state, steps = _State(frozenset(f"NT:{name}" for name in given)), []
-    for at_us, together in groupby(records, key=lambda record: max(first_us, _packet(record.at_us - begin_us))):
+
+    def arrival_us(record: logs.Record) -> int:
+        return max(first_us, _arrival_us(record, begin_us))
+
+    for at_us, together in groupby(sorted(records, key=arrival_us), key=arrival_us):
         for record in together:
             state.values[record.name] = record.value
             state.types[record.name] = record.type_name
@@ -109,10 +116,21 @@ def _part(sent: list[logs.Record], last_us: int) -> tuple[int, int]:
 def _records(file: Path) -> Iterator[logs.Record]:
     if not file.is_file():
         raise ScriptError("this is a directory, not a data log" if file.is_dir() else f"there is no file {file}")
-    records = logs.records(file, ("DS:", "NT:", _HAL))
+    records = logs.records(file, ("DS:", "NT:", _HAL), _CAMERAS)
     if records is None:
         raise ScriptError("this is not a WPILib data log", where=file.name)
     return records
+
+
+@cache
+def _is_of_camera(name: str) -> bool:
+    return name.startswith("NT:") and camera_of(name.removeprefix("NT:")) is not None
+
+
+def _arrival_us(record: logs.Record, begin_us: int) -> int:
+    """Return the time of the packet with which a value arrives; that of a camera arrives after the packet's physics."""
+    at_us = record.at_us - begin_us
+    return max(0, at_us // PACKET_US) * PACKET_US if _is_of_camera(record.name) else _packet(at_us)
 
 
 def _packet(at_us: int) -> int:
@@ -142,9 +160,14 @@ class _State:
             for stick in range(station.JOYSTICKS):
                 yield from self._joystick(stick)
         for name, value in self.values.items():
-            if _FROM_OUTSIDE.fullmatch(name) or name in self.given:
-                target = entry_target(name.removeprefix("NT:"), _NAMED_TYPES.get(self.types[name], ""))
-                yield from self._changed(target, value, None)
+            is_of_camera = _is_of_camera(name)
+            if is_of_camera or _FROM_OUTSIDE.fullmatch(name) or name in self.given:
+                type_name = self.types[name]
+                if isinstance(value, bytes):
+                    target, value = data_target(name.removeprefix("NT:"), type_name), value.hex()
+                else:
+                    target = entry_target(name.removeprefix("NT:"), _NAMED_TYPES.get(type_name, ""))
+                yield from self._changed(HOLD + target if is_of_camera else target, value, None)
 
     def _changed(self, target: str, value: object, initially: object) -> Iterator[tuple[str, Any]]:
         if self._written.get(target, initially) != value:

@@ -3,7 +3,8 @@
 ``nt:/SmartDashboard/x`` has the type of its value, and a number is a double. Where that is not so, the target names the
 type as NetworkTables does: ``nt:int:/vision/id``, ``nt:double[]:/limelight/botpose`` (also for an empty list),
 ``nt:struct:Pose2d:/vision/pose``, whose value is a list of the struct's numbers (structs of doubles only). In lists of
-doubles and in structs, ``"nan"`` is not a number: JSON has no word for it.
+doubles and in structs, ``"nan"`` is not a number: JSON has no word for it. ``nt:data(struct:Pose2d):/vision/pose`` has
+the bytes of any type that consists of bytes, as hexadecimal digits.
 """
 
 from __future__ import annotations
@@ -22,14 +23,19 @@ NETWORK = "nt:"
 #: What cameras send for a pose that they could not compute.
 NOT_A_NUMBER = "nan"
 
-_STRUCT = "struct:"
+_STRUCT, _DATA = "struct:", "data("
 _DOUBLES = ("float[]", "double[]")
-_TYPED = re.compile(r"((?:struct:\w+|[a-z]+)(?:\[\])?):")
+_TYPED = re.compile(r"((?:struct:\w+|[a-z]+)(?:\[\])?|data\([^()/]+\)):")
 
 
 def entry_target(name: str, type_name: str = "") -> str:
     """Return the target of an entry; with the name of its type where its values do not show it."""
     return f"{NETWORK}{type_name}:{name}" if type_name else NETWORK + name
+
+
+def data_target(name: str, type_name: str) -> str:
+    """Return the target of an entry that has bytes, by the name of its type."""
+    return entry_target(name, f"{_DATA}{type_name})")
 
 
 def struct_target(name: str, type_name: str) -> str | None:
@@ -49,7 +55,9 @@ def parse_entry_target(target: str) -> tuple[str, str]:
     """Return the name of a target's entry, and the name of its type; empty where its values show it."""
     rest = target.removeprefix(NETWORK)
     typed = _TYPED.match(rest)  # the name of an entry may begin without a slash
-    if typed is None or not (typed[1].removesuffix("[]") in network.TYPES or typed[1].startswith(_STRUCT)):
+    if typed is None or not (
+        typed[1].removesuffix("[]") in network.TYPES or typed[1].startswith(_STRUCT) or typed[1].startswith(_DATA)
+    ):
         type_name, slash, name = rest.partition("/")
         return slash + name if slash else type_name, type_name.removesuffix(":") if slash else ""
     return rest[typed.end() :], typed[1]
@@ -99,6 +107,17 @@ def _writer(name: str, type_name: str, at_end: Callable[[Callable[[], object]], 
                 raise UsageError(f"{name} is a struct, written as a list of its numbers, not {value!r}") from None
 
         return write_struct
+    if type_name.startswith(_DATA):
+        data = network.DataEntry(name, type_name.removeprefix(_DATA).removesuffix(")"))
+        at_end(data.unpublish)
+
+        def write_data(value: str) -> None:
+            try:
+                data.write(bytes.fromhex(value))
+            except (TypeError, ValueError):
+                raise UsageError(f"{name} has bytes, written as hexadecimal digits, not {value!r}") from None
+
+        return write_data
     entry = network.Entry(name)
     at_end(entry.unpublish)
     if not type_name:

@@ -10,6 +10,7 @@ from ...hal.kinds import UnknownKey
 from ...wpi import robots
 from ..clock import INPUT, MEASURED, PACKET_US, to_us
 from ..robot import RobotRun
+from .network_entries import NETWORK
 from .script import InputScript, ScriptError, Step
 from .sensors import HOLD
 from .targets import MATCH_TIME, Targets
@@ -57,7 +58,10 @@ class Player:
         run.clock.limit_us = max(run.clock.limit_us, script.end_us)
         if any(MATCH_TIME in step.writes for step in script.steps):
             run.clock.before_packet.append(self._on_packet)
-        if any(target.startswith(HOLD) for step in script.steps for target in step.writes):
+        held = {target for step in script.steps for target in step.writes if target.startswith(HOLD)}
+        if any(target.startswith(HOLD + NETWORK) for target in held):
+            self._targets.held.replace_simulation()
+        if held:
             run.clock.every(self._physics_us, MEASURED, self._targets.held.apply)
         if script.start_us > run.clock.now_us:
             run.run_until(script.start_us)

@@ -1,7 +1,10 @@
-"""What a log measured, as targets of input scripts: ``hold:encoder[0].count``.
+"""What a log measured, as targets of input scripts: ``hold:encoder[0].count``, ``hold:nt:/limelight/tx``.
 
 A write to such a target is there after the physics of its packet, and again after that of each later packet, until
 null is written: physics does not change what a log has. A device that the robot does not have is left out.
+
+What a camera measured is published once, after the physics of its packet. What simulation code publishes there itself
+is left out: a subscriber would get both.
 """
 
 from __future__ import annotations
@@ -11,9 +14,14 @@ import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from ...compat.cpython_private import get_frame
 from ...compat.unrepeatable import in_real_time
 from ...errors import PyfrcError
 from ...hal.paths import parse_path
+from ...wpi import network_writes
+from ..patch_table import PatchTable
+from ..simulation_code import is_of_simulation
+from .network_entries import NETWORK, NetworkEntries, parse_entry_target
 
 if TYPE_CHECKING:
     from ...hal import HalData
@@ -36,6 +44,15 @@ _OF_DEVICES = re.compile(
 )
 _SETTINGS = re.compile(r"factor|offset|set.?point|limit|\bterm\b|\bm(?:ax|in)\b|units|mode|init", re.IGNORECASE)
 
+#: Where cameras publish: Limelight, PhotonVision.
+_OF_CAMERA = re.compile(r"/(limelight[^/]*|photonvision/[^/]+)/.+", re.DOTALL)
+
+
+def camera_of(name: str) -> str | None:
+    """Return the camera that an entry of NetworkTables is of, such as ``limelight``; None if it is of none."""
+    found = _OF_CAMERA.fullmatch(name)
+    return None if found is None else found[1]
+
 
 def is_sensor(path: str) -> bool:
     """Return whether a path in `hal_data` is of a value that a device measures."""
@@ -57,25 +74,55 @@ def released(values: Mapping[str, object]) -> dict[str, object]:
     return {target: None for target, value in values.items() if target.startswith(HOLD) and value is not None}
 
 
-class Held:
-    """The values that are held in one run."""
+def written_once(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return these writes without those that hold a sensor; what cameras measured is written, but not held.
 
-    def __init__(self, hal_data: HalData) -> None:
-        self._hal_data = hal_data
+    For runs that go on without the log: there, physics moves the sensors.
+    """
+    camera = HOLD + NETWORK
+    return {
+        target.removeprefix(HOLD): value
+        for target, value in values.items()
+        if not target.startswith(HOLD) or (target.startswith(camera) and value is not None)
+    }
+
+
+class Held:
+    """The values that are held in one run.
+
+    :param entries: writes those of NetworkTables
+    """
+
+    def __init__(self, hal_data: HalData, entries: NetworkEntries) -> None:
+        self._hal_data, self._entries = hal_data, entries
         self._values: dict[str, Any] = {}
         #: Where `hal_data` has them.
         self._places: dict[str, tuple[Any, Any]] = {}
+        #: What is to be published, by target, and the names of all entries that are held.
+        self._news: dict[str, Any] = {}
+        self._names: set[str] = set()
+        self._replaced = PatchTable()
 
     def write(self, target: str, value: object) -> None:
         """Hold a value from the end of this packet on; None leaves it to physics."""
         path = target.removeprefix(HOLD)
-        if value is None:
+        if path.startswith(NETWORK):
+            name, _ = parse_entry_target(path)
+            if value is None:
+                self._names.discard(name)
+            else:
+                self._names.add(name)
+                self._news[path] = value
+        elif value is None:
             self._values.pop(path, None)
         else:
             self._values[path] = math.inf if value == INFINITE else value
 
     def apply(self) -> None:
-        """Write all values, in place of those of physics."""
+        """Write all values, in place of those of physics.
+
+        :raises UsageError: when an entry of NetworkTables cannot have its value
+        """
         for path, value in self._values.items():
             try:
                 if path not in self._places:
@@ -84,3 +131,18 @@ class Held:
                 place[key] = value
             except (PyfrcError, LookupError):  # the robot does not have it, or not yet
                 continue
+        news, self._news = self._news, {}
+        for target, value in news.items():
+            self._entries.write(target, value)
+
+    def replace_simulation(self) -> None:
+        """Leave out what simulation code publishes under a name that is held, until `close`."""
+        for patch in list(network_writes.replacements(self._may_write)):
+            self._replaced.patch(*patch)
+
+    def close(self) -> None:
+        """Leave nothing to later runs in this process."""
+        self._replaced.undo()
+
+    def _may_write(self, name: str) -> bool:
+        return name not in self._names or not is_of_simulation(get_frame(1))

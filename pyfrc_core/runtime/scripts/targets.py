@@ -7,7 +7,8 @@
 - ``restart``: true: the robot program ends as without power, and starts again; more in `boots`
 - ``nt:/SmartDashboard/x``: an entry of NetworkTables; a SendableChooser's choice is its entry ``selected``;
   more in `network_entries`
-- ``hold:encoder[0].count``: what a sensor measures, whatever physics writes; null ends it; more in `sensors`
+- ``hold:encoder[0].count``, ``hold:nt:/limelight/tx``: what a sensor or a camera measures, whatever physics writes;
+  null ends it; more in `sensors`
 - anything else: a path in `hal_data`, such as ``joysticks[0].axes[1]`` or ``event.game_specific_message``
 """
 
@@ -79,13 +80,14 @@ class Targets:
         self._deliver = deliver
         self._entries = NetworkEntries()
         #: What a log measured.
-        self.held = Held(hal_data)
+        self.held = Held(hal_data, self._entries)
         #: Where `hal_data` has what was written, of `_KEPT`: most writes of fuzz go to these.
         self._places: dict[str, tuple[Any, Any]] = {}
         self._countdown = Countdown()
 
     def close(self) -> None:
         """Leave nothing to later runs in this process."""
+        self.held.close()
         self._entries.close()
 
     def write(self, target: str, value: Any, now_us: int) -> None:

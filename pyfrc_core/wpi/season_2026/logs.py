@@ -53,6 +53,11 @@ _READ: dict[str, Callable[[DataLogRecord], Any]] = {
     "int64[]": DataLogRecord.getIntegerArray,
 }
 
+
+def _data(record: DataLogRecord) -> bytes:
+    return bytes(record.getRaw())
+
+
 #: What `records` raises if a log is malformed.
 MALFORMED = (RuntimeError, ValueError, TypeError, IndexError, OSError)
 
@@ -90,26 +95,27 @@ class Record(NamedTuple):
     value: Any
 
 
-def records(file: Path, beginnings: tuple[str, ...]) -> Iterator[Record] | None:
+def records(file: Path, beginnings: tuple[str, ...], of_data: tuple[str, ...] = ()) -> Iterator[Record] | None:
     """Return the plain values in a log, in the order of the file; None if this is no data log.
 
     :param beginnings: of the names whose values are wanted
+    :param of_data: of those of which other values are wanted, too, as bytes
     :raises MALFORMED: when iterated over
     """
     reader = DataLogReader(str(file))
-    return _records(reader, beginnings) if reader.isValid() else None
+    return _records(reader, beginnings, of_data) if reader.isValid() else None
 
 
-def _records(reader: DataLogReader, beginnings: tuple[str, ...]) -> Iterator[Record]:
+def _records(reader: DataLogReader, beginnings: tuple[str, ...], of_data: tuple[str, ...]) -> Iterator[Record]:
     entries: dict[int, tuple[str, str]] = {}
     for record in reader:
         if record.isStart():
             start = record.getStartData()
-            if start.type in _READ and start.name.startswith(beginnings):
+            if start.name.startswith(beginnings if start.type in _READ else of_data):
                 entries[start.entry] = start.name, start.type
         elif not record.isControl() and record.getEntry() in entries:
             name, type_name = entries[record.getEntry()]
-            yield Record(record.getTimestamp(), name, type_name, _READ[type_name](record))
+            yield Record(record.getTimestamp(), name, type_name, _READ.get(type_name, _data)(record))
 
 
 #: Logs that could not be written, kept alive: WPILib aborts the process when it closes such a log.

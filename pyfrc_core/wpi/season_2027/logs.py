@@ -88,6 +88,11 @@ HOW_TO_LOG_STATION = (
     "In the robot's __init__, wpilib.DriverStation.start_data_log(wpilib.DataLogManager.get_log()) logs it."
 )
 
+
+def _data(record: DataLogRecord) -> bytes:
+    return bytes(record.get_raw())
+
+
 #: What `records` raises if a log is malformed.
 MALFORMED = (RuntimeError, ValueError, TypeError, IndexError, OSError)
 
@@ -121,26 +126,27 @@ class Record(NamedTuple):
     value: Any
 
 
-def records(file: Path, beginnings: tuple[str, ...]) -> Iterator[Record] | None:
+def records(file: Path, beginnings: tuple[str, ...], of_data: tuple[str, ...] = ()) -> Iterator[Record] | None:
     """Return the plain values in a log, in the order of the file; None if this is no data log.
 
     :param beginnings: of the names whose values are wanted
+    :param of_data: of those of which other values are wanted, too, as bytes
     :raises MALFORMED: when iterated over
     """
     reader = DataLogReader(str(file))
-    return _records(reader, beginnings) if reader.is_valid() else None
+    return _records(reader, beginnings, of_data) if reader.is_valid() else None
 
 
-def _records(reader: DataLogReader, beginnings: tuple[str, ...]) -> Iterator[Record]:
+def _records(reader: DataLogReader, beginnings: tuple[str, ...], of_data: tuple[str, ...]) -> Iterator[Record]:
     entries: dict[int, tuple[str, str]] = {}
     for record in reader:
         if record.is_start():
             start = record.get_start_data()
-            if start.type in _READ and start.name.startswith(beginnings):
+            if start.name.startswith(beginnings if start.type in _READ else of_data):
                 entries[start.entry] = _AS_IN_2026.get(start.name, start.name), start.type
         elif not record.is_control() and record.get_entry() in entries:
             name, type_name = entries[record.get_entry()]
-            at_us, value = record.get_timestamp() % timing.ROUND // 1_000, _READ[type_name](record)
+            at_us, value = record.get_timestamp() % timing.ROUND // 1_000, _READ.get(type_name, _data)(record)
             if name == "DS:controlWord":
                 yield from (Record(at_us, part, "boolean", get(value)) for part, get in _OF_CONTROL_WORD.items())
             else:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ....compat.unrepeatable import in_real_time
-from ....runtime.scripts.sensors import is_input, is_sensor
+from ....runtime.scripts.sensors import camera_of, is_input, is_sensor
 from ....runtime.scripts.trace_difference import rank
 from ...engine.messages import MODE, POSE, TYPE, VALUE
 from ...engine.past_run import EXACT, Comparison
@@ -144,13 +144,17 @@ def _is_from_outside(path: str) -> bool:
     return bool(_GIVEN.match(path)) or is_sensor(path) or in_real_time(path)
 
 
-def sensors_by_source(hal: ValueHistory, given: frozenset[str]) -> dict[str, list[str]]:
+def sensors_by_source(hal: ValueHistory, network: ValueHistory, given: frozenset[str]) -> dict[str, list[str]]:
     """Return the sensors of a run by where their values come from: ``log``, ``physics``, or ``nothing``.
 
     :param hal: the values of `hal_data`
+    :param network: those of NetworkTables, to which cameras belong
     :param given: the values that a log has
     """
     found: dict[str, list[str]] = {"log": [], "physics": [], "nothing": []}
+    for path in sorted(path for path in network.now if camera_of(path.removeprefix(VALUE))):
+        if path in given or network.moves(path):
+            found["log" if path in given else "physics"].append(path)
     for path in sorted(hal.now):
         if is_sensor(path) and is_input(path, hal.now):
             found["log" if path in given else "physics" if hal.moves(path) else "nothing"].append(path)

@@ -259,9 +259,9 @@ class Runs:
     def sensors(self, number: int) -> dict[str, list[str]]:
         """Return the sensors of the present run, by where their values come from: a log that drives it, or not."""
         with self._lock:
-            branch, hal = self._branch(number), self._histories["hal"]
+            branch, hal, network = self._branch(number), self._histories["hal"], self._histories["network"]
             given = frozenset[str]() if branch is None or branch.compared is None else branch.compared.given
-            return sensors_by_source(hal, given)
+            return sensors_by_source(hal, network, given)
 
     @staticmethod
     def _known(history: ValueHistory, former: ValueHistory, by: Comparison) -> Iterable[str]:
