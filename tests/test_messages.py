@@ -318,15 +318,16 @@ def test_a_failed_assertion_is_at_the_tests_line(make_project: MakeProject) -> N
     assert block[0].startswith("tests/test_it.py:3: AssertionError: assert ")
 
 
-def test_a_subsystem_that_is_not_registered(make_project: MakeProject) -> None:
-    init = "class Arm(commands2.Subsystem):\n        def __init__(self):\n            {}\n\n"
+def test_a_subsystem_needs_no_constructor_of_its_base(make_project: MakeProject) -> None:
+    """The library registers it before its `__init__`."""
+    arm = "class Arm(commands2.Subsystem):\n        def __init__(self):\n            self.turns = 0\n\n"
+    arm += "        def periodic(self):\n            self.turns += 1\n\n"
     robot = COMMANDS.replace("self.both = commands2.cmd.parallel(self.arm.up(), self.arm.up())", "")
-    test = {"tests/test_it.py": IN_TELEOP}
-    wrong = make_project(
-        {"robot.py": robot.replace("class Arm(commands2.Subsystem):\n", init.format("self.x = 1"))} | test
-    )
-    place = wrong.place("robot.py", "def __init__")
-    assert f"{place}: Arm.__init__ does not call super().__init__(): commands2 never calls" in wrong.run("test").stdout
+    test = f"{IN_TELEOP.rstrip()}\n            assert robot.arm.turns > 0\n"
+    files = {"robot.py": robot.replace("class Arm(commands2.Subsystem):\n", arm), "tests/test_it.py": test}
+    result = make_project(files).run("test")
+    assert result.code == 0, result.output
+    assert "super().__init__()" not in result.stdout
 
 
 def test_a_module_that_only_pyfrc_imports_is_missing_here_too(make_project: MakeProject) -> None:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from .code_warning import CodeWarning
 from .foreign_paths import find_foreign_paths
-from .missing_super import find_missing_super
 from .misspelled_methods import find_misspelled_methods
 from .opmodes_never_run import find_opmodes_never_run
 
@@ -18,7 +17,6 @@ def find_code_warnings(project: Project) -> list[CodeWarning]:
     """Return the mistakes in the project's imported modules."""
     return [
         *find_misspelled_methods(project),
-        *find_missing_super(project),
         *find_opmodes_never_run(project),
         *find_foreign_paths(project),
     ]

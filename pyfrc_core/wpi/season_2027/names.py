@@ -38,9 +38,6 @@ OF_AN_OPMODE = frozenset({"disabled_periodic", "start", "periodic", "end"})
 OF_A_SUBSYSTEM = frozenset({"periodic", "simulation_periodic"})
 OF_A_COMPONENT = frozenset({"execute", "on_enable", "on_disable"})
 
-#: The class of subsystems that are registered by their constructor; and what registers others.
-SUBSYSTEM, REGISTERING = "commands2.subsystem.Subsystem", frozenset({"__init__", "register", "register_subsystem"})
-
 #: What the loop of a plain `RobotBase` has to call in each turn, to take in what the driver station sends.
 REFRESH = "wpilib.DriverStationBackend.refresh_data()"
 
