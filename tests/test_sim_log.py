@@ -335,8 +335,8 @@ def test_the_page_gets_the_first_difference_and_what_moves_the_sensors(recorded:
         (branch,) = page.parts["branches"]
         assert (branch["name"], branch["offset"], branch["compared"]) == ("match.wpilog", 0.0, True)
         found = page.ask(type="first_difference", branch=branch["id"], paths=None)
-        assert (found["t"], found["paths"][0]) == (2.5, "pwm[1].value")
-        assert [path for path, _ in found["others"]] == ["pwm[1].value", "pwm[1].raw_value"]
+        assert (found["t"], found["paths"][:2]) == (2.5, ["nt:/SmartDashboard/Elevator/setpoint", "pwm[1].value"])
+        assert [path for path, _ in found["others"]] == [*found["paths"][:2], "pwm[1].raw_value"]
         assert "encoder[0].count" in found["sensors"]["log"]
         assert found["sensors"]["physics"] == []
         # From the past on, a person drives: then physics moves the encoder again.

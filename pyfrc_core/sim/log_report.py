@@ -24,6 +24,7 @@ _SOURCES = {
     "log": "sensors from the log",
     "physics": "sensors from physics",
     "nothing": "sensors that neither the log nor physics move",
+    "replay": "inputs of subsystems, which only the replay of AdvantageKit or PyKit gives to the code",
 }
 
 
@@ -53,7 +54,7 @@ class LogReport:
         yield from self._differences(found, branch.number)
         for kind, paths in runs.sensors(branch.number).items():
             if paths:
-                yield f"{_SOURCES[kind]}: {_listed(_devices(paths))}"
+                yield f"{_SOURCES[kind]}: {_listed(paths if kind == 'replay' else _devices(paths))}"
 
     def _differences(self, found: FirstDifference, branch: int) -> Iterator[str]:
         log, runs = self._log, self._collector.runs

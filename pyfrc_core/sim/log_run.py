@@ -18,6 +18,7 @@ from ..compat.unrepeatable import may_not_repeat
 from ..errors import UsageError
 from ..project import Project
 from ..runtime.robot_time import PACKET_US
+from ..runtime.scripts import kit_names
 from ..runtime.scripts.inputs_file import DATA_LOG, load_inputs
 from ..runtime.scripts.network_entries import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript, Step, trace_beside
@@ -76,7 +77,7 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
     run = opened.run
     hal = run.histories["hal"]
     offset = _offset(script, run)
-    is_own = any(path.startswith("control.") for path in hal.paths())
+    is_own = "control.enabled" in hal.paths()
     sensors = frozenset(filter(partial(_is_measured, hal), hal.paths() if is_own else ()))
     if is_own:  # to its end; that of a robot's log ends soon after the match
         script = replace(script, end_us=max(script.end_us, round((run.end + offset) * 1_000_000) + PACKET_US))
@@ -88,7 +89,9 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
     late = _LATE
     if repeats and not share:  # a data log does not tell what was there before the loop and what came after it
         late = PACKET_US / 1_000_000 if file.suffix.lower() == DATA_LOG else 0.0
-    compared = Comparison(True, share, late, frozenset(written | sensors))
+    logged = () if is_own else (path.removeprefix(VALUE) for path in run.histories["network"].paths())
+    replayed = tuple(sorted(kit_names.subsystems(logged)))
+    compared = Comparison(True, share, late, frozenset(written | sensors), replayed)
     return LogRun(script, replace(run, offset=offset, compared=compared), (file, trace_beside(file)), opened.problem)
 
 

@@ -3,7 +3,8 @@
 A log has what the driver station sent, and the values of NetworkTables. It does not say who has published a value, so
 only values that dashboards and cameras publish are inputs: the choices of choosers, preferences, the tables of
 Limelight and PhotonVision, and what the user names. Robots do not log the seconds left: in their logs with autonomous
-before teleoperated, they are those until the period ends.
+before teleoperated, they are those until the period ends. Logs of AdvantageKit and PyKit have all that under other
+names (`kit_names`), and say what the robot has read from NetworkTables: what changed of it is an input.
 
 A robot is on for minutes before a match and after it: of its log, the script has the time from `_BEFORE_US` before it
 is first enabled until `_AFTER_US` after it was last disabled. What was logged earlier is there when the script begins.
@@ -12,7 +13,7 @@ is first enabled until `_AFTER_US` after it was last disabled. What was logged e
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import groupby
@@ -22,6 +23,7 @@ from typing import Any
 from ...season import CURRENT
 from ...wpi import logs, station
 from ..robot_time import PACKET_US
+from . import kit_names
 from .modes import DS_ATTACHED, FMS_ATTACHED, mode_name, selected
 from .network_entries import data_target, entry_target
 from .script import InputScript, ScriptError, Step
@@ -39,6 +41,7 @@ _NAMED_TYPES = {
     "string[]": "string[]",
 }
 
+_ENABLED = "DS:enabled"
 _FMS = "NT:/FMSInfo/"
 _HAL = "/hal_data/"
 _CAMERAS = ("NT:/limelight", "NT:/photonvision/")
@@ -68,8 +71,14 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
         records = sorted(_records(file), key=lambda record: record.at_us)
     except logs.MALFORMED as malformed:
         raise ScriptError(f"the data log cannot be read: {malformed}", where=file.name) from None
+    given = {f"NT:{name}" for name in given}
+    for prefix in kit_names.PREFIXES if not _has(records, _ENABLED) else ():
+        if _has(records, prefix + kit_names.ENABLED):
+            read = list(_of_kit(records, prefix))
+            given |= _changed_from_outside(read)
+            records = sorted([*records, *read], key=lambda record: record.at_us)
     sent = [record for record in records if record.name.startswith("DS:")]
-    if not any(record.name == "DS:enabled" for record in sent):
+    if not _has(sent, _ENABLED):
         raise ScriptError(
             "this data log has no data of a driver station",
             where=file.name,
@@ -77,7 +86,7 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
         )
     begin_us, end_us = _part(sent, records[-1].at_us)
     first_us = PACKET_US if begin_us else 0  # what was logged before is there with the first packet
-    state, steps = _State(frozenset(f"NT:{name}" for name in given)), []
+    state, steps = _State(given), []
 
     def arrival_us(record: logs.Record) -> int:
         return max(first_us, _arrival_us(record, begin_us))
@@ -105,7 +114,7 @@ def _part(sent: list[logs.Record], last_us: int) -> tuple[int, int]:
     first_us = sent[0].at_us
     if first_us <= PACKET_US:
         return 0, last_us
-    enabled = [(record.at_us, record.value) for record in sent if record.name == "DS:enabled"]
+    enabled = [(record.at_us, record.value) for record in sent if record.name == _ENABLED]
     first_on = next((at_us for at_us, is_on in enabled if is_on), first_us)
     last_off = last_us if enabled[-1][1] else enabled[-1][0]
     is_used = any(is_on for _, is_on in enabled)
@@ -116,7 +125,7 @@ def _part(sent: list[logs.Record], last_us: int) -> tuple[int, int]:
 def _records(file: Path) -> Iterator[logs.Record]:
     if not file.is_file():
         raise ScriptError("this is a directory, not a data log" if file.is_dir() else f"there is no file {file}")
-    records = logs.records(file, ("DS:", "NT:", _HAL), _CAMERAS)
+    records = logs.records(file, ("DS:", "NT:", _HAL, *kit_names.READ), _CAMERAS)
     if records is None:
         raise ScriptError("this is not a WPILib data log", where=file.name)
     return records
@@ -133,6 +142,35 @@ def _arrival_us(record: logs.Record, begin_us: int) -> int:
     return max(0, at_us // PACKET_US) * PACKET_US if _is_of_camera(record.name) else _packet(at_us)
 
 
+def _has(records: Iterable[logs.Record], name: str) -> bool:
+    return any(record.name == name for record in records)
+
+
+def _of_kit(records: Iterable[logs.Record], prefix: str) -> Iterator[logs.Record]:
+    """Yield what AdvantageKit or PyKit has logged, under WPILib's names.
+
+    :param prefix: how its names begin
+    """
+    latest: dict[str, Any] = {}
+    buttons = {name: names for names in kit_names.BUTTONS for name in names[:2]}
+    for record in records:
+        name = record.name.removeprefix(prefix)
+        ours = kit_names.NAMES.get(name) or kit_names.entry_of(name, record.type_name)
+        if ours is not None:
+            yield record._replace(name=ours)
+        elif name in buttons:
+            count, bits, ours = buttons[name]
+            latest[name] = record.value
+            yield record._replace(name=ours, value=kit_names.pressed(latest.get(count), latest.get(bits)))
+
+
+def _changed_from_outside(read: Iterable[logs.Record]) -> set[str]:
+    """Return the entries that have several values; one that never changes has the default that the code gave it."""
+    values: dict[str, Any] = {}
+    read = (record for record in read if record.name.startswith("NT:"))
+    return {record.name for record in read if values.setdefault(record.name, record.value) != record.value}
+
+
 def _packet(at_us: int) -> int:
     """Return the time of the packet with which something arrives that was logged at this time."""
     return max(0, -(-at_us // PACKET_US)) * PACKET_US
@@ -145,7 +183,7 @@ class _State:
     :param given: the names of further entries that are inputs
     """
 
-    given: frozenset[str] = frozenset()
+    given: Collection[str] = ()
     values: dict[str, Any] = field(default_factory=dict)
     types: dict[str, str] = field(default_factory=dict)
     _written: dict[str, Any] = field(default_factory=dict)

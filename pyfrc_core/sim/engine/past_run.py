@@ -34,12 +34,14 @@ class Comparison:
     :param share: values are equal if they differ by at most this share of their range
     :param late: how late a value may come, in seconds
     :param given: the values from outside, besides those of the driver station
+    :param replayed: the subsystems whose inputs the log has, which only the library that wrote it can give to the code
     """
 
     is_log: bool = False
     share: float = 0.0
     late: float = 0.0
     given: frozenset[str] = frozenset()
+    replayed: tuple[str, ...] = ()
 
 
 #: How former runs are compared.

@@ -13,7 +13,8 @@ import struct
 from collections.abc import Callable, Sequence
 from typing import Any
 
-#: What the name of a struct's type begins with, and the name under which its schema is found.
+#: What the name of a struct's type begins with, and what stands before it in the name of its schema. AdvantageKit and
+#: PyKit have schemas in a table of their own.
 STRUCT, SCHEMA = "struct:", "/.schema/struct:"
 #: The formats of a schema's types, for the module `struct`.
 _FORMATS = {

@@ -6,21 +6,19 @@ Structs come as their parts, which have no type of their own.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from .messages import TYPE, VALUE
-from .structs import Structs
+from .structs import SCHEMA, Structs
 
 
 class TopicValues:
-    """The values of all topics.
+    """The values of all topics."""
 
-    :param schema_of: returns the schema of a struct; empty: there is none yet
-    """
-
-    def __init__(self, schema_of: Callable[[str], str]) -> None:
-        self._structs = Structs(schema_of)
+    def __init__(self) -> None:
+        #: The schemas of structs that were published so far, by the structs' names.
+        self._schemas: dict[str, str] = {}
+        self._structs = Structs(lambda kind: self._schemas.get(kind, ""))
         #: The paths of the parts of each topic that has any.
         self._parts: dict[str, tuple[str, ...]] = {}
         #: All values at the last `changes`, by path.
@@ -33,10 +31,12 @@ class TopicValues:
         self._changed[path] = value
 
     def take(self, name: str, type_name: str, value: Any) -> None:
-        """Take over the value of a topic.
+        """Take over the value of a topic. A schema must come before what it describes.
 
         :param value: plain, or bytes; None: the topic has none, or is gone
         """
+        if SCHEMA in name and isinstance(value, bytes):
+            self._schemas[name.rpartition(SCHEMA)[2]] = value.decode("utf-8", "replace")
         before = self._parts.pop(name, (VALUE + name,))
         parts = {} if value is None else self._parts_of(name, type_name, value)
         for path in before:

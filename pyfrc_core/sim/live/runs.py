@@ -64,8 +64,7 @@ class RobotRuns:
         self.is_connected = False
 
     def _begin_topics(self) -> None:
-        self._schemas: dict[str, bytes] = {}
-        self._topics = TopicValues(lambda kind: self._schemas.get(SCHEMA + kind, b"").decode("utf-8", "replace"))
+        self._topics = TopicValues()
         #: The path of the seconds left in the match, if the robot publishes them.
         self.match_time_path: str | None = None
         #: The tables of choosers.
@@ -162,7 +161,7 @@ class RobotRuns:
     def _take_values(self, values: list[Received], clock_us: int | None) -> None:
         now_us = self._latest_us if clock_us is None else clock_us
         # Schemas before what they describe.
-        values.sort(key=lambda each: (not each.name.startswith(SCHEMA), each.time_us or now_us))
+        values.sort(key=lambda each: (SCHEMA not in each.name, each.time_us or now_us))
         together_until, names = 0, set[str]()
         for name, type_name, value, given_us in values:
             time_us = given_us or now_us
@@ -177,8 +176,6 @@ class RobotRuns:
                 self._look_at_new(name)
             self._times[name] = time_us
             self._latest_us = max(self._latest_us, time_us)
-            if name.startswith(SCHEMA) and isinstance(value, bytes):
-                self._schemas[name] = value
             self._topics.take(name, type_name, value)
         if names:
             self._flush()

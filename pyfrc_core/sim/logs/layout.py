@@ -1,7 +1,8 @@
 """What the entries of a log mean: which are the mode, the robot's place, the joysticks and the output.
 
-Known are the names of WPILib's `DataLogManager` and `DriverStation`, of AdvantageKit and PyKit, of the driver station's
-own logs (`ds_log`), and of pyfrc. Everything else is shown as a value of NetworkTables, under the name that it has.
+Known are the names of WPILib's `DataLogManager` and `DriverStation`, of AdvantageKit and PyKit (`kit_names`), of the
+driver station's own logs (`ds_log`), and of pyfrc. Everything else is shown as a value of NetworkTables, under the name
+that it has there: AdvantageKit and PyKit publish their values in a table that their logs leave out.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Any
 
 from ...physics.pose import METRES_PER_FOOT
 from ...runtime.robot_time import PACKET_US
+from ...runtime.scripts import kit_names
 from ...runtime.scripts.modes import AUTONOMOUS, ENABLED, SELECTED_BY_NUMBER, STOPPED, TEST, mode_name, selected
 from ...season import CURRENT
 from ..engine.messages import MODE, POSE, TYPE, VALUE
@@ -33,10 +35,6 @@ _SIMULATED_BOOT = 10**12
 #: The entries of the mode, in the order in which they are looked for: enabled, autonomous, test, emergency stop.
 _MODES = (
     ("DS:enabled", "DS:autonomous", "DS:test", "DS:estop"),
-    *(
-        tuple(f"{table}/{name}" for name in ("Enabled", "Autonomous", "Test", "EmergencyStop"))
-        for table in ("/DriverStation", "NT:/AdvantageKit/DriverStation")
-    ),
     ("/hal_data/control.enabled", "/hal_data/control.autonomous", "/hal_data/control.test", "/hal_data/control.eStop"),
     ("/DSLog/Enabled", "/DSLog/Autonomous", "", ""),
 )
@@ -46,14 +44,14 @@ _WORDS = ("DS:controlWord", "NT:/DriverStation/ControlWord")
 #: What only logs of 2027 have; their POVs have a bit for each direction: up, right, down, left.
 _OF_2027 = ("DS:controlWord/enabled", "DS:opMode")
 _POVS = {1: 0, 3: 45, 2: 90, 6: 135, 4: 180, 12: 225, 8: 270, 9: 315}
-#: Booleans that are marked when they become true.
+#: Values that are marked when they become true, or 1 in logs of PyKit.
 _ALARMS = {"/SystemStats/BrownedOut": "brownout", "/DSLog/Brownout": "brownout", "/DSLog/Watchdog": "watchdog"}
 #: The names of the robot's place, the most certain first.
 _PLACES = (
     r"/pose",
     r".*/Odometry/Robot",
     r".*Field\w*/Robot(/0)?",
-    r".*(estimated|robot|bot|drive)_?pose(2d)?",
+    r".*(estimat(ed|or)|odometry|robot|bot|drive)_?pose(2d)?",
     r".*/pose",
 )
 _NO_PLACE = re.compile(r"vision|target|goal|tag|set_?point|camera|ghost|desired|limelight", re.IGNORECASE)
@@ -68,17 +66,18 @@ def run_of(log: ReadLog, name: str, height: float) -> PastRun:
     begin = _begin(log)
     columns = log.columns
     end = max([begin, *(column.moments[-1] for column in columns.values() if column.moments)])
-    hal = dict(_station(columns))
-    network: dict[str, Column] = {}
-    for each, column in columns.items():
+    known = {**dict(_of_kit(columns)), **columns}
+    hal = dict(_station(known))
+    for each, column in known.items():
         if each.startswith(_HAL):
             hal[each.removeprefix(_HAL)] = column
-        else:
-            network[_path(each)] = column
+    table = kit_names.TABLE if kit_names.is_of_a_kit(log.types) else ""
+    paths = {each: _path(each, table) for each in (*columns, *log.types) if not each.startswith(_HAL)}
+    network = {path: columns[each] for each, path in paths.items() if each in columns}
     for each, type_name in log.types.items():
-        if not each.startswith(_HAL):
-            network[TYPE + _path(each).removeprefix(VALUE)] = Column.of([0], [type_name])
-    if (mode := _mode(columns)) is not None:
+        if each in paths:
+            network[TYPE + paths[each].removeprefix(VALUE)] = Column.of([0], [type_name])
+    if (mode := _mode(known)) is not None:
         network[MODE] = mode
     if (place := _place(columns, height)) is not None:
         network[POSE] = place
@@ -109,12 +108,28 @@ def _begin(log: ReadLog) -> int:
     return first - since_boot if since_boot <= PACKET_US else first // PACKET_US * PACKET_US
 
 
-def _path(name: str) -> str:
-    """Return the path of an entry."""
+def _path(name: str, table: str) -> str:
+    """Return the path of an entry.
+
+    :param table: of NetworkTables, in which a robot publishes what has no other place
+    """
     if name.startswith(_STATION):
         return f"{VALUE}/DS/{name.removeprefix(_STATION)}"
     plain = name.removeprefix("NT:")
-    return VALUE + plain if plain.startswith("/") else f"{VALUE}/{plain}"
+    if not plain.startswith("/"):
+        return f"{VALUE}/{plain}"
+    return VALUE + plain if plain != name else VALUE + table + plain
+
+
+def _of_kit(columns: Mapping[str, Column]) -> Iterator[tuple[str, Column]]:
+    """Yield what AdvantageKit or PyKit has logged of the driver station, with WPILib's names."""
+    for prefix in kit_names.PREFIXES:
+        for name, ours in kit_names.NAMES.items():
+            if (column := columns.get(prefix + name)) is not None:
+                yield ours, column
+        for count, bits, ours in kit_names.BUTTONS:
+            if (column := columns.get(prefix + bits)) is not None:
+                yield ours, together([columns.get(prefix + count), column], kit_names.pressed)
 
 
 def together(columns: Sequence[Column | None], make: Callable[..., Any]) -> Column:
@@ -178,18 +193,10 @@ def _station(columns: Mapping[str, Column]) -> Iterator[tuple[str, Column]]:
             yield f"joysticks[{stick}].povs", together([column], _angles) if is_of_2027 else column
         if (column := columns.get(f"DS:joystick{stick}/buttons")) is not None:
             yield f"joysticks[{stick}].buttons", together([column], _buttons)
-        table = f"/DriverStation/Joystick{stick}"
-        for sort, name in (("axes", "AxisValues"), ("povs", "POVs")):
-            if (column := columns.get(f"{table}/{name}")) is not None:
-                yield f"joysticks[{stick}].{sort}", column
-        if (bits := columns.get(f"{table}/ButtonValues")) is not None:
-            yield f"joysticks[{stick}].buttons", together([columns.get(f"{table}/ButtonCount"), bits], _button_bits)
-    if (station := columns.get("/DriverStation/AllianceStation")) is not None:
-        yield "alliance_station", together([station], _plain_number)
     for table in ("NT:/FMSInfo", "NT:/DriverStation"):  # until 2026, and from 2027 on
         if (red := columns.get(f"{table}/IsRedAlliance")) is not None:
             yield "alliance_station", together([red, columns.get(f"{table}/StationNumber")], _station_number)
-    for name in ("NT:/FMSInfo/GameSpecificMessage", "NT:/DriverStation/GameData", "/DriverStation/GameSpecificMessage"):
+    for name in ("NT:/FMSInfo/GameSpecificMessage", "NT:/DriverStation/GameData"):
         if (message := columns.get(name)) is not None:
             yield "event.game_specific_message", message
 
@@ -200,15 +207,6 @@ def _angles(povs: Any) -> Any:
 
 def _buttons(pressed: Any) -> Any:
     return (*(False,) * CURRENT.first_button, *(pressed or ()))
-
-
-def _button_bits(count: Any, bits: Any) -> Any:
-    number = 32 if count is None else min(int(count), 32)
-    return _buttons([bool(int(bits or 0) >> each & 1) for each in range(number)])
-
-
-def _plain_number(value: Any) -> int:
-    return int(value or 0)
 
 
 def _station_number(is_red: Any, number: Any) -> int:
@@ -299,5 +297,5 @@ def _alarms(columns: Mapping[str, Column]) -> Iterator[Happened]:
         if (column := columns.get(name)) is not None:
             changes = Column.of(column.moments, column.values())
             for moment, value in zip(changes.moments, changes.values(), strict=True):
-                if value is True:
+                if value in (True, 1):
                     yield Happened(moment / 1e6, "warning", text, is_mark=True)

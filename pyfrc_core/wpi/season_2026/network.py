@@ -186,11 +186,6 @@ def number_of(name: str) -> float:
     return number
 
 
-def data_of(name: str) -> bytes:
-    """Return the bytes of an entry; none if it has none."""
-    return bytes(_tables().getEntry(name).getRaw(b""))
-
-
 def persistent_values() -> Iterator[tuple[str, str, Any]]:
     """Yield name, type and value of the entries that a robot keeps in a file, if their types are in `TYPES`."""
     for topic in _tables().getTopics():

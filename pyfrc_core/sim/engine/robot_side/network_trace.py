@@ -26,7 +26,7 @@ class NetworkTrace:
     def __init__(self, pose: Callable[[], Pose | None]) -> None:
         self._pose = pose
         self._news = network.listen_for_values(current=True, gone=True)
-        self._topics = TopicValues(lambda kind: network.data_of(SCHEMA + kind).decode("utf-8", "replace"))
+        self._topics = TopicValues()
         self._lines: list[str] = []
 
     @property
@@ -39,7 +39,7 @@ class NetworkTrace:
         self._topics.note(MODE, station.mode_name())
         if (pose := self._pose()) is not None:
             self._topics.note(POSE, [pose.x, pose.y, pose.angle])
-        for update in self._news.read():
+        for update in sorted(self._news.read(), key=lambda each: SCHEMA not in each.name):
             self._topics.take(update.name, "" if update.value is None else update.type_name, update.value)
         changed, lost = self._topics.changes()
         if changed or lost:

@@ -82,8 +82,8 @@ def _run(job: Job, connection: Connection, log: CrashLog) -> None:
                     physics.attach(run)
                 if job.options.wpilog is not None:
                     closing.enter_context(_logged(run, job.options.wpilog))
-                run.construct(robot_class)
                 gc.freeze()  # or a collection of all modules would hold up the loop
+                run.construct(robot_class)  # not frozen: libraries such as PyKit find its objects by the collector
 
             def ready() -> Ready:
                 tags = tags_of(project.sim_config) if job.tags is None else job.tags

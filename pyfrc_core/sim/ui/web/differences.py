@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ....compat.unrepeatable import in_real_time
+from ....runtime.scripts import kit_names
 from ....runtime.scripts.sensors import camera_of, is_input, is_sensor
 from ....runtime.scripts.trace_difference import rank
 from ...engine.messages import MODE, POSE, TYPE, VALUE
@@ -31,6 +32,7 @@ _GIVEN = re.compile(
     rf"joysticks\[\d\]\.(axes|buttons|povs)|control\.|event\.|alliance_station|time\."
     rf"|{VALUE}/(FMSInfo|DS|DriverStation)/|{VALUE}/Robot/ProgramStartTime"
     rf"|{VALUE}/.*( \(physics\)/|/Ids$)"  # the simulated field, and the numbers of commands
+    rf"|{VALUE}{kit_names.NOT_COMPUTED}"
     rf"|{re.escape(TYPE)}|{re.escape(MODE)}|{re.escape(POSE)}"
 )
 

@@ -257,11 +257,14 @@ class Runs:
         return answer
 
     def sensors(self, number: int) -> dict[str, list[str]]:
-        """Return the sensors of the present run, by where their values come from: a log that drives it, or not."""
+        """Return the sensors of the present run, by where their values come from: a log that drives it, or not.
+
+        ``replay``: the subsystems whose inputs the log has, which only the library that wrote it can give to the code.
+        """
         with self._lock:
             branch, hal, network = self._branch(number), self._histories["hal"], self._histories["network"]
-            given = frozenset[str]() if branch is None or branch.compared is None else branch.compared.given
-            return sensors_by_source(hal, network, given)
+            compared = EXACT if branch is None or branch.compared is None else branch.compared
+            return sensors_by_source(hal, network, compared.given) | {"replay": list(compared.replayed)}
 
     @staticmethod
     def _known(history: ValueHistory, former: ValueHistory, by: Comparison) -> Iterable[str]:

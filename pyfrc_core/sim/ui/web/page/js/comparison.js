@@ -8,6 +8,7 @@ const SOURCES = [
   ["log", "From the log"],
   ["physics", "From physics.py"],
   ["nothing", "Neither: not simulated"],
+  ["replay", "Only by the replay of AdvantageKit or PyKit"],
 ];
 
 // The name of a value for people.
