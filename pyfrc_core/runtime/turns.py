@@ -5,7 +5,7 @@ are the same in every run. Runs at the same time would write, rename and delete 
 initialized without writing a file, one run of a command waits for the other; likewise from when a run writes one after
 all. Wherever the files are, each run then finds what it would find if it were the only one.
 
-Data logs need no turns: `data_logs` gives them names of their own.
+Data logs of WPILib's manager need no turns: `data_logs` gives them names of their own.
 """
 
 from __future__ import annotations
@@ -23,13 +23,24 @@ from ..compat.cpython_private import get_frame
 from ..file_lock import lock
 from ..project.robot_files import is_pyfrc
 from .patches.active_run import active_run
+from .patches.data_logs import ROBOT_FILE
 
 #: Names the directory by which the processes of a command agree.
 _VARIABLE = "PYFRC_TURNS"
 
 _STANDARD_LIBRARY = str(Path(os.__file__).parent) + os.sep
 _CHANGING_FILES = frozenset(
-    {"os.link", "os.mkdir", "os.remove", "os.rename", "os.rmdir", "os.symlink", "os.truncate", "sqlite3.connect"}
+    {
+        ROBOT_FILE,
+        "os.link",
+        "os.mkdir",
+        "os.remove",
+        "os.rename",
+        "os.rmdir",
+        "os.symlink",
+        "os.truncate",
+        "sqlite3.connect",
+    }
 )
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
@@ -109,7 +120,7 @@ class _Turn:
         if self._wrote or not (event in _CHANGING_FILES or (event == "open" and _is_for_writing(*args))):
             return
         run = active_run.run
-        if run is not None and run.in_motion and not _is_ours():
+        if run is not None and run.in_motion and (event == ROBOT_FILE or not _is_ours()):
             self._wrote = True
             with contextlib.suppress(OSError):  # the command is over
                 self._how.write_text("alone")

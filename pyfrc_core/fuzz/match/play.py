@@ -266,6 +266,7 @@ def _robot(
             RealTimePace(run, project.settings)
         notes = MisbehaviorNotes(run.clock, project.files, ends_with)
         with ExitStack() as closing:
+            closing.callback(run.data_logs.close)
             if use_oracle:
                 closing.enter_context(attach_oracle(run, project.files, settings, notes.ends_run))
 

@@ -9,6 +9,7 @@ process that a signal ends loses those.
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -36,6 +37,9 @@ _KEPT, _KEPT_OF_TESTS = 10, 200
 #: Names of topics with which WPILib's own manager logs the time of day, every five seconds.
 _SYSTEM_TIME = ("systemTime", '{"source":"DataLogManager","format":"time_t_us"}')
 _SYSTEM_TIME_US = 5_000_000
+
+#: An event for `sys.audit`: pyfrc creates a file as robot code does, by a name that it has chosen.
+ROBOT_FILE = "pyfrc.robot_file"
 
 #: WPILib's driver station and NetworkTables hold on to logs in C++ for as long as the process lives.
 _EVERY_LOG: list[logs.DataLog] = []
@@ -106,6 +110,8 @@ class DataLogs:
         self._clock = clock
         self._place = place
         self._logs: list[_Log] = []
+        #: The directories and inodes of the empty files in place of logs that are not kept.
+        self._places_held: list[tuple[Path, int]] = []
         self._directory = ""
         self._manager: logs.DataLog | None = None
         self._network: Callable[[], None] | None = None
@@ -176,8 +182,17 @@ class DataLogs:
 
         :raises RuntimeError: when it cannot be written
         """
-        file = Path(os.devnull) if self._place is None else Path(filename)
+        file = Path(filename)
+        if self._place is None:
+            self._hold_place(file.absolute())
+            file = Path(os.devnull)
         return self._keep(logs.RealWriter(str(file), header), file, 0.25)
+
+    def _hold_place(self, file: Path) -> None:
+        """Create an empty file for a log that is not kept, because robot code may rename it or look at it."""
+        sys.audit(ROBOT_FILE)
+        with suppress(OSError), file.open("xb") as made:
+            self._places_held.append((file.parent, os.fstat(made.fileno()).st_ino))
 
     def _keep(self, writer: logs.RealWriter, file: Path, period: float) -> logs.RealWriter:
         _EVERY_LOG.append(writer)
@@ -208,6 +223,12 @@ class DataLogs:
             self._stop_network()
         for log in self._logs.copy():
             self._close(log)
+        for directory, number in self._places_held:
+            with suppress(OSError):
+                for file in directory.iterdir():  # whatever its name is now
+                    if (found := file.stat()).st_ino == number and not found.st_size:
+                        file.unlink()
+        self._places_held.clear()
 
     def _close(self, log: _Log) -> None:
         self._logs.remove(log)
