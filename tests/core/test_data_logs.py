@@ -123,3 +123,17 @@ def test_a_log_that_cannot_be_written_or_completed_is_said(
 
 #: The name under which the module looks for room on the disk.
 FULL_DISK = next(name for name in ("check_disk_space", "lack_of_room") if hasattr(data_logs, name))
+
+
+def test_a_log_that_is_not_kept_has_a_file_for_code_that_renames_it(tmp_path: Path, timeline: Timeline) -> None:
+    """As PyKit does. The file has nothing in it, and goes with the run; files of others stay."""
+    (tmp_path / "other.wpilog").touch()
+    kept = tmp_path / "log_1.wpilog"
+    logs = DataLogs(timeline.clock, None)
+    for name in ("log_1", "log_2", "other"):
+        StringLogEntry(logs.open_file(str(tmp_path / f"{name}.wpilog")), "words").append("x" * 10_000)
+    kept.rename(tmp_path / "log_1_event.wpilog")
+    timeline.run_until(1_000)
+    assert [file.stat().st_size for file in tmp_path.iterdir()] == [0, 0, 0]
+    logs.close()
+    assert [file.name for file in tmp_path.iterdir()] == ["other.wpilog"]
