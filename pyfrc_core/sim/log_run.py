@@ -77,7 +77,7 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
     run = opened.run
     hal = run.histories["hal"]
     offset = _offset(script, run)
-    is_own = "control.enabled" in hal.paths()
+    is_own = "power.vin_voltage" in hal.paths()  # a simulation has it, and no other log calls it so
     sensors = frozenset(filter(partial(_is_measured, hal), hal.paths() if is_own else ()))
     if is_own:  # to its end; that of a robot's log ends soon after the match
         script = replace(script, end_us=max(script.end_us, round((run.end + offset) * 1_000_000) + PACKET_US))
