@@ -91,3 +91,49 @@ def test_the_log_of_a_robot_that_fails_is_whole(fails: str, make_project: MakePr
     opened = open_log(project.path / "a.wpilog", 27.0)
     assert opened.problem == ""
     assert opened.run.histories["network"].now["nt:/Lift/count"] == 29
+
+
+TALKING = """
+    import logging
+    import sys
+
+    import wpilib
+
+    logging.basicConfig(format="%(levelname)s %(message)s")
+    print("imported")
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.turns = 0
+
+        def teleopPeriodic(self):
+            self.turns += 1
+            if self.turns == 10:
+                print("over the", end=" ")
+                print("line\\nat the switch: ä")
+            if self.turns == 20:
+                print("late", file=sys.stderr)
+                logging.warning("hot")
+            if self.turns == 30:
+                wpilib.reportWarning("no target")
+            if self.turns == 40:
+                self.lift.set(1)
+"""
+
+
+def test_the_log_has_the_console(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": TALKING})
+    result = project.run(*SIM, "a.wpilog")
+    assert result.code == 1
+    run = open_log(project.path / "a.wpilog", 27.0).run
+    printed = [(round(each.time, 2), each.text) for each in run.happened]
+    assert [(time, text) for time, text in printed if time < 0.8] == [
+        (0.0, "imported"),
+        (0.2, "over the line"),
+        (0.2, "at the switch: ä"),
+        (0.4, "late"),
+        (0.4, "WARNING hot"),
+        (0.6, "WARNING no target"),
+    ]
+    assert printed[-1] == (0.8, "AttributeError: 'MyRobot' object has no attribute 'lift'")
+    assert all(text in result.output for time, text in printed if time < 0.8)  # the terminal has them, too

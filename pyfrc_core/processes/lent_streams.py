@@ -9,10 +9,10 @@ from __future__ import annotations
 import os
 import sys
 import weakref
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from io import TextIOWrapper
-from typing import TextIO
+from typing import Any, TextIO
 
 from .exit import flush_output
 
@@ -41,6 +41,13 @@ def lent_streams() -> Iterator[None]:
         for name, stream in before.items():
             setattr(sys, name, stream)
         _Lent.own_stderr = own_before
+
+
+def replace_streams(make: Callable[[TextIO], Any]) -> None:
+    """Have robot code print to what `make` returns for each stream. pyfrc writes its errors to that from before."""
+    _Lent.own_stderr = _Lent.own_stderr or sys.stderr
+    for name in ("stdout", "stderr"):
+        setattr(sys, name, make(getattr(sys, name)))
 
 
 def _lend(name: str) -> TextIO:

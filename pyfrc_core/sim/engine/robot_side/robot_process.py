@@ -35,6 +35,7 @@ from ..messages import Failed, Job, Ready, WindowClosed
 from ..program_files import keep_no_bytecode_of_new_code
 from ..snapshot import Failure
 from .april_tags import tags_of
+from .console import Console
 from .session import Ended, Session
 from .wpilog import WpiLog
 
@@ -63,6 +64,7 @@ def _run(job: Job, connection: Connection, log: CrashLog) -> None:
     project, files = job.project, job.project.files
     run = RobotRun(LogPlace.of_run(project.root))
     loaded = False
+    console = None if job.options.wpilog is None else Console()
     try:
         keep_no_bytecode_of_new_code(project.root)
         patches.install(files)
@@ -80,8 +82,8 @@ def _run(job: Job, connection: Connection, log: CrashLog) -> None:
             def construct() -> None:
                 if physics is not None:
                     physics.attach(run)
-                if job.options.wpilog is not None:
-                    closing.enter_context(_logged(run, job.options.wpilog))
+                if job.options.wpilog is not None and console is not None:
+                    closing.enter_context(_logged(run, project, job.options.wpilog, console))
                 gc.freeze()  # or a collection of all modules would hold up the loop
                 run.construct(robot_class)  # not frozen: libraries such as PyKit find its objects by the collector
 
@@ -121,9 +123,15 @@ def _failure(error: BaseException, project: Project, now: float) -> Failure:
 
 
 @contextmanager
-def _logged(run: RobotRun, file: Path) -> Iterator[None]:
+def _logged(run: RobotRun, project: Project, file: Path, console: Console) -> Iterator[None]:
     log = WpiLog(file)
-    before_sudden_exit["--wpilog"] = log.close
+
+    def close() -> None:
+        console.end()
+        log.close()
+
+    before_sudden_exit["--wpilog"] = close
+    console.begin(lambda line: log.print(run.clock.now_us, line))
     changes = run.hal_data.changes()
 
     def look(now: float) -> None:
@@ -134,9 +142,14 @@ def _logged(run: RobotRun, file: Path) -> Iterator[None]:
     run.observe(look)
     try:
         yield
+    except BaseException as error:
+        failure = _failure(error, project, run.clock.now)
+        for line in (failure.details or failure.headline).splitlines():
+            log.print(run.clock.now_us, line)
+        raise
     finally:
         del before_sudden_exit["--wpilog"]
-        log.close()
+        close()
 
 
 def _libraries(project: Project) -> Iterator[str]:

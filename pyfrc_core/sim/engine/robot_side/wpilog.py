@@ -1,7 +1,8 @@
 """A run as a WPILib data log, for AdvantageScope: each change with its time.
 
 Modes and joysticks have the names of robots' own logs (``DS:enabled``, ``DS:joystick0/axes``), the robot's place is
-``/pose``, and everything else has its path in `hal_data`: ``/hal_data/pwm[0].value``.
+``/pose``, the output is ``console``, what the robot publishes is under ``NT:``, and everything else has its path in
+`hal_data`: ``/hal_data/pwm[0].value``.
 """
 
 from __future__ import annotations
@@ -43,6 +44,7 @@ class WpiLog:
         self._file = file
         self._log = logs.LogWriter(file, "pyfrc sim")
         self._stop_network = self._log.network()
+        self._console = self._log.entry("console", "text")
         self._entries: dict[str, Any] = {}
         self._pose: Callable[[geometry.Pose2d, int], object] | None = None
         self._flush_us = 0
@@ -59,6 +61,10 @@ class WpiLog:
         if now_us >= self._flush_us:
             self._flush_us = now_us + _FLUSH_US
             self._log.flush()
+
+    def print(self, now_us: int, line: str) -> None:
+        """Write a line of output that was printed at `now_us`, in microseconds of robot time."""
+        self._console(line, self._log.stamp(now_us))
 
     def close(self) -> None:
         """Write what is still in the buffer, and close the file."""
