@@ -7,16 +7,15 @@ from pathlib import Path
 
 import click
 
+from .file_options import WrittenDirectory, WrittenFile
 from .verbosity import verbosity
 from .wrapping import WRAPPING, wrapped_command
 
 
 @click.command("coverage", context_settings=WRAPPING)
-@click.option("--html", metavar="DIR", type=click.Path(path_type=Path), help="Also write the report as web pages.")
-@click.option("--xml", metavar="FILE", type=click.Path(path_type=Path), help="Also write it as Cobertura XML.")
-@click.option(
-    "--json", "as_json", metavar="FILE", type=click.Path(path_type=Path), help="Also write it as coverage.py's JSON."
-)
+@click.option("--html", metavar="DIR", type=WrittenDirectory(), help="Also write the report as web pages.")
+@click.option("--xml", metavar="FILE", type=WrittenFile(), help="Also write it as Cobertura XML.")
+@click.option("--json", "as_json", metavar="FILE", type=WrittenFile(), help="Also write it as coverage.py's JSON.")
 @click.option(
     "--fail-under",
     metavar="PERCENT",

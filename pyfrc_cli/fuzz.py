@@ -16,6 +16,7 @@ from pyfrc_core._version import requirement
 from pyfrc_core.processes.loading import loading
 from pyfrc_core.wording import counted
 
+from .file_options import ReadPath, WrittenDirectory
 from .project_options import chosen_project, from_here, project_options
 from .verbosity import hint, verbosity
 
@@ -61,7 +62,7 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     help="Play only part I of N parts of the campaign: for several machines, with the same --seed and --runs.",
 )
 @click.option("--merge", is_flag=True, help="Play nothing: copy the scripts that shards have saved, from DIRECTORIES.")
-@click.argument("directories", nargs=-1, type=click.Path(path_type=Path))
+@click.argument("directories", nargs=-1, type=ReadPath())
 @click.option(
     "-j",
     "--jobs",
@@ -85,7 +86,7 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     "recorded",
     metavar="LOG",
     multiple=True,
-    type=click.Path(path_type=Path),
+    type=ReadPath(),
     help="Begin with a recorded match: a WPILib data log (.wpilog) or an input script. May be repeated.",
 )
 @click.option(
@@ -97,7 +98,7 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
 @click.option(
     "--pages",
     metavar="DIRECTORY",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=WrittenDirectory(),
     help="Write each failure's run as a page, DIRECTORY/NAME.html, for any browser.",
 )
 def command(
@@ -163,10 +164,6 @@ def command(
     options = CampaignOptions(seed or 0, runs, seconds, jobs, scripts, Shard(*shard), resume)
     if revision is not None:
         sys.exit(_compare(project, revision, options))
-    if pages is not None:
-        from pyfrc_core.text_files import check_writable
-
-        check_writable("--pages", pages / "any.html")
     campaign = run_campaign(_open_executor(project, jobs, scheduler), options, printer)
     printer.end(campaign.progress)
     if pages is not None:

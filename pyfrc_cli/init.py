@@ -9,6 +9,7 @@ import click
 from pyfrc_core.scaffold import DEFAULT, TEMPLATES, create_project
 from pyfrc_core.shell import quoted
 
+from .file_options import WrittenDirectory
 from .verbosity import hint
 
 
@@ -26,7 +27,7 @@ def _show_templates(ctx: click.Context, param: click.Parameter, wanted: bool) ->
 
 
 @click.command("init", context_settings={"help_option_names": ["-h", "--help"]})
-@click.argument("directory", type=click.Path(path_type=Path), default=Path())
+@click.argument("directory", type=WrittenDirectory(), default=Path())
 @click.option(
     "-t",
     "--template",

@@ -9,6 +9,7 @@ import click
 
 from pyfrc_core._version import requirement
 
+from .file_options import WrittenFile
 from .verbosity import verbosity
 from .wrapping import WRAPPING, wrapped_command
 
@@ -18,18 +19,16 @@ from .wrapping import WRAPPING, wrapped_command
     "-o",
     "--outfile",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=WrittenFile(),
     help="Also profile every call with cProfile, and write its file for pstats. Much slower.",
 )
 @click.option(
     "--html",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=WrittenFile(),
     help=f'Draw a flame graph as a web page. Needs: pip install "{requirement("profile")}"',
 )
-@click.option(
-    "--json", "as_json", metavar="FILE", type=click.Path(path_type=Path), help="Write all measurements as JSON."
-)
+@click.option("--json", "as_json", metavar="FILE", type=WrittenFile(), help="Write all measurements as JSON.")
 @click.option(
     "--top",
     metavar="N",

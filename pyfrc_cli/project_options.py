@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from .file_options import ReadPath, check_outputs
+
 if TYPE_CHECKING:
     from pyfrc_core.project import Project
 
@@ -20,7 +22,7 @@ project_option = click.option(
     "--project",
     "directory",
     metavar="DIR",
-    type=click.Path(path_type=Path),
+    type=ReadPath(),
     help="The robot project. Default: the current directory, or the nearest one above it with a robot.py.",
 )
 
@@ -36,7 +38,7 @@ def project_options(command: Function) -> Function:
         click.option(
             "--main",
             metavar="FILE",
-            type=click.Path(path_type=Path),
+            type=ReadPath(),
             help="The file with your robot class, if it is not called robot.py.",
         ),
         project_option,
@@ -46,8 +48,9 @@ def project_options(command: Function) -> Function:
 
 
 def chosen_project(directory: Path | None, main: Path | None, robot_class: str | None) -> Project:
-    """Return the project that the options choose.
+    """Return the project that the options choose, after a check of what the command will write.
 
+    :raises UsageError: when one of its files would overwrite something, or cannot be written
     :raises ProjectError: when there is none, one of its files hides a library, or WPILib is of another season
     """
     from pyfrc_core.config.robotpy import load_season_settings
@@ -58,6 +61,7 @@ def chosen_project(directory: Path | None, main: Path | None, robot_class: str |
     project = find_project(directory, main, robot_class)
     refuse_hidden_libraries(project.root, project.main_file)
     refuse_other_season(installed_wpilib(), load_season_settings(project.pyproject))
+    check_outputs(click.get_current_context(), project)
     return project
 
 

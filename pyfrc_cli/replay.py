@@ -10,6 +10,7 @@ import click
 
 from pyfrc_core.processes.loading import loading
 
+from .file_options import ReadPath, WrittenFile
 from .project_options import chosen_project, project_options
 from .verbosity import hint, verbosity
 
@@ -20,22 +21,22 @@ from .verbosity import hint, verbosity
 @click.option(
     "--trace",
     metavar="FILE",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=WrittenFile(),
     help="Write a trace of the robot, as JSON lines with a hash at the end.",
 )
 @click.option(
     "--picture",
     metavar="FILE",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=WrittenFile(),
     help="Draw the robot's path on the field, for example to path.png.",
 )
 @click.option(
     "--page",
     metavar="FILE",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=WrittenFile(),
     help="Write the run as a page, such as run.html, for any browser.",
 )
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=ReadPath())
 def command(
     directory: Path | None,
     main: Path | None,
@@ -61,10 +62,6 @@ def command(
 
         draw_script(project, file, picture, until)
         hint(f"wrote {picture}")
-    if page is not None:
-        from pyfrc_core.text_files import check_writable
-
-        check_writable("--page", page, (file,))
     result = replay(project, file, until=until, trace=trace)
     if page is not None:
         from pyfrc_core.sim.page_file import write_replay_page

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from .file_options import ReadPath
 from .verbosity import verbosity
 
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ _KEY_OPTIONS = (
     click.option("--ssh-agent", is_flag=True, help="Log in with the keys of your SSH agent."),
     click.option(
         "--identity",
-        type=click.Path(path_type=Path),
+        type=ReadPath(),
         metavar="FILE",
         callback=refuse_option_as_value,
         help="Log in with the private key in this file.",

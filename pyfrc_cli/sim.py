@@ -11,11 +11,10 @@ import click
 
 from pyfrc_core.processes.loading import loading
 
+from .file_options import ReadPath, WrittenFile
 from .page_options import allow_host_option, port_option
 from .project_options import chosen_project, project_options
 from .verbosity import verbosity
-
-_FILE = click.Path(path_type=Path, dir_okay=False)
 
 
 @click.command("sim", context_settings={"help_option_names": ["-h", "--help"]})
@@ -40,10 +39,10 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
     help="Choose this opmode of a 2027 robot for its mode; may be repeated. Default: the first of each mode.",
 )
 @click.option("--seconds", type=click.FloatRange(min=0.02), metavar="S", help="End, or pause, at this robot time.")
-@click.option("--script", type=_FILE, metavar="FILE", help="Replay the inputs of this script.")
+@click.option("--script", type=ReadPath(), metavar="FILE", help="Replay the inputs of this script.")
 @click.option(
     "--log",
-    type=_FILE,
+    type=ReadPath(),
     metavar="FILE",
     help="Drive today's code with the inputs of this log (.wpilog, or a recording), and show where the two differ.",
 )
@@ -78,11 +77,21 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
 @click.option("--paused", is_flag=True, help="Begin paused.")
 @click.option("--start", "start_position", metavar="NAME", help="Start at one of start_positions in sim/config.json.")
 @click.option("--watch", is_flag=True, help="When a file is saved, continue with the new code.")
-@click.option("--record", type=_FILE, metavar="FILE", help="Write an input script, for pyfrc replay and tests.")
-@click.option("--wpilog", type=_FILE, metavar="FILE", help="Write a WPILib data log, for AdvantageScope.")
-@click.option("--picture", type=_FILE, metavar="FILE", help="Draw the driven path on the field, such as path.png.")
 @click.option(
-    "--page", type=_FILE, metavar="FILE", help="Write the whole run as a page, such as run.html, for any browser."
+    "--record",
+    type=WrittenFile(is_recording=True),
+    metavar="FILE",
+    help="Write an input script, for pyfrc replay and tests.",
+)
+@click.option("--wpilog", type=WrittenFile(), metavar="FILE", help="Write a WPILib data log, for AdvantageScope.")
+@click.option(
+    "--picture", type=WrittenFile(), metavar="FILE", help="Draw the driven path on the field, such as path.png."
+)
+@click.option(
+    "--page",
+    type=WrittenFile(),
+    metavar="FILE",
+    help="Write the whole run as a page, such as run.html, for any browser.",
 )
 @click.option(
     "--nt-port",

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .file_options import ReadPath, WrittenDirectory
 from .project_options import chosen_project, from_here, project_options
 from .verbosity import hint, verbosity
 
@@ -17,16 +18,16 @@ if TYPE_CHECKING:
     from pyfrc_core.sync.lock import LockedFile
     from pyfrc_core.sync.synchronize import Synced
 
-_DIRECTORY = click.Path(path_type=Path)
-
 
 @click.command("sync", context_settings={"help_option_names": ["-h", "--help"]})
 @project_options
 @click.option("--check", is_flag=True, help="Change nothing: only report what is missing or different.")
 @click.option("--upgrade", is_flag=True, help="Find new versions, and write a new lock.")
 @click.option("--install/--no-install", help="Install the same versions on this computer, too.  [default: no-install]")
-@click.option("--to", metavar="DIR", type=_DIRECTORY, help="Copy everything to this directory, such as a USB stick.")
-@click.option("--from", "source", metavar="DIR", type=_DIRECTORY, help="Take everything from such a directory.")
+@click.option(
+    "--to", metavar="DIR", type=WrittenDirectory(), help="Copy everything to this directory, such as a USB stick."
+)
+@click.option("--from", "source", metavar="DIR", type=ReadPath(), help="Take everything from such a directory.")
 @click.option("--find-links", metavar="PLACE", multiple=True, help="Let pip look for packages there, too.")
 @click.option("--use-certifi", is_flag=True, help="Trust the certificates of certifi instead of the system's.")
 def command(

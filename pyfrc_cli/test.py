@@ -10,6 +10,7 @@ import click
 
 from pyfrc_core.processes.loading import loading
 
+from .file_options import WrittenDirectory, WrittenFile
 from .project_options import chosen_project, project_options
 from .verbosity import verbosity
 
@@ -45,13 +46,13 @@ def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int 
 @click.option(
     "--coverage-html",
     metavar="DIR",
-    type=click.Path(path_type=Path),
+    type=WrittenDirectory(),
     help="Also write the report as web pages.",
 )
 @click.option(
     "--coverage-xml",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=WrittenFile(),
     help="Also write the report as Cobertura XML.",
 )
 @click.option(
@@ -63,13 +64,13 @@ def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int 
 @click.option(
     "--trace",
     metavar="DIR",
-    type=click.Path(path_type=Path),
+    type=WrittenDirectory(),
     help="Write a trace of the robot in each test, as JSON lines with a hash at the end.",
 )
 @click.option(
     "--record",
     metavar="DIR",
-    type=click.Path(path_type=Path),
+    type=WrittenDirectory(),
     help="Record the robot's inputs in each test, for pyfrc replay.",
 )
 @click.option("--changed", is_flag=True, help="Run only tests that a change since their last pass can have reached.")

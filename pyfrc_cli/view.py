@@ -4,15 +4,25 @@ from __future__ import annotations
 
 import sys
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import click
 
 from pyfrc_core.processes.loading import loading
 
+from .file_options import ReadPath, WrittenFile, check_outputs
 from .page_options import allow_host_option, port_option
 from .verbosity import verbosity
+
+#: The value of ``--robot`` without an address; it can be none.
+_PROJECTS_ROBOT = "the project's"
+
+
+def _address(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
+    """Return the address; empty: the project's robot."""
+    if value is not None and not value.strip():
+        raise click.BadParameter("the address is empty.", context, option)
+    return "" if value == _PROJECTS_ROBOT else value
 
 
 @click.command("view", context_settings={"help_option_names": ["-h", "--help"]})
@@ -32,7 +42,7 @@ from .verbosity import verbosity
 )
 @click.option(
     "--page",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=WrittenFile(),
     metavar="FILE",
     help="Write the log as a page, such as match.html, for any browser, and show nothing.",
 )
@@ -48,12 +58,13 @@ from .verbosity import verbosity
 @click.option(
     "--robot",
     is_flag=False,
-    flag_value="",
+    flag_value=_PROJECTS_ROBOT,
+    callback=_address,
     metavar="[ADDRESS]",
     help="Show a robot, live, instead of logs: a team's number or an address. Default: the project's robot, and a "
     "simulation on this computer.",
 )
-@click.argument("files", nargs=-1, metavar="[FILE]...", type=click.Path(path_type=Path, exists=True))
+@click.argument("files", nargs=-1, metavar="[FILE]...", type=ReadPath(exists=True))
 def command(**request: Any) -> None:
     """Look at logs of a robot, or at a robot, on a page in your browser: values, plots, field, console, timeline.
 
@@ -65,5 +76,6 @@ def command(**request: Any) -> None:
     Exit codes: 0 all went well, 1 a file is no log that can be read, 2 wrong usage.
     """
     with loading(verbosity().quiet):
-        from pyfrc_core.sim.view import ViewRequest, view
+        from pyfrc_core.sim.view import ViewRequest, project_or_none, view
+    check_outputs(click.get_current_context(), project_or_none())
     sys.exit(view(ViewRequest(**request, quiet=verbosity().quiet), partial(click.echo, nl=False)))

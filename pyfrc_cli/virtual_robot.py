@@ -7,13 +7,14 @@ from pathlib import Path
 
 import click
 
+from .file_options import WrittenDirectory
 from .verbosity import verbosity
 
 
 @click.command("virtual-robot", context_settings={"help_option_names": ["-h", "--help"]})
 @click.option(
     "--directory",
-    type=click.Path(file_okay=False, path_type=Path),
+    type=WrittenDirectory(file_okay=False),
     metavar="DIR",
     help="Where the robot stores its programs and its SSH key. Default: in your user data.",
 )

@@ -61,4 +61,6 @@ def wrapped_command(context: click.Context, words: Sequence[str], wrappable: Seq
         )
     inner = loaded(name).make_context(name, arguments, parent=context)
     options = inner.params
-    return Wrapped(name, chosen_project(options["directory"], options["main"], options["robot_class"]), inner)
+    with inner.scope(cleanup=False):
+        project = chosen_project(options["directory"], options["main"], options["robot_class"])
+    return Wrapped(name, project, inner)

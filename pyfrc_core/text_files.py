@@ -20,16 +20,12 @@ def write_whole(file: Path, text: Iterable[str]) -> None:
         raise
 
 
-def check_writable(option: str, file: Path | None, read: Iterable[Path] = ()) -> None:
+def check_writable(option: str, file: Path) -> None:
     """Check that a file can be written; create its directory. Long work must not be lost at its end.
 
     :param option: the option that names the file
-    :param file: None when the option was not given
-    :param read: what the command reads, and must not overwrite: there is no second log of a match
     :raises UsageError: when it cannot
     """
-    if file is None:
-        return
     try:
         if file.parent.is_file():
             raise NotADirectoryError(0, f"{file.parent} is a file")
@@ -38,14 +34,15 @@ def check_writable(option: str, file: Path | None, read: Iterable[Path] = ()) ->
             raise IsADirectoryError(0, "it is a directory")
         if file.exists() and not os.access(file, os.W_OK):
             raise PermissionError(0, "it is read-only")
-        if file.exists() and any(each.exists() and file.samefile(each) for each in read):
-            raise FileExistsError(0, "this command reads it")
         with TemporaryFile(dir=file.parent, prefix=f".{file.name}-"):
             pass
     except OSError as error:
-        raise UsageError(
-            f"{option} {file} cannot be written: {error.strerror}", remedy="Choose a file in another place."
-        ) from None
+        raise cannot_write(option, file, error.strerror) from None
+
+
+def cannot_write(option: str, file: Path, why: str | None) -> UsageError:
+    """Return the error for a file that an option names."""
+    return UsageError(f"{option} {file} cannot be written: {why}", remedy="Choose a file in another place.")
 
 
 def keep_out_of_version_control(directory: Path) -> None:

@@ -254,6 +254,7 @@ def test_an_old_spelling_of_an_address_is_refused_with_the_right_one(text: str, 
         *("\uff11\uff10.12.34.2", "10\u300212\u300234\u30022", "10.12.34.*", "a,b", "|1|a|b", "!robot", "a;b"),
         *("", ":22", "robot:", "robot:0", "robot:70000", "robot:ssh", "[::1]x:3"),
         *("lvuser@10.12.34.2", "http://10.12.34.2", "10.12.34.2/", "my robot", "[]"),
+        *("foo..bar", ".foo", "-foo", "foo-.bar", "..", "::zz", "a%b", "a" * 64, ".".join(["a" * 60] * 5)),
     ],
 )
 def test_what_is_no_address_is_refused(text: str) -> None:

@@ -27,6 +27,10 @@ RESOLVE_SECONDS = 5.0
 DRIVER_STATION_SECONDS = 1.0
 
 _BANNER = b"SSH-"
+_LABEL = r"(?!-)[A-Za-z0-9_-]{1,63}(?<!-)"
+#: A name that a computer can have; `parse_address` has removed a dot at its end.
+_HOST_NAME = re.compile(rf"{_LABEL}(?:\.{_LABEL})*")
+_MOST_LETTERS = 253
 
 
 @dataclass(frozen=True)
@@ -98,8 +102,16 @@ def parse_address(text: str) -> Address:
         host, _, port = host.partition(":")
     # No other characters: name resolution treats some of them as digits or dots.
     if not re.fullmatch(r"[A-Za-z0-9_.:%-]+", host) or (port and not (port.isdecimal() and 1 <= int(port) <= 65535)):
-        raise UsageError(f"{text!r} is not an address of a robot", remedy="Write HOST or HOST:PORT, as in 10.12.34.2")
-    return Address(_normal(host.removesuffix(".")), int(port or 22))
+        raise _no_address(text)
+    normal = _normal(host.removesuffix("."))
+    address = Address(normal, int(port or 22))
+    if address.is_name and (len(normal) > _MOST_LETTERS or not _HOST_NAME.fullmatch(normal)):
+        raise _no_address(text)
+    return address
+
+
+def _no_address(text: str) -> UsageError:
+    return UsageError(f"{text!r} is not an address of a robot", remedy="Write HOST or HOST:PORT, as in 10.12.34.2")
 
 
 def _normal(host: str) -> str:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import UsageError
 from ..project import Project
-from ..text_files import check_writable, write_whole
+from ..text_files import write_whole
 from ..wording import counted
 from .processes import announced, is_announced
 
@@ -80,10 +80,6 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
     from coverage import Coverage
     from coverage.exceptions import CoverageException
 
-    if options.html is not None:
-        check_writable("--html", options.html / "index.html")
-    for option, file in (("--xml", options.xml), ("--json", options.json)):
-        check_writable(option, file)
     # The directory for the data of each process, until it is combined; nothing stays in the project.
     with tempfile.TemporaryDirectory(prefix="pyfrc-coverage-") as directory:
         settings: dict[str, Any] = {

@@ -18,7 +18,7 @@ from typing import Any
 from ..errors import UsageError
 from ..project import Project
 from ..project.robot_files import RobotFiles
-from ..text_files import check_writable, write_whole
+from ..text_files import write_whole
 from .figures import Figures, added_up
 from .processes import announced, is_announced
 from .profile_report import as_json, as_text, require_pyinstrument, write_flame
@@ -131,8 +131,6 @@ def profiling(project: Project, options: ProfileOptions, command: str) -> Iterat
         raise UsageError("a profile is already being measured")
     if options.html is not None:
         require_pyinstrument()
-    for option, file in (("--outfile", options.pstats), ("--html", options.html), ("--json", options.json)):
-        check_writable(option, file)
     # The directory for the figures of each process, until they are added up.
     with tempfile.TemporaryDirectory(prefix="pyfrc-profile-") as directory:
         settings = {"root": str(project.root), "directory": directory, "calls": options.pstats is not None}

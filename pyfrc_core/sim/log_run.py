@@ -21,7 +21,7 @@ from ..runtime.robot_time import PACKET_US
 from ..runtime.scripts import kit_names
 from ..runtime.scripts.inputs_file import DATA_LOG, load_inputs
 from ..runtime.scripts.network_entries import NETWORK, parse_entry_target
-from ..runtime.scripts.script import InputScript, Step, trace_beside
+from ..runtime.scripts.script import InputScript, Step, script_beside, trace_beside
 from ..runtime.scripts.sensors import HOLD, INFINITE, is_input, is_sensor
 from ..wording import from_here
 from .engine.field import field_of, robot_at, start_named
@@ -36,7 +36,6 @@ from .logs.align import moment_of
 SHARE = 0.05
 #: How late a value of such a run may come, in seconds: three turns of the loop.
 _LATE = 0.06
-_TRACE = ".trace.jsonl"
 #: How long after it is enabled robot code has set its place, in seconds; and what is the same place, in feet.
 _PLACED, _SAME_PLACE = 0.1, 0.5
 
@@ -47,13 +46,11 @@ class LogRun:
 
     :param script: the inputs that it has
     :param run: what it shows, as a branch
-    :param files: what was read
     :param problem: how the file is damaged; empty: it is whole
     """
 
     script: InputScript
     run: PastRun
-    files: tuple[Path, ...]
     problem: str
 
     @property
@@ -92,14 +89,14 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
     logged = () if is_own else (path.removeprefix(VALUE) for path in run.histories["network"].paths())
     replayed = tuple(sorted(kit_names.subsystems(logged)))
     compared = Comparison(True, share, late, frozenset(written | sensors), replayed)
-    return LogRun(script, replace(run, offset=offset, compared=compared), (file, trace_beside(file)), opened.problem)
+    return LogRun(script, replace(run, offset=offset, compared=compared), opened.problem)
 
 
 def _script_of(file: Path) -> Path:
     """Return the file with the inputs: of a trace, that is the script beside it."""
-    if not file.name.endswith(_TRACE):
+    script = script_beside(file)
+    if script is None:
         return file
-    script = file.with_name(f"{file.name.removesuffix(_TRACE)}.jsonl")
     if script.is_file():
         return script
     raise UsageError(

@@ -14,7 +14,6 @@ from ..project import Project
 from ..runtime.scripts.inputs_file import load_inputs
 from ..runtime.scripts.script import trace_beside
 from ..shell import quoted
-from ..text_files import check_writable
 from .engine.options import NT4_PORT, SimOptions
 from .engine.simulation import Simulation
 from .engine.watch import watching
@@ -74,7 +73,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         say(f"{request.log}: {log.problem}.\n")
     simulation = Simulation(project, options, None if log is None else log.run)
     page = None if request.page is None else PageFile(request.page, _what(project, request))
-    files = OutputFiles(request.record, request.wpilog, request.picture, page, () if log is None else log.files)
+    files = OutputFiles(request.record, request.wpilog, request.picture, page)
     with ExitStack() as closing:
         interruption = closing.enter_context(ending_like_ctrl_c())
         if not kind.prints:
@@ -155,34 +154,19 @@ def draw_script(project: Project, script: Path, picture: Path, until: float | No
 
 
 class OutputFiles:
-    """The files to write. They are checked before the simulation runs: an hour of driving must not be lost at the end.
+    """The files to write.
 
-    :param read: the files of a log, which are not overwritten
-    :raises UsageError: when one of them cannot be written
+    :raises UsageError: when there can be no picture
     """
 
     def __init__(
-        self,
-        record: Path | None,
-        wpilog: Path | None,
-        picture: Path | None,
-        page: PageFile | None = None,
-        read: tuple[Path, ...] = (),
+        self, record: Path | None, wpilog: Path | None, picture: Path | None, page: PageFile | None = None
     ) -> None:
         self._record, self._wpilog, self._picture, self._page = record, wpilog, picture, page
         if picture is not None:
             from .ui.picture import check_pictures
 
             check_pictures(picture)
-        files = (
-            ("--record", record),
-            ("--record", None if record is None else trace_beside(record)),
-            ("--wpilog", wpilog),
-            ("--picture", picture),
-            ("--page", None if page is None else page.file),
-        )
-        for option, file in files:
-            check_writable(option, file, read)
         self._former_log = _stamp(wpilog)
 
     def write(self, simulation: Simulation) -> list[Path]:

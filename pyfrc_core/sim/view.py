@@ -11,7 +11,6 @@ from typing import Literal
 from ..errors import ProjectError, UsageError
 from ..interruption import ending_like_ctrl_c
 from ..project import MAIN_FILE, Project, find_project
-from ..text_files import check_writable
 from ..wording import counted
 from .engine.field import field_of
 from .engine.past_run import PastRun
@@ -62,7 +61,7 @@ def view(request: ViewRequest, say: Say) -> int:
     if request.robot is not None:
         if request.files or request.offsets or request.page is not None:
             raise UsageError("--robot shows a robot, and no logs", remedy="Drop a log on its page to compare them.")
-        return _serve(_robot(request.robot), request, say)
+        return _serve(_robot(request, say), request, say)
     if not request.files:
         raise UsageError("nothing to show", remedy="Name a log: pyfrc view FILE. For a robot: pyfrc view --robot")
     if len(request.offsets) >= len(request.files):
@@ -75,7 +74,6 @@ def view(request: ViewRequest, say: Say) -> int:
         raise UsageError(
             "--page writes a file, and serves no page", remedy="Leave out --share, --port and --allow-host, or --page."
         )
-    check_writable("--page", request.page, request.files)
     project = project_or_none() or _no_project()
     height = field_of(project).height
     first, *others = [_opened(file, height, request, say) for file in request.files]
@@ -100,14 +98,14 @@ def view(request: ViewRequest, say: Say) -> int:
         what_if.close()
 
 
-def _robot(given: str) -> Source:
+def _robot(request: ViewRequest, say: Say) -> Source:
     """Return the robot that is shown."""
     from .live.addresses import addresses_for
     from .live.robot import LiveRobot
 
     project = project_or_none()
-    where = addresses_for(given or None, project)
-    return LiveRobot(project or _no_project(), where)
+    where = addresses_for(request.robot or None, project)
+    return LiveRobot(project or _no_project(), where, tell=(lambda text: None) if request.quiet else say)
 
 
 def _serve(source: Source, request: ViewRequest, say: Say) -> int:

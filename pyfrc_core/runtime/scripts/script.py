@@ -23,6 +23,7 @@ from ...wording import from_here
 from ..robot_time import to_us
 
 FORMAT = "pyfrc-input 1"
+_TRACE = ".trace.jsonl"
 
 #: Longer files are no input scripts; a match that mashes everything at each packet takes a tenth of this.
 _MOST_BYTES = 64 * 1024 * 1024
@@ -32,7 +33,12 @@ _LONGEST = 86_400.0
 
 def trace_beside(script: Path) -> Path:
     """Return the file of a recording's trace, which lies beside the script."""
-    return script.with_name(f"{script.stem}.trace.jsonl")
+    return script.with_name(f"{script.stem}{_TRACE}")
+
+
+def script_beside(trace: Path) -> Path | None:
+    """Return the file of the script that lies beside a trace; None: by its name, the file is no trace."""
+    return trace.with_name(f"{trace.name.removesuffix(_TRACE)}.jsonl") if trace.name.endswith(_TRACE) else None
 
 
 class ScriptError(UsageError):

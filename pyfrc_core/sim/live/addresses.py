@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from pathlib import Path
 
 from ...deploy.discovery import addresses_of, parse_address
 from ...deploy.targets import MAX_TEAM, controller_of
@@ -11,6 +12,7 @@ from ...deploy.team import find_target
 from ...errors import UsageError
 from ...project import Project
 from ...season import CURRENT
+from ...shell import quoted
 from ..engine.options import NT4_PORT
 
 #: Where a simulation on this computer serves them.
@@ -40,7 +42,10 @@ def addresses_for(given: str | None, project: Project | None) -> RobotAddresses:
     :raises UsageError: when it is none of these
     """
     if given is not None:
-        if not re.fullmatch(r"[0-9]{1,9}", given):
+        if not re.fullmatch(r"-?[0-9]{1,9}", given.strip()):
+            if Path(given).is_file():
+                remedy = f"To look at a log: pyfrc view {quoted(given)}"
+                raise UsageError(f"--robot {given}: this is a file, not an address", remedy=remedy)
             return _of_host(given)
         if not 1 <= int(given) <= MAX_TEAM:
             raise UsageError(f"--robot {given}: a team's number is from 1 to {MAX_TEAM}")
@@ -63,6 +68,10 @@ def _of_team(team: int) -> RobotAddresses:
 
 
 def _of_host(text: str) -> RobotAddresses:
-    address = parse_address(text)
+    try:
+        address = parse_address(text)
+    except UsageError as error:
+        remedy = "Write a team's number or an address, as in: --robot 1234, --robot 10.12.34.2"
+        raise UsageError(error.message, where="--robot", remedy=remedy) from None
     port = NT4_PORT if address.port == _NO_PORT else address.port
     return RobotAddresses(address.host if port == NT4_PORT else str(address), ((address.host, port),))

@@ -27,10 +27,13 @@ from ..engine.source import Abilities, ChangeFeed, FedReader
 from .addresses import RobotAddresses
 from .robot_console import RobotConsole
 from .runs import RobotRuns
+from .search import reasons
 from .tuning import Tuner, checked_write
 
 #: How often to look at what was received, and how often at least to report that time has passed, in wall seconds.
 _LOOK_SECONDS, _TIME_SECONDS = 0.02, 0.1
+#: How long a robot may take to respond before the reasons are looked for, in wall seconds.
+_PATIENCE_SECONDS = 2.0
 
 
 def console_of(host: str) -> Address | None:
@@ -42,6 +45,7 @@ class LiveRobot:
     """See `Source`.
 
     :param project: whose field and layout the page has
+    :param tell: prints to the terminal
     :param console: returns where the console of the robot with this address is
     :raises SettingsError: when ``sim/config.json`` is invalid
     """
@@ -53,13 +57,17 @@ class LiveRobot:
     wants_to_run = True
 
     def __init__(
-        self, project: Project, where: RobotAddresses, console: Callable[[str], Address | None] = console_of
+        self,
+        project: Project,
+        where: RobotAddresses,
+        console: Callable[[str], Address | None] = console_of,
+        tell: Callable[[str], object] = lambda text: None,
     ) -> None:
         self.project, self.title = project, where.whose
         self.field = field_of(project)
         self.reports = ReportSignal()
         self.status = Status(state="running")
-        self._where, self._console_of = where, console
+        self._where, self._console_of, self._tell = where, console, tell
         self._hal, self._network, self._output = ChangeFeed(), ChangeFeed(), OutputLog()
         self._runs = RobotRuns(self._hal.add, self._network.add)
         self._newest = self._snapshot()
@@ -68,11 +76,14 @@ class LiveRobot:
         self._console: RobotConsole | None = None
         self._is_console_missing = False
         self._reported_at = 0.0
+        #: Why there is no robot, as soon as that is known.
+        self._why = ""
         #: The people who may set values now.
         self._tuners: set[Tuner] = set()
         self._over = threading.Event()
         self._client: network_client.Client | None = None
         self._thread = threading.Thread(target=self._follow, name="pyfrc view: robot", daemon=True)
+        self._search = threading.Thread(target=self._explain, name="pyfrc view: search", daemon=True)
 
     @property
     def snapshot(self) -> Snapshot:
@@ -106,6 +117,7 @@ class LiveRobot:
         )
         self._client = network_client.Client("pyfrc view", where.servers, where.asks_driver_station)
         self._thread.start()
+        self._search.start()
 
     def close(self) -> None:
         """End."""
@@ -145,6 +157,9 @@ class LiveRobot:
                 news.append(each)
             is_new = True
         self._take(client, news)
+        if self._why:
+            why, self._why = self._why, ""
+            self._tell_why(why)
         if is_new or monotonic() >= self._reported_at + _TIME_SECONDS:
             self._report()
 
@@ -154,9 +169,21 @@ class LiveRobot:
         if number != self._runs.number:
             self._say(f"0:00.00 is where the robot's own clock shows {self._runs.zero_us / 1e6:.2f} s.")
 
+    def _explain(self) -> None:
+        if not self._over.wait(_PATIENCE_SECONDS) and self.status.network_address is None:
+            self._why = reasons(self._where.servers)
+
+    def _tell_why(self, why: str) -> None:
+        """Say why there is no robot, if there still is none."""
+        if self.status.network_address is None and not self._runs.number:
+            text = f"No robot yet; still trying. {why}."
+            self._tell(f"{text}\n")
+            self.status = replace(self.status, note=text)
+            self._report()
+
     def _connected(self, to: Connected) -> None:
         shown = _shown((to.host, to.port))
-        self.status = replace(self.status, network_address=shown)
+        self.status = replace(self.status, network_address=shown, note="")
         self._say(f"Connected to {shown}.")
         if self._is_console_missing:
             return
@@ -186,6 +213,7 @@ class LiveRobot:
             self.reports.notify_all()
 
     def _say(self, text: str) -> None:
+        self._tell(f"{text}\n")
         self._print(f"{OWN}{text}\n")
 
     def _report(self) -> None:
