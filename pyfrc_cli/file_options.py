@@ -23,8 +23,8 @@ _SETTINGS = {"pyproject.toml", "requirements.txt", "sim/config.json", "sim/dashb
 class ReadPath(click.Path):
     """A file or directory that the command reads."""
 
-    def __init__(self, exists: bool = False) -> None:
-        super().__init__(path_type=Path, exists=exists)
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
 
 
 class WrittenFile(click.Path):

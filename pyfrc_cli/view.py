@@ -64,7 +64,7 @@ def _address(context: click.Context, option: click.Parameter, value: str | None)
     help="Show a robot, live, instead of logs: a team's number or an address. Default: the project's robot, and a "
     "simulation on this computer.",
 )
-@click.argument("files", nargs=-1, metavar="[FILE]...", type=ReadPath(exists=True))
+@click.argument("files", nargs=-1, metavar="[FILE]...", type=ReadPath())
 def command(**request: Any) -> None:
     """Look at logs of a robot, or at a robot, on a page in your browser: values, plots, field, console, timeline.
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import MakeProject
 from network_robots import link_to, network_robot
 from ports import lasting_port, refusing_port
 from web_pages import served_source
@@ -21,7 +22,7 @@ from pyfrc_core.deploy.targets import controller_of
 from pyfrc_core.errors import UsageError
 from pyfrc_core.project import Project, find_project
 from pyfrc_core.season import CURRENT
-from pyfrc_core.sim.live.addresses import addresses_for
+from pyfrc_core.sim.live.addresses import RobotAddresses, addresses_for
 from pyfrc_core.sim.live.robot import LiveRobot
 
 HERE = ("127.0.0.1", 5810)
@@ -62,6 +63,48 @@ def test_without_an_address_it_is_the_projects_robot_or_this_computer(
 def test_what_is_no_address_is_refused(given: str) -> None:
     with pytest.raises(UsageError):
         addresses_for(given, None)
+
+
+@pytest.mark.parametrize(
+    ("given", "error"),
+    [
+        *((text, "is not an address of a robot") for text in ("foo..bar", "http://10.12.34.2", "my robot", "robot:x")),
+        *((text, "is not a valid address") for text in ("10.0.0.300", "10.1.2", "1234:5810")),
+        *((text, "a team's number is from 1 to 25599") for text in ("0", "99999")),
+        ("", "the address is empty"),
+        ("match.wpilog", "--robot match.wpilog: this is a file, not an address"),
+    ],
+)
+def test_what_cannot_be_an_address_ends_the_command(given: str, error: str, make_project: MakeProject) -> None:
+    result = make_project({"match.wpilog": ""}).run("view", "--robot", given)
+    assert result.code == 2
+    assert error in result.stderr
+    assert "--robot" in result.stderr
+    assert "--team" not in result.stderr
+    assert "Looking" not in result.output
+
+
+def test_a_robot_that_is_not_there_is_explained_and_waited_for(make_project: MakeProject) -> None:
+    made, port = make_project({"robot.py": ""}), lasting_port()
+    with made.start("view", "--robot", f"127.0.0.1:{port}") as view:
+        said = iter(view.stdout.readline, "")
+        assert f"Looking for the robot at 127.0.0.1:{port}. " in next(line for line in said if "Looking" in line)
+        why = next(line for line in said if "No robot yet" in line)
+        assert why.startswith(
+            f"No robot yet; still trying. 127.0.0.1:{port}: a computer is there, but no robot program"
+        )
+        with network_robot(made.path, port):
+            assert next(line for line in said if "Connected" in line) == f"Connected to 127.0.0.1:{port}.\n"
+
+
+def test_why_there_is_no_robot_is_on_the_page(tmp_path: Path) -> None:
+    with refusing_port() as port:
+        where = RobotAddresses("mine", (("127.0.0.1", port), ("no-such-robot.invalid", 5810)))
+        with served_source(LiveRobot(Project(tmp_path / "robot.py"), where)) as there, there.page() as page:
+            page.until(lambda: page.status.get("note"))
+            note = page.status["note"]
+            assert note.startswith(f"No robot yet; still trying. 127.0.0.1:{port}: a computer is there, ")
+            assert "no-such-robot.invalid:5810: the name is not known here." in note
 
 
 def test_a_robot_or_logs(make_project: Any) -> None:

@@ -266,11 +266,11 @@ def test_no_damage_is_more_than_a_sentence(tmp_path_factory: pytest.TempPathFact
         ("empty.wpilog", b"", "empty.wpilog: this file is empty"),
         ("only_a_head.wpilog", b"WPILOG\x00\x01", "there is nothing in it: it ends within its header"),
         ("nothing.wpilog", b"WPILOG\x00\x01\x00\x00\x00\x00", "there is nothing in it: it has no values"),
-        ("photo.wpilog", b"\x89PNG\r\n\x1a\n" * 9, "this is not a log that pyfrc knows"),
+        ("photo.wpilog", b"\x89PNG\r\n\x1a\n" * 9, "this is a picture, not a log"),
         ("match.hoot", b"CTRE", "owlet -f wpilog"),
         ("match.revlog", b"REV", "AdvantageScope opens it"),
         ("match.rlog", b"\x00\x00", "before 2023"),
-        ("a.jsonl", b'{"format": "another"}\n', "this is not a log that pyfrc knows"),
+        ("a.jsonl", b'{"format": "another"}\n', "this is JSON, not a log"),
     ],
 )
 def test_what_is_no_log_is_said_in_a_sentence(tmp_path: Path, name: str, content: bytes, says: str) -> None:

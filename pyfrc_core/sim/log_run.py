@@ -19,7 +19,7 @@ from ..errors import UsageError
 from ..project import Project
 from ..runtime.robot_time import PACKET_US
 from ..runtime.scripts import kit_names
-from ..runtime.scripts.inputs_file import DATA_LOG, load_inputs
+from ..runtime.scripts.inputs_file import is_data_log, load_inputs
 from ..runtime.scripts.network_entries import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript, Step, script_beside, trace_beside
 from ..runtime.scripts.sensors import HOLD, INFINITE, is_input, is_sensor
@@ -85,7 +85,7 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
     written = {_path_of(target.removeprefix(HOLD)) for step in script.steps for target in step.writes}
     late = _LATE
     if repeats and not share:  # a data log does not tell what was there before the loop and what came after it
-        late = PACKET_US / 1_000_000 if file.suffix.lower() == DATA_LOG else 0.0
+        late = PACKET_US / 1_000_000 if is_data_log(file) else 0.0
     logged = () if is_own else (path.removeprefix(VALUE) for path in run.histories["network"].paths())
     replayed = tuple(sorted(kit_names.subsystems(logged)))
     compared = Comparison(True, share, late, frozenset(written | sensors), replayed)
@@ -107,14 +107,8 @@ def _script_of(file: Path) -> Path:
 
 
 def _inputs(file: Path, given: tuple[str, ...]) -> InputScript:
-    if file.suffix.lower() in (".dslog", ".dsevents"):
-        raise UsageError(
-            "the driver station's log does not have the joysticks",
-            where=from_here(file),
-            remedy="Take the data log of the robot of the same match (.wpilog).",
-        )
     script = load_inputs(file, given)
-    if file.suffix.lower() != DATA_LOG and not trace_beside(file).is_file():
+    if not is_data_log(file) and not trace_beside(file).is_file():
         raise UsageError(
             "this input script has no trace beside it, so what the robot did is not known",
             where=from_here(file),

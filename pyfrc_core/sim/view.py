@@ -150,7 +150,7 @@ def _no_project() -> Project:
 
 
 def _opened(file: Path, height: float, request: ViewRequest, say: Say) -> OpenedLog:
-    if not request.quiet and (size := file.stat().st_size) > _LARGE:
+    if not request.quiet and file.is_file() and (size := file.stat().st_size) > _LARGE:
         say(f"Reading {file} ({size >> 20} MB)...\n")
     opened = open_log(file, height)
     if opened.problem:

@@ -5,20 +5,51 @@ from __future__ import annotations
 from collections.abc import Collection
 from pathlib import Path
 
-from .script import InputScript, load_script
+from ...wording import from_here
+from .file_kinds import FOREIGN_LOGS, described, is_ds_log, is_wpilog, read_head
+from .script import InputScript, ScriptError, load_script, script_beside
 
-#: The suffix of WPILib's data logs.
-DATA_LOG = ".wpilog"
+_SCRIPT = ".jsonl"
+_NEEDED = "an input script or a data log"
+_KINDS = (
+    "Input scripts (.jsonl) are written by pyfrc sim --record, pyfrc test --record and pyfrc fuzz; data logs (.wpilog) "
+    "by robots and pyfrc sim --wpilog."
+)
+
+
+def is_data_log(file: Path) -> bool:
+    """Return whether a file, which exists, is a data log of WPILib."""
+    return is_wpilog(read_head(file, _NEEDED, ScriptError))
 
 
 def load_inputs(file: Path, given: Collection[str] = ()) -> InputScript:
     """Read an input script, or the inputs in a data log.
 
     :param given: of a data log, the entries of NetworkTables that a person has set
-    :raises ScriptError: naming the line and what is wrong with it
+    :raises UsageError: saying what the file is instead, or naming the line and what is wrong with it
     """
-    if file.suffix.lower() == DATA_LOG:
+    head = read_head(file, _NEEDED, ScriptError)
+    if is_wpilog(head):
         from .data_log import script_from_log  # imports WPILib
 
         return script_from_log(file, given)
-    return load_script(file)
+    suffix, where = file.suffix.lower(), from_here(file)
+    if suffix in (".dslog", ".dsevents") or is_ds_log(head):
+        raise ScriptError(
+            "the driver station's log does not have the joysticks",
+            where=where,
+            remedy="Take the data log of the robot of the same match (.wpilog).",
+        )
+    if remedy := FOREIGN_LOGS.get(suffix):
+        raise ScriptError("this log cannot be read directly", where=where, remedy=remedy)
+    first_line, (what, remedy) = head.partition(b"\n")[0], described(head, file.name)
+    if what == "JSON" and b'"pyfrc-trace' in first_line:
+        script = script_beside(file)
+        raise ScriptError(
+            "a trace has no inputs", where=where, remedy=f"Its input script is {script.name}." if script else _KINDS
+        )
+    if (suffix == _SCRIPT and what in ("JSON", "text", "")) or (what == "JSON" and b'"format"' in first_line):
+        return load_script(file)
+    if not head:
+        raise ScriptError("this file is empty", where=where, remedy=_KINDS)
+    raise ScriptError(f"this is {what}, neither an input script nor a data log", where=where, remedy=remedy or _KINDS)

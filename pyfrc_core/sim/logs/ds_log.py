@@ -44,14 +44,6 @@ _BEGIN = re.compile("(?=<TagVersion>)")
 _LONGEST_EVENT = 1 << 20
 
 
-def is_ds_log(head: bytes) -> bool:
-    """Return whether a file begins as logs of the driver station do."""
-    if len(head) < _HEADER.size:
-        return False
-    version, seconds, _ = _HEADER.unpack_from(head)
-    return bool(0 <= version <= 9 and 2_500_000_000 < seconds < 6_000_000_000)
-
-
 def read_ds_log(file: Path) -> ReadLog:
     """Read the log ``NAME.dslog``."""
     data = file.read_bytes()

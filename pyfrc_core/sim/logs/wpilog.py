@@ -20,7 +20,7 @@ from .columns import Column, ReadLog
 
 #: The most records that are kept, with 12 bytes each: about 300 MiB.
 MOST_RECORDS = 24_000_000
-_MAGIC, _HEADER = b"WPILOG", 12
+_HEADER = 12
 #: How far behind a damaged place the next record is looked for, in bytes; and how many records must follow each other
 #: where the time is another one, or an entry has no name so far; four times as many behind a damage.
 _SEARCHED, _IN_A_ROW, _IN_A_ROW_UNNAMED = 1 << 16, 2, 8
@@ -66,11 +66,6 @@ class _Entry:
             order = sorted(range(len(self.moments)), key=self.moments.__getitem__)
             self.moments = array("q", [self.moments[each] for each in order])
             self.places = array("I", [self.places[each] for each in order])
-
-
-def is_wpilog(head: bytes) -> bool:
-    """Return whether a file begins as data logs do."""
-    return head.startswith(_MAGIC)
 
 
 def read_wpilog(file: Path, most: int = MOST_RECORDS) -> ReadLog:

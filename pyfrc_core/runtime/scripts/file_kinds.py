@@ -1,0 +1,118 @@
+"""What a file is, by its beginning and its name: for files that are given where a log or a script belongs."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from pathlib import Path
+from struct import Struct
+
+from ...errors import PyfrcError, UsageError
+from ...shell import quoted
+
+#: How much of a file shows what it is, in bytes.
+_HEAD = 4096
+#: The beginning of the driver station's logs: version, seconds since 1904, and their fraction.
+_DS_HEADER = Struct(">iqQ")
+_LOGS, _MOST_NAMED = (".wpilog", ".dslog", ".dsevents"), 5
+#: Endings of logs that only their makers' tools can read, with what converts them.
+FOREIGN_LOGS = {
+    ".hoot": "CTRE's format is closed. Phoenix Tuner X (Log Extractor) or CTRE's command owlet writes it as a "
+    ".wpilog: owlet -f wpilog FILE.hoot FILE.wpilog",
+    ".rlog": "This is AdvantageKit's format before 2023. AdvantageScope opens it, and exports it as a .wpilog.",
+    ".revlog": "REV's format is not read here. AdvantageScope opens it, and exports it as a .wpilog.",
+}
+_UNPACK = "Unpack it first."
+#: Beginnings of files, with what they are, and what to do.
+_BEGINNINGS: tuple[tuple[tuple[bytes, ...], str, str], ...] = (
+    ((b"\x89PNG", b"\xff\xd8\xff", b"GIF8", b"BM"), "a picture", ""),
+    ((b"PK\x03\x04",), "a ZIP archive", _UNPACK),
+    ((b"\x1f\x8b", b"BZh", b"\xfd7zXZ", b"7z\xbc\xaf", b"\x28\xb5\x2f\xfd", b"Rar!"), "a compressed file", _UNPACK),
+    ((b"<!doctype html", b"<!DOCTYPE html", b"<html"), "a web page", "A page that pyfrc wrote opens in a browser."),
+    ((b"%PDF",), "a PDF file", ""),
+    ((b"WPILOG",), "a WPILib data log", ""),
+)
+
+
+def is_wpilog(head: bytes) -> bool:
+    """Return whether a file begins as data logs do."""
+    return head.startswith(b"WPILOG")
+
+
+def is_ds_log(head: bytes) -> bool:
+    """Return whether a file begins as logs of the driver station do."""
+    if len(head) < _DS_HEADER.size:
+        return False
+    version, seconds, _ = _DS_HEADER.unpack_from(head)
+    return bool(0 <= version <= 9 and 2_500_000_000 < seconds < 6_000_000_000)
+
+
+def read_head(file: Path, what: str, error: type[PyfrcError] = UsageError, name: str | None = None) -> bytes:
+    """Return the beginning of a file.
+
+    :param what: what the file should be, such as ``a log``
+    :param error: the error for files that are there
+    :param name: for people; by default, the file as it was given
+    :raises PyfrcError: when there is no such file, or it cannot be read
+    """
+    name = name or str(file)
+    if not file.exists():
+        raise UsageError(f"there is no file {file}", remedy=_nearly(file))
+    if file.is_dir():
+        raise error(f"this is a directory, not {what}", where=name, remedy=_newest_in(file))
+    if not file.is_file():
+        raise error(f"this is a pipe or a device, not {what}", where=name, remedy="Write it into a file first.")
+    try:
+        with file.open("rb") as opened:
+            return opened.read(_HEAD)
+    except OSError as wrong:
+        raise error(f"it cannot be read: {(wrong.strerror or str(wrong)).lower()}", where=name) from None
+
+
+def described(head: bytes, name: str) -> tuple[str, str]:
+    """Return what a file is that is not what it should be, such as ``a picture``, and what to do; both may be empty.
+
+    :param head: its beginning
+    """
+    suffix, start = Path(name).suffix.lower(), head.removeprefix(b"\xef\xbb\xbf").lstrip()
+    for beginnings, what, remedy in _BEGINNINGS:
+        if start.startswith(beginnings):
+            return what, remedy
+    is_text = _is_text(head)
+    if suffix in (".py", ".pyi") and is_text:
+        return "Python code", "pyfrc finds the robot's code by itself."
+    if suffix == ".csv" and is_text:
+        return "a table", "pyfrc does not read tables."
+    if start.startswith((b"{", b"[")) and is_text:
+        return "JSON", ""
+    if is_ds_log(head):
+        return "a log of the driver station", ""
+    return ("text" if is_text else "binary data") if head else "", ""
+
+
+def _is_text(head: bytes) -> bool:
+    try:
+        return "\0" not in head.decode("utf-8")
+    except UnicodeDecodeError as wrong:
+        return wrong.start > len(head) - 4 and len(head) == _HEAD  # a letter that goes on after the beginning
+
+
+def _nearly(file: Path) -> str | None:
+    """Return which file may be meant."""
+    try:
+        names = [each.name for each in file.parent.iterdir() if each.is_file()]
+    except OSError:
+        return None
+    by_lower_case = {name.lower(): name for name in sorted(names)}
+    close = get_close_matches(file.name.lower(), by_lower_case, n=1, cutoff=0.8)
+    return f"Did you mean {quoted(str(file.with_name(by_lower_case[close[0]])))}?" if close else None
+
+
+def _newest_in(directory: Path) -> str:
+    """Return which logs a directory has, the newest first."""
+    try:
+        files = [file for file in directory.iterdir() if file.suffix.lower() in _LOGS]
+        files.sort(key=lambda file: file.stat().st_mtime, reverse=True)
+    except OSError as wrong:
+        return f"It cannot be read: {(wrong.strerror or str(wrong)).lower()}."
+    names = ", ".join(file.name for file in files[:_MOST_NAMED])
+    return f"Its newest logs: {names}" if names else "There are no logs in it."
