@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import struct
 import subprocess
 import sys
@@ -9,6 +10,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from time import monotonic
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -17,12 +19,14 @@ from network_robots import AUTONOMOUS, DISABLED, TELEOP, WORD, NetworkRobot, lin
 from ports import lasting_port
 from roborio import require_roborio
 from skips import missing_programs, require
+from sim_robots import PATIENCE
 from web_pages import Page, Served, served_source
 
 from pyfrc_core.project import Project
 from pyfrc_core.season import CURRENT
 from pyfrc_core.sim.live.addresses import addresses_for
 from pyfrc_core.sim.live.robot import LiveRobot
+from pyfrc_core.wpi import network, network_client
 
 
 @pytest.fixture
@@ -265,3 +269,21 @@ def test_a_robot_is_found_at_the_address_that_the_driver_station_knows(tmp_path:
         check=False,
     )
     assert done.stdout == "10.12.34.77:5810\n", done.stderr
+
+
+def test_a_server_that_was_closed_takes_nothing_from_the_next_one(tmp_path: Path) -> None:
+    """The library gives the numbers of what was destroyed to what is made next."""
+    port = lasting_port()
+    for _ in range(2):
+        before = network.Server("127.0.0.1", port)
+        before.close()
+        server = network.Server("127.0.0.1", port)
+        del before
+        gc.collect()
+        client = network_client.Client("a dashboard", [("127.0.0.1", port)])
+        client.write("/x", 0.5, "double")
+        end = monotonic() + PATIENCE
+        while ("/x", 0.5) not in [(update.name, update.value) for update in server.written.read()]:
+            assert monotonic() < end
+        client.close()
+        server.close()

@@ -108,6 +108,10 @@ class Listener:
         """Yield what has changed since the last call."""
         return map(Update, (event.data for event in self._poller.readQueue()))
 
+    def close(self) -> None:
+        """Collect nothing any longer."""
+        self._poller.close()
+
     def pause(self) -> None:
         """Collect nothing until `resume` is called, and forget what was not read."""
         self._poller.removeListener(self._handle)
@@ -281,4 +285,7 @@ class Server:
 
     def close(self) -> None:
         """Release the port."""
+        # Before the tables are: later, the same numbers would be those of the next server's.
+        self._published.clear()
+        self.written.close()
         ntcore.NetworkTableInstance.destroy(self._tables)
