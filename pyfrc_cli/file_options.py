@@ -47,7 +47,7 @@ class WrittenDirectory(click.Path):
 
 class _Given(NamedTuple):
     option: str
-    type: click.ParamType
+    type: object
     path: Path
 
 
@@ -69,7 +69,7 @@ def check_outputs(context: click.Context, project: Project | None) -> None:
     written: dict[Path, str] = {}
     for option, kind, path in outputs:
         if isinstance(kind, WrittenDirectory):
-            check_writable(option, path / "any")
+            check_writable(option, path, is_directory=True)
             if any(_is_same(path, file.parent) for file in code):
                 raise cannot_write(option, path, "your robot's code is in it")
             continue
@@ -106,7 +106,7 @@ def _read_with(file: Path) -> list[Path]:
     return [file, trace_beside(file)] if file.suffix == ".jsonl" else [file, file.with_suffix(".dsevents")]
 
 
-def _written_with(file: Path, kind: click.ParamType) -> list[Path]:
+def _written_with(file: Path, kind: object) -> list[Path]:
     """Return a file and what is written with it: a recording has a trace, and there may be earlier ones, numbered."""
     from pyfrc_core.runtime.scripts.script import script_beside, trace_beside
 

@@ -20,15 +20,17 @@ def write_whole(file: Path, text: Iterable[str]) -> None:
         raise
 
 
-def check_writable(option: str, file: Path) -> None:
+def check_writable(option: str, path: Path, is_directory: bool = False) -> None:
     """Check that a file can be written; create its directory. Long work must not be lost at its end.
 
     :param option: the option that names the file
+    :param is_directory: whether it names a directory, in which a file can be written then
     :raises UsageError: when it cannot
     """
+    file = path / "any" if is_directory else path
     try:
-        if file.parent.is_file():
-            raise NotADirectoryError(0, f"{file.parent} is a file")
+        if (taken := next((each for each in file.parents if each.is_file()), None)) is not None:
+            raise NotADirectoryError(0, f"{taken} is a file")
         file.parent.mkdir(parents=True, exist_ok=True)
         if file.is_dir():
             raise IsADirectoryError(0, "it is a directory")
@@ -37,7 +39,7 @@ def check_writable(option: str, file: Path) -> None:
         with TemporaryFile(dir=file.parent, prefix=f".{file.name}-"):
             pass
     except OSError as error:
-        raise cannot_write(option, file, error.strerror) from None
+        raise cannot_write(option, path, error.strerror) from None
 
 
 def cannot_write(option: str, file: Path, why: str | None) -> UsageError:

@@ -92,7 +92,7 @@ def test_what_cannot_be_shown_is_said_in_a_sentence(make_project: Any) -> None:
     (made.path / "cut.wpilog").write_bytes(a_match().data[:-2])
     result = made.run("view", "photo.png")
     assert result.code == 1
-    assert "photo.png: this is a picture, not a log" in result.output
+    assert "photo.png: this is text, not a log" in result.output
     result = made.run("view", "match.wpilog", "match.hoot")
     assert result.code == 1
     assert "owlet" in result.output

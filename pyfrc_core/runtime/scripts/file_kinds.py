@@ -50,13 +50,14 @@ def read_head(file: Path, what: str, error: type[PyfrcError] = UsageError, name:
     """Return the beginning of a file.
 
     :param what: what the file should be, such as ``a log``
-    :param error: the error for files that are there
+    :param error: the error; for a file that does not exist always one of usage
     :param name: for people; by default, the file as it was given
     :raises PyfrcError: when there is no such file, or it cannot be read
     """
     name = name or str(file)
     if not file.exists():
-        raise UsageError(f"there is no file {file}", remedy=_nearly(file))
+        missing = error if issubclass(error, UsageError) else UsageError
+        raise missing(f"there is no file {file}", remedy=_nearly(file))
     if file.is_dir():
         raise error(f"this is a directory, not {what}", where=name, remedy=_newest_in(file))
     if not file.is_file():

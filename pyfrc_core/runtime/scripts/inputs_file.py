@@ -9,7 +9,7 @@ from ...wording import from_here
 from .file_kinds import FOREIGN_LOGS, described, is_ds_log, is_wpilog, read_head
 from .script import InputScript, ScriptError, load_script, script_beside
 
-_SCRIPT = ".jsonl"
+_SCRIPT, _DATA_LOG = ".jsonl", ".wpilog"
 _NEEDED = "an input script or a data log"
 _KINDS = (
     "Input scripts (.jsonl) are written by pyfrc sim --record, pyfrc test --record and pyfrc fuzz; data logs (.wpilog) "
@@ -48,6 +48,8 @@ def load_inputs(file: Path, given: Collection[str] = ()) -> InputScript:
         raise ScriptError(
             "a trace has no inputs", where=where, remedy=f"Its input script is {script.name}." if script else _KINDS
         )
+    if suffix == _DATA_LOG and what == "JSON":
+        raise ScriptError("this is JSON, not a data log", where=where, remedy="Input scripts have the ending .jsonl.")
     if (suffix == _SCRIPT and what in ("JSON", "text", "")) or (what == "JSON" and b'"format"' in first_line):
         return load_script(file)
     if not head:
