@@ -18,8 +18,8 @@ import pytest
 from network_robots import AUTONOMOUS, DISABLED, TELEOP, WORD, NetworkRobot, link_to, network_robot
 from ports import lasting_port
 from roborio import require_roborio
-from skips import missing_programs, require
 from sim_robots import PATIENCE
+from skips import missing_programs, require
 from web_pages import Page, Served, served_source
 
 from pyfrc_core.project import Project
