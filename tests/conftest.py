@@ -22,7 +22,7 @@ import forked
 import other_systems
 import pytest
 from hypothesis import HealthCheck, settings
-from spelling import motors_of, spell_copy, spelled
+from spelling import IN_ANOTHER_FORM, motors_of, spell_copy, spelled
 from started_commands import StartedCommand, start_command
 
 from pyfrc_core.collector import collector_paused
@@ -349,6 +349,17 @@ def sampled(values: Iterable[Any], *daily: Any) -> list[Any]:
         if value in daily
         else pytest.param(*(value if isinstance(value, tuple) else [value]), marks=pytest.mark.slow)
         for value in values
+    ]
+
+
+def sample_robots(*daily: str) -> list[Any]:
+    """Return the sample robots as parameters: all but the `daily` ones are slow, and some run in 2026 only."""
+    names = sorted(path.parent.name for path in (Path(__file__).parent / "robots").glob("*/robot.py"))
+    return [
+        pytest.param(
+            name, marks=[pytest.mark.season_2026] * (name in IN_ANOTHER_FORM) + [pytest.mark.slow] * (name not in daily)
+        )
+        for name in names
     ]
 
 

@@ -31,7 +31,10 @@ _CONSTANT = re.compile(r"(?<=\.)k([A-Z][A-Za-z0-9]*)\b")
 _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 _PWM_MOTORS = r"(?:PWM(?:SparkFlex|SparkMax|TalonFX|TalonSRX|Venom|VictorSPX)|Spark|Talon|VictorSP)"
-_MOTOR_NAMES = re.compile(rf"^\s*([\w., ]+?)\s*=.*\b{_PWM_MOTORS}\(", re.MULTILINE)
+_MOTOR_NAMES = re.compile(rf"^\s*([\w., ]+?)\s*(?:=.*\b{_PWM_MOTORS}\(|: wpilib\.{_PWM_MOTORS}$)", re.MULTILINE)
+
+#: Sample robots with more than names in another form: `pyfrc migrate` writes them, in `season_2027`.
+IN_ANOTHER_FORM = {"pneumatics", "square", "timed"}
 
 #: What is more than the same name in snake_case, before names are written so. The constructor is `robotInit`.
 _OTHER_NAMES = [

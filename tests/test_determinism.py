@@ -13,10 +13,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings, sampled, trace_hash
+from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings, sample_robots, trace_hash
 
 ROBOTS = Path(__file__).parent / "robots"
-NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
 
 #: How often a new interpreter tests each robot. Another one, forked from a third where that can be, tests it once.
 TESTED_IN_ONE = 2
@@ -72,13 +71,7 @@ def hashes(directory: Path) -> Iterator[tuple[str, str]]:
             yield test, trace_hash(trace)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        *sampled([name for name in NAMES if name != WHOLE_MATCHES], "worker", "command"),
-        pytest.param(WHOLE_MATCHES, marks=pytest.mark.season_2026),  # it sets counts of a joystick
-    ],
-)
+@pytest.mark.parametrize("name", sample_robots(WHOLE_MATCHES, "worker", "command"))
 def test_sample_robot_passes_all_tests_and_does_the_same_again_and_again(
     name: str, project: RobotProject, tmp_path: Path
 ) -> None:

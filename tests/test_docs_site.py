@@ -75,4 +75,5 @@ def test_the_pages_need_no_network(build: tuple[subprocess.CompletedProcess[str]
 
 
 def test_make_builds_them_the_same_way() -> None:
-    assert f"$(RUN) {' '.join(COMMAND)} docs build/docs" in (ROOT / "Makefile").read_text("utf-8")
+    command = ", ".join(f'"{word}"' for word in (*COMMAND, "docs", "build/docs"))
+    assert f"environment.run({command})" in (ROOT / "make.py").read_text("utf-8")

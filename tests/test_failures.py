@@ -7,6 +7,7 @@ import sys
 
 import pytest
 from conftest import MakeProject, Result, RobotProject
+from spelling import spelled
 
 ROBOT = """
     import wpilib
@@ -447,8 +448,8 @@ def test_hangs_that_no_python_code_can_end_are_named_too(make_project: MakeProje
     assert first.startswith(f"{project.place('robot.py', 're.match')}: the robot code hangs here")
     number = number_in(first_line(blocks["test_hangs_at_the_end"]), "robot.py")
     assert project.line("robot.py", "# never ends") <= number <= project.line("robot.py", "# its work")
-    without_self = first_line(blocks["test_without_self"])
-    assert without_self.startswith(f"{project.place('robot.py', '# no self')}: the method autonomousPeriodic() has no ")
+    without_self, name = first_line(blocks["test_without_self"]), spelled("autonomousPeriodic")
+    assert without_self.startswith(f"{project.place('robot.py', '# no self')}: the method {name}() has no ")
 
 
 # -- chance ---------------------------------------------------------------------------------------------------------

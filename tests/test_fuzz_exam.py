@@ -46,7 +46,7 @@ def test_each_patch_fits_and_its_line_is_there(made: Made, tmp_path: Path) -> No
         place = re.match(r"(\S+?)\\\.py:(\d+)", bug["finding"])
         if place is not None:
             (file,) = (file for file in project.rglob("*.py") if file.as_posix().endswith(f"/{place[1]}.py"))
-            assert len(file.read_text("utf-8").splitlines()) >= int(place[2]), name
+            assert file.read_text("utf-8").splitlines()[int(place[2]) - 1].strip() == bug["code"], name
         assert (fuzz_exam.EXAM / "witnesses" / f"witness_{name}.py").is_file()
 
 

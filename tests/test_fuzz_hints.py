@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from conftest import sampled
+from spelling import spelled
 
 from pyfrc_core.fuzz.oracle.growth import Growth, Growths
 from pyfrc_core.fuzz.oracle.hints import CampaignHints, LoopTimes, MatchHints
@@ -67,7 +68,9 @@ def test_a_campaign_ends_with_hints(make_project: Any) -> None:
     assert len(hints) == 2, fuzzed.output
     assert hints[0].startswith("hint: robot.history grows all the time: by about 50 elements a second, to 1")
     line = project.place("robot.py", "it never is")
-    assert hints[1].startswith(f"hint: {line}: Climb.isFinished() was never true: the command ran for up to ")
+    assert hints[1].startswith(
+        f"hint: {line}: {spelled('Climb.isFinished')}() was never true: the command ran for up to "
+    )
 
 
 @pytest.mark.parametrize("isolation", sampled(["fork", "reuse"] if FORK_IS_SAFE else ["reuse"], "reuse"))

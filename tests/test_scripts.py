@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from conftest import sampled, trace_hash
+from conftest import sample_robots, sampled, trace_hash
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -70,7 +70,7 @@ def text(*lines: object, header: object = HEADER) -> str:
 # -- recordings ----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", sampled(sorted(path.parent.name for path in ROBOTS.glob("*/robot.py")), "command"))
+@pytest.mark.parametrize("name", sample_robots("command"))
 def test_a_recordings_replay_does_the_same(name: str, make_project) -> None:
     """For each sample robot, the one of its own tests with the most inputs, but not a whole match."""
     project = make_project({})
