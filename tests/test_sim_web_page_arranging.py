@@ -176,12 +176,12 @@ def test_what_others_write_meanwhile_is_not_lost(file: Path, person: Seen) -> No
     assert places(file) == ["gauge 5 1 2 2"]
 
 
-@pytest.mark.parametrize("size", sampled([(1180, 820), (820, 1180)], (820, 1180)))
-def test_fingers_arrange(size: tuple[int, int], browser: Any, server: Any, file: Path) -> None:
+@pytest.mark.parametrize(("width", "height"), sampled([(1180, 820), (820, 1180)], (820, 1180)))
+def test_fingers_arrange(width: int, height: int, browser: Any, server: Any, file: Path) -> None:
     with_widgets(file, LAMP, GAUGE, {"kind": "number", "topic": f"{TABLE}kP", "x": 0, "y": 0, "w": 1, "h": 1})
     with page_of(browser, server, has_touch=True) as tablet:
         page = tablet.page
-        page.set_viewport_size({"width": size[0], "height": size[1]})
+        page.set_viewport_size({"width": width, "height": height})
         tablet.choose("Layout", "Dashboard")
         tablet.button("Arrange").tap()
         fingers = Fingers(tablet)

@@ -1,4 +1,4 @@
-"""The page on a tablet: fingers, no pointer that hovers, 1180 by 820 pixels."""
+"""The page on a tablet: fingers, no pointer that hovers, 1180 by 820 pixels; and on phones."""
 
 from __future__ import annotations
 
@@ -120,6 +120,19 @@ def test_nothing_is_off_the_screen_and_thumbs_hit_it(layout: str, tablet: Seen) 
     for tab in page.locator(".tab > [role=tab]").all():
         tab.tap()
         assert page.evaluate(LOOK) == {"hidden": [], "small": []}, tab.inner_text()
+
+
+@pytest.mark.parametrize(("width", "height"), sampled([(390, 844), (844, 390)], (844, 390)))
+def test_a_phone_reaches_everything(width: int, height: int, tablet: Seen) -> None:
+    page = tablet.page
+    page.set_viewport_size({"width": width, "height": height})
+    for tab in page.locator(".tab > [role=tab]").all():
+        tab.tap()
+        assert page.evaluate(LOOK) == {"hidden": [], "small": []}, tab.inner_text()
+    # Most of the screen is for the panels, also when a phone lies.
+    dock = page.locator(".dock").bounding_box()
+    assert dock is not None
+    assert dock["height"] > 0.5 * height
 
 
 def test_a_value_is_set_and_plotted_without_a_pointer_that_hovers(tablet: Seen) -> None:

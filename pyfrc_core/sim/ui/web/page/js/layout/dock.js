@@ -8,13 +8,14 @@ import { activate, close, put, resize } from "#js/layout/tree.js";
 
 const PANEL_TYPE = "application/x-pyfrc-panel";
 const NARROW = 900; // pixels: below, panels are stacked
+const LOW = 480; // pixels: of a phone that lies, where they are side by side
 const KEY_SHARE = 0.02; // by how much an arrow key moves a border
 
 export class Dock extends Live {
   parts = ["settings", "window"];
 
   render() {
-    const narrow = innerWidth <= NARROW;
+    const narrow = innerWidth <= NARROW || innerHeight <= LOW;
     const tree = narrow ? stackedTree() : settings.tree;
     if (tree.kind === "tabs" && !tree.panels.length) {
       return html`<main class="dock"><p class="empty">No panel is open. Choose one under “Panels”.</p></main>`;
@@ -27,7 +28,7 @@ export class Dock extends Live {
 const fronts = {};
 
 function stackedTree() {
-  const tree = stacked(settings.tree);
+  const tree = stacked(settings.tree, innerHeight <= LOW);
   const choose = (node) => (node.panels.includes(fronts[node.panels[0]]) ? { ...node, active: fronts[node.panels[0]] } : node);
   return tree.kind === "tabs" ? choose(tree) : { ...tree, children: tree.children.map(choose) };
 }

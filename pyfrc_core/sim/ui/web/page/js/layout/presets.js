@@ -88,13 +88,13 @@ export const PRESETS = {
   },
 };
 
-// On a narrow screen: the field and plots above, everything else in tabs below.
-export function stacked(tree) {
+// On a narrow screen: the field and plots above, everything else in tabs below; or beside them.
+export function stacked(tree, isLow = false) {
   const panels = panelsOf(tree);
   const above = panels.filter((id) => ["field", "mechanism", "dashboard"].includes(id) || id.startsWith("plot:"));
   const below = panels.filter((id) => !above.includes(id));
   if (!above.length || !below.length) return tabs(...panels);
-  return column(above.includes("dashboard") ? [66, 34] : [52, 48], tabs(...above), tabs(...below));
+  return (isLow ? row : column)(above.includes("dashboard") ? [66, 34] : [52, 48], tabs(...above), tabs(...below));
 }
 
 export function panelsOf(tree) {

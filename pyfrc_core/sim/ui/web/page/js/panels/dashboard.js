@@ -183,8 +183,8 @@ export class DashboardPanel extends Live {
 
   cell = () => {
     const { columns, rows } = dashboards.shown;
-    const box = this.grid.current.getBoundingClientRect();
-    return [box.width / columns, this.grid.current.scrollHeight / rows];
+    const { scrollWidth, scrollHeight } = this.grid.current;
+    return [scrollWidth / columns, scrollHeight / rows];
   };
 
   over = (event) => {
@@ -205,7 +205,7 @@ export class DashboardPanel extends Live {
     if (graph) return this.change(index, graph.topic ? { more: [...new Set([...(graph.more ?? []), topicOf(path)])] } : { topic: topicOf(path) });
     const box = this.grid.current.getBoundingClientRect();
     const [width, height] = this.cell();
-    this.add(path, { x: Math.floor((event.clientX - box.left) / width), y: Math.floor((event.clientY - box.top + this.grid.current.scrollTop) / height) });
+    this.add(path, { x: Math.floor((event.clientX - box.left + this.grid.current.scrollLeft) / width), y: Math.floor((event.clientY - box.top + this.grid.current.scrollTop) / height) });
   };
 
   // Boxes for text have an undo of their own.
