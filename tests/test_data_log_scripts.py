@@ -96,9 +96,10 @@ def test_the_log_of_a_robot_replays_to_the_same_outputs(arguments: tuple[str, ..
     assert replayed == outputs(project.path / "recorded.trace.jsonl")
 
 
-def test_the_log_of_the_simulator_replays_to_the_same_outputs(make_project) -> None:
+@pytest.mark.parametrize("arguments", [("--mode", "practice"), ("--script", "drive.jsonl")])
+def test_the_log_of_the_simulator_replays_to_the_same_outputs(arguments: tuple[str, ...], make_project) -> None:
     project = make_project(robot("pass"))
-    sim = ("sim", "--ui", "none", "--mode", "practice", "--wpilog", "match.wpilog", "--record", "recorded.jsonl")
+    sim = ("sim", "--ui", "none", *arguments, "--wpilog", "match.wpilog", "--record", "recorded.jsonl")
     assert project.run(*sim).code == 0
     result = project.run("replay", "match.wpilog", "--trace", "replayed.jsonl")
     assert result.code == 0, result.output

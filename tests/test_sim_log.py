@@ -81,6 +81,11 @@ def log_of(project: RobotProject, *arguments: str) -> str:
     return result.stdout
 
 
+def rounded(said: str) -> str:
+    """Return a text with its numbers rounded to one digit, since PWM outputs are in microseconds."""
+    return re.sub(r"\b\d\.\d{3,}", lambda found: f"{float(found[0]):.1f}", said)
+
+
 def change(project: RobotProject, file: str, old: str, new: str) -> None:
     place = project.path / file
     text = place.read_text(encoding="utf-8")
@@ -233,6 +238,46 @@ def test_what_a_person_has_set_on_a_dashboard_is_named(played: RobotProject) -> 
     said = log_of(played, "match.wpilog", "--input", "SmartDashboard/kP")
     assert "in Elevator/setpoint" in said
     assert "in kP" not in said
+
+
+TUNED = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.motors = [wpilib.PWMSparkMax(channel) for channel in range(2)]
+            wpilib.Preferences.initDouble("top", 0.5)
+            wpilib.SmartDashboard.putNumber("kP", 0.25)
+            self.modes = wpilib.SendableChooser()
+            self.modes.setDefaultOption("slow", 1.0)
+            self.modes.addOption("fast", 2.0)
+            wpilib.SmartDashboard.putData("Modes", self.modes)
+
+        def teleopPeriodic(self):
+            self.motors[0].set(wpilib.Preferences.getDouble("top", 0.0))
+            self.motors[1].set(wpilib.SmartDashboard.getNumber("kP", 0.0) * self.modes.getSelected())
+"""
+TUNING = """{"format": "pyfrc-input 1", "end": 3.0}
+{"t": 0.5, "set": {"mode": "teleop"}}
+{"t": 1.0, "set": {"nt:/SmartDashboard/kP": 0.3, "nt:/SmartDashboard/Modes/selected": "fast"}}
+{"t": 2.0, "set": {"nt:/Preferences/top": 0.75}}
+"""
+
+
+def test_the_log_of_a_simulation_says_what_a_person_has_set(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": TUNED, "tuning.jsonl": TUNING})
+    result = project.run(*SIM, "--script", "tuning.jsonl", "--wpilog", "match.wpilog")
+    assert result.code == 0, result.output
+    said = log_of(project, "match.wpilog", "--wpilog", "again.wpilog")
+    assert "no difference: " in said
+    assert "exactly the same" in said
+    assert "no difference: " in log_of(project, "again.wpilog")
+    change(project, "robot.py", '"fast", 2.0', '"fast", 3.0')
+    said = log_of(project, "match.wpilog")
+    assert re.search(r"differs first at 0:01.0\d, in pwm\[1\].value: 0\.6 in match.wpilog, 0\.9 here", rounded(said))
+    change(project, "robot.py", '"top", 0.5', '"top", 0.7')  # what a person sets later is no default
+    said = log_of(project, "match.wpilog")
+    assert "differs first at 0:00.50, in pwm[0].value: 0.5 in match.wpilog, 0.7 here" in rounded(said)
 
 
 def test_a_log_of_another_robot_has_nothing_to_compare(played: RobotProject) -> None:

@@ -71,6 +71,8 @@ class RobotRun:
         self.when_initialized: list[Callable[[], object]] = []
         #: The recorder of external writes, if there is one.
         self.recorder: ExternalWrites | None = None
+        #: Called with what is written to NetworkTables from outside: the target, as in scripts, and the value.
+        self.when_network_written: list[Callable[[str, Any], object]] = []
         #: What moves the robot's sensors, if the project has physics.
         self.physics: object = None
         #: What robot code draws on the field with, where there is a field to be seen.

@@ -4,7 +4,8 @@ A log has what the driver station sent, and the values of NetworkTables. It does
 only values that dashboards and cameras publish are inputs: the choices of choosers, preferences, the tables of
 Limelight and PhotonVision, and what the user names. Robots do not log the seconds left: in their logs with autonomous
 before teleoperated, they are those until the period ends. Logs of AdvantageKit and PyKit have all that under other
-names (`kit_names`), and say what the robot has read from NetworkTables: what changed of it is an input.
+names (`kit_names`), and say what the robot has read from NetworkTables: what changed of it is an input. Logs of
+simulations say what was written there from outside (`NETWORK_INPUTS`); their preferences are those that the code sets.
 
 A robot is on for minutes before a match and after it: of its log, the script has the time from `_BEFORE_US` before it
 is first enabled until `_AFTER_US` after it was last disabled. What was logged earlier is there when the script begins.
@@ -12,6 +13,7 @@ is first enabled until `_AFTER_US` after it was last disabled. What was logged e
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -25,7 +27,7 @@ from ...wpi import logs, station
 from ..robot_time import PACKET_US
 from . import kit_names
 from .modes import DS_ATTACHED, FMS_ATTACHED, mode_name, selected
-from .network_entries import data_target, entry_target
+from .network_entries import NETWORK_INPUTS, data_target, entry_target, parse_entry_target
 from .script import InputScript, ScriptError, Step
 from .sensors import HOLD, camera_of
 from .targets import MATCH_TIME, MODE, OPMODE, REMAINING, plugged
@@ -44,6 +46,8 @@ _NAMED_TYPES = {
 _ENABLED = "DS:enabled"
 _FMS = "NT:/FMSInfo/"
 _HAL = "/hal_data/"
+#: What only logs of simulations have.
+_OF_SIMULATION = f"{_HAL}power.vin_voltage"
 _CAMERAS = ("NT:/limelight", "NT:/photonvision/")
 _FROM_OUTSIDE = re.compile(r"NT:(/.+/selected|/Preferences/[^.].*)", re.DOTALL)
 
@@ -68,7 +72,7 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
     :raises ScriptError: when the file is not a data log, or has no data of a driver station
     """
     try:
-        records = sorted(_records(file), key=lambda record: record.at_us)
+        records = sorted(map(_parsed, _records(file)), key=lambda record: record.at_us)
     except logs.MALFORMED as malformed:
         raise ScriptError(f"the data log cannot be read: {malformed}", where=file.name) from None
     given = {f"NT:{name}" for name in given}
@@ -87,17 +91,29 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
     begin_us, end_us = _part(sent, records[-1].at_us)
     first_us = PACKET_US if begin_us else 0  # what was logged before is there with the first packet
     state, steps = _State(given), []
+    if _has(records, _OF_SIMULATION):
+        state.is_simulation = True
+        state.written_outside = {
+            f"NT:{parse_entry_target(target)[0]}"
+            for record in records
+            if record.name == NETWORK_INPUTS
+            for target in record.value
+        }
 
     def arrival_us(record: logs.Record) -> int:
         return max(first_us, _arrival_us(record, begin_us))
 
     for at_us, together in groupby(sorted(records, key=arrival_us), key=arrival_us):
+        written: dict[str, Any] = {}
         for record in together:
+            if record.name == NETWORK_INPUTS:
+                written |= record.value
+                continue
             state.values[record.name] = record.value
             state.types[record.name] = record.type_name
         if at_us > _packet(end_us - begin_us):
             break
-        if at_us > 0 and (writes := dict(state.changes())):  # before the first packet, no driver station is connected
+        if at_us > 0 and (writes := {**dict(state.changes()), **written}):  # before, no driver station is connected
             steps.append(Step(at_us, writes))
     last_us = _packet(end_us - begin_us)
     return InputScript(tuple(_with_match_time(steps, last_us)), last_us + PACKET_US, file=file.name)
@@ -125,10 +141,14 @@ def _part(sent: list[logs.Record], last_us: int) -> tuple[int, int]:
 def _records(file: Path) -> Iterator[logs.Record]:
     if not file.is_file():
         raise ScriptError("this is a directory, not a data log" if file.is_dir() else f"there is no file {file}")
-    records = logs.records(file, ("DS:", "NT:", _HAL, *kit_names.READ), _CAMERAS)
+    records = logs.records(file, ("DS:", "NT:", _HAL, NETWORK_INPUTS, *kit_names.READ), _CAMERAS)
     if records is None:
         raise ScriptError("this is not a WPILib data log", where=file.name)
     return records
+
+
+def _parsed(record: logs.Record) -> logs.Record:
+    return record._replace(value=json.loads(record.value)) if record.name == NETWORK_INPUTS else record
 
 
 @cache
@@ -181,9 +201,13 @@ class _State:
     """The latest values of a log, and what was written of them.
 
     :param given: the names of further entries that are inputs
+    :param is_simulation: whether the log has what was written to NetworkTables from outside
+    :param written_outside: the names of the entries that were written to, in the form that they have in the log
     """
 
     given: Collection[str] = ()
+    is_simulation: bool = False
+    written_outside: Collection[str] = ()
     values: dict[str, Any] = field(default_factory=dict)
     types: dict[str, str] = field(default_factory=dict)
     _written: dict[str, Any] = field(default_factory=dict)
@@ -199,13 +223,16 @@ class _State:
                 yield from self._joystick(stick)
         for name, value in self.values.items():
             is_of_camera = _is_of_camera(name)
-            if is_of_camera or _FROM_OUTSIDE.fullmatch(name) or name in self.given:
+            if (is_of_camera or self._is_from_outside(name)) and name not in self.written_outside:
                 type_name = self.types[name]
                 if isinstance(value, bytes):
                     target, value = data_target(name.removeprefix("NT:"), type_name), value.hex()
                 else:
                     target = entry_target(name.removeprefix("NT:"), _NAMED_TYPES.get(type_name, ""))
                 yield from self._changed(HOLD + target if is_of_camera else target, value, None)
+
+    def _is_from_outside(self, name: str) -> bool:
+        return name in self.given or (not self.is_simulation and bool(_FROM_OUTSIDE.fullmatch(name)))
 
     def _changed(self, target: str, value: object, initially: object) -> Iterator[tuple[str, Any]]:
         if self._written.get(target, initially) != value:

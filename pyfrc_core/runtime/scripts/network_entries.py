@@ -19,6 +19,8 @@ from ...errors import UsageError
 from ...wpi import network
 
 NETWORK = "nt:"
+#: The entry in logs of simulations with what was written from outside: texts, each with the JSON of a script's writes.
+NETWORK_INPUTS = "/network_inputs"
 
 #: What cameras send for a pose that they could not compute.
 NOT_A_NUMBER = "nan"

@@ -28,7 +28,7 @@ class Player:
     def __init__(self, script: InputScript, run: RobotRun) -> None:
         self._script = script
         self._run = run
-        self._targets = Targets(run.hal_data, run.connection.packet)
+        self._targets = Targets(run.hal_data, run.connection.packet, run.when_network_written)
         run.at_close(self._targets.close)
         self._steps = iter(script.steps)
         self._next = next(self._steps, None)

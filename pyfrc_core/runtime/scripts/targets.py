@@ -15,7 +15,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from ...errors import UsageError
@@ -73,11 +73,18 @@ class Targets:
 
     :param hal_data: the run's inputs and outputs
     :param deliver: delivers a packet
+    :param when_network_written: called with each write to NetworkTables
     """
 
-    def __init__(self, hal_data: HalData, deliver: Callable[[], object] = station.deliver_packet) -> None:
+    def __init__(
+        self,
+        hal_data: HalData,
+        deliver: Callable[[], object] = station.deliver_packet,
+        when_network_written: Iterable[Callable[[str, Any], object]] = (),
+    ) -> None:
         self._hal_data = hal_data
         self._deliver = deliver
+        self._when_network_written = when_network_written
         self._entries = NetworkEntries()
         #: What a log measured.
         self.held = Held(hal_data, self._entries)
@@ -113,6 +120,8 @@ class Targets:
             raise UsageError("only pyfrc replay and control.replay() can start the robot program again")
         elif target.startswith(NETWORK):
             self._entries.write(target, value)
+            for listener in self._when_network_written:
+                listener(target, value)
         elif target.startswith(HOLD):
             self.held.write(target, value)
         elif (stick := PLUGGED.fullmatch(target)) is not None:

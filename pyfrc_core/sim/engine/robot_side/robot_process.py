@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from ....compat.unrepeatable import explain_unrepeatable
 from ....errors import PyfrcError
@@ -133,11 +134,14 @@ def _logged(run: RobotRun, project: Project, file: Path, console: Console) -> It
     before_sudden_exit["--wpilog"] = close
     console.begin(lambda line: log.print(run.clock.now_us, line))
     changes = run.hal_data.changes()
+    written: dict[str, Any] = {}
+    run.when_network_written.append(written.__setitem__)
 
     def look(now: float) -> None:
-        changed, _ = changes.look_at_values()
+        changed, gone = changes.look_at_values()
         controller = getattr(run.physics, "controller", None)
-        log.write(run.clock.now_us, changed, None if controller is None else controller.get_pose())
+        log.write(run.clock.now_us, changed, gone, written, None if controller is None else controller.get_pose())
+        written.clear()
 
     run.observe(look)
     try:

@@ -59,7 +59,7 @@ class Session:
 
     def __init__(self, run: RobotRun, job: Job, connection: Connection) -> None:
         self._run, self._job, self._connection = run, job, connection
-        self._targets = Targets(run.hal_data, run.connection.packet)
+        self._targets = Targets(run.hal_data, run.connection.packet, run.when_network_written)
         self._choosers = Choosers()
         self._opmodes: tuple[Opmode, ...] = ()
         self._served: Served | None = None

@@ -1,19 +1,21 @@
 """A run as a WPILib data log, for AdvantageScope: each change with its time.
 
 Modes and joysticks have the names of robots' own logs (``DS:enabled``, ``DS:joystick0/axes``), the robot's place is
-``/pose``, the output is ``console``, what the robot publishes is under ``NT:``, and everything else has its path in
-`hal_data`: ``/hal_data/pwm[0].value``.
+``/pose``, the output is ``console``, what the robot publishes is under ``NT:``, what was written there from outside is
+in `NETWORK_INPUTS`, and everything else has its path in `hal_data`: ``/hal_data/pwm[0].value``.
 """
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from ....disk_space import check_disk_space
 from ....errors import UsageError
+from ....runtime.scripts.network_entries import NETWORK_INPUTS
 from ....season import CURRENT
 from ....wpi import geometry, logs
 
@@ -44,16 +46,30 @@ class WpiLog:
         self._file = file
         self._log = logs.LogWriter(file, "pyfrc sim")
         self._stop_network = self._log.network()
+        self._inputs = self._log.entry(NETWORK_INPUTS, "text")
         self._console = self._log.entry("console", "text")
         self._entries: dict[str, Any] = {}
         self._pose: Callable[[geometry.Pose2d, int], object] | None = None
         self._flush_us = 0
 
-    def write(self, now_us: int, changed: Mapping[str, object], pose: geometry.Pose2d | None) -> None:
-        """Write the changes at `now_us`, in microseconds of robot time."""
+    def write(
+        self,
+        now_us: int,
+        changed: Mapping[str, object],
+        gone: Iterable[str],
+        written: Mapping[str, object],
+        pose: geometry.Pose2d | None,
+    ) -> None:
+        """Write the changes at `now_us`, in microseconds of robot time.
+
+        :param written: what dashboards and scripts have written to NetworkTables, by target
+        """
         stamp = self._log.stamp(now_us)
-        for path, value in changed.items():
+        unplugged = {path: () for path in gone if _STICK.fullmatch(path)}  # in robots' logs, it has no controls
+        for path, value in {**changed, **unplugged}.items():
             self._entry(path, value)(value, stamp)
+        if written:
+            self._inputs(json.dumps(dict(written)), stamp)
         if pose is not None:
             if self._pose is None:
                 self._pose = self._log.poses("/pose", stamp)
