@@ -129,7 +129,10 @@ def run() -> None:
         from . import completion  # noqa: F401 - it registers PowerShell
     try:
         sys.exit(cli.main(prog_name="pyfrc", standalone_mode=False, color=color, obj=chosen))
-    except click.exceptions.Abort:
+    except (click.exceptions.Abort, ImportError) as error:
+        # A library in C++ that is being imported reports Ctrl-C as a failed import.
+        if isinstance(error, ImportError) and not isinstance(error.__cause__, KeyboardInterrupt):
+            raise
         click.secho("interrupted", err=True)
         sys.exit(2)
     except click.ClickException as error:
@@ -166,6 +169,6 @@ def _remedy(error: click.ClickException) -> str:
 
 def _message(error: Exception) -> str:
     """Return the message; for an error of the operating system the file and the reason, without the error number."""
-    if isinstance(error, OSError) and error.filename is not None and error.strerror:
-        return f"{error.filename}: {error.strerror}"
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror if error.filename is None else f"{error.filename}: {error.strerror}"
     return str(error)

@@ -15,7 +15,7 @@ import pytest
 from conftest import sampled
 
 from pyfrc_cli.completion import SHELLS
-from pyfrc_cli.main import COMMANDS, cli
+from pyfrc_cli.main import COMMANDS, cli, run
 
 HEAVY = {"wpilib", "hal", "pytest", "pydantic", "pint", "paramiko", "hypothesis", "rich", "coverage", "numpy"}
 
@@ -241,3 +241,15 @@ run()
     assert not HEAVY & loaded
     commands = {module for module, _ in COMMANDS.values()} - {"pyfrc_cli.completion"}
     assert commands & loaded == ({"pyfrc_cli.test"} if "test" in words else set())
+
+
+def test_ctrl_c_while_a_library_is_imported(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(**_: object) -> None:
+        raise ImportError("initialization failed") from KeyboardInterrupt()
+
+    monkeypatch.setattr(cli, "main", interrupted)
+    with pytest.raises(SystemExit) as ended:
+        run()
+    assert (ended.value.code, capsys.readouterr().err) == (2, "interrupted\n")

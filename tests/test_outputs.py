@@ -166,3 +166,10 @@ def test_two_outputs_are_two_files(arguments: tuple[str, ...], error: str, proje
     assert result.code == 2
     assert error in result.first_error
     assert not (project.path / "a.png").exists()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a file for which there is never room is Linux's")
+def test_a_full_disk_is_said_with_the_file(project: RobotProject) -> None:
+    (project.path / "full").symlink_to("/dev/full")
+    result = project.run("replay", "in.jsonl", "--trace", "full")
+    assert (result.code, result.first_error) == (1, "full: No space left on device")

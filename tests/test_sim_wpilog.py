@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import pytest
@@ -137,3 +138,13 @@ def test_the_log_has_the_console(make_project: MakeProject) -> None:
     ]
     assert printed[-1] == (0.8, "AttributeError: 'MyRobot' object has no attribute 'lift'")
     assert all(text in result.output for time, text in printed if time < 0.8)  # the terminal has them, too
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="on Windows, no file is replaced while it is open")
+def test_a_log_that_is_written_anew_does_not_change_what_others_have_opened(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT})
+    logged(project, "a.wpilog")
+    before = (project.path / "a.wpilog").read_bytes()
+    with (project.path / "a.wpilog").open("rb") as opened:
+        logged(project, "a.wpilog")
+        assert opened.read() == before

@@ -308,3 +308,12 @@ def test_a_simulation_that_a_log_drives_is_started_and_ended(make_project: Any) 
     with pytest.raises(PyfrcError, match=r"The simulation did not start: .*there is no file"):
         broken.start()
     broken.close()
+
+
+def test_a_log_that_is_overwritten_while_it_is_shown_stays(tmp_path: Path) -> None:
+    """Another program may write the file anew, such as a simulation, or a copy of the next match."""
+    with served_source(source_of(tmp_path)) as server, server.page() as page:
+        (tmp_path / "match.wpilog").write_bytes(b"")
+        asked = {"from": 0, "to": 100, "points": 1000}
+        found = page.ask(type="plot", paths=["nt:/SmartDashboard/speed"], **asked)
+        assert len(found["series"]["nt:/SmartDashboard/speed"]["v"]) > 10

@@ -127,6 +127,10 @@ def _report(combined: Coverage, options: CoverageOptions, as_json: Path) -> int:
         if options.json is not None:
             write_whole(options.json, [text])
             print_path(f"coverage as JSON: {options.json}")
+    except OSError as error:
+        if error.filename is None:  # as of a full disk
+            error.filename = str(options.html or options.xml or options.json)
+        raise
     except NoDataError:
         print("coverage: no line of the project was run", file=sys.stderr)
         return 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,7 +21,7 @@ _BUFFER = 1 << 17
 def traced(run: RobotRun, file: Path) -> Iterator[Trace]:
     """Write down what the robot does while this lasts. The run is open, and not started."""
     file.parent.mkdir(parents=True, exist_ok=True)
-    with file.open("w", buffering=_BUFFER, encoding="utf-8") as out:
+    with _full_disk_named(file), file.open("w", buffering=_BUFFER, encoding="utf-8") as out:
         trace = Trace(run.hal_data, out)
 
         def write() -> None:
@@ -35,6 +36,17 @@ def traced(run: RobotRun, file: Path) -> Iterator[Trace]:
             before_sudden_exit.pop("trace", None)  # robot code may have forked this process
             trace.write_lines()
         trace.finish()
+
+
+@contextmanager
+def _full_disk_named(file: Path) -> Iterator[None]:
+    """Name the file in the error of a full disk, which names none."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno == errno.ENOSPC and error.filename is None:
+            error.filename = str(file)
+        raise
 
 
 @contextmanager

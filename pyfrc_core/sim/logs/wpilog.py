@@ -20,6 +20,8 @@ from .columns import Column, ReadLog
 
 #: The most records that are kept, with 12 bytes each: about 300 MiB.
 MOST_RECORDS = 24_000_000
+#: The largest files that are read as a whole, in bytes; larger ones are mapped.
+_LARGEST_READ = 256 << 20
 _HEADER = 12
 #: How far behind a damaged place the next record is looked for, in bytes; and how many records must follow each other
 #: where the time is another one, or an entry has no name so far; four times as many behind a damage.
@@ -95,10 +97,10 @@ def read_wpilog(file: Path, most: int = MOST_RECORDS) -> ReadLog:
 
 def _content(file: Path) -> _Bytes:
     with file.open("rb") as opened:
-        try:
-            return mmap.mmap(opened.fileno(), 0, access=mmap.ACCESS_READ)
-        except ValueError:  # empty
-            return b""
+        # Another program may overwrite the file while it is looked at: what is mapped would be gone, and this process.
+        if file.stat().st_size <= _LARGEST_READ:
+            return opened.read()
+        return mmap.mmap(opened.fileno(), 0, access=mmap.ACCESS_READ)
 
 
 class _Index:

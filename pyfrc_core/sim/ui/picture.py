@@ -83,7 +83,7 @@ def draw_picture(scene: Scene, file: Path, former_trail: Iterable[Point] = ()) -
         file.parent.mkdir(parents=True, exist_ok=True)
         image.save(file)
     except OSError as error:
-        raise UsageError(f"{file} cannot be written: {error}") from None
+        raise UsageError(f"{file} cannot be written: {error.strerror or error}") from None
 
 
 def _paste(file: Path, image: object) -> None:

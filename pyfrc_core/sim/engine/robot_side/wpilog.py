@@ -40,6 +40,8 @@ class WpiLog:
     def __init__(self, file: Path) -> None:
         file.parent.mkdir(parents=True, exist_ok=True)
         try:
+            if file.is_file() and not file.is_symlink():
+                file.unlink()  # another program may be reading it: it keeps what it has opened
             file.write_bytes(b"")
         except OSError as error:
             raise UsageError(f"{file} cannot be written: {error.strerror}", remedy="--wpilog names a file.") from None
