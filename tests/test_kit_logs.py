@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 from typing import Any
 
 import pytest
 from conftest import MakeProject, RobotProject
-from written_logs import a_kit_log
+from written_logs import Written, a_kit_log
 
 from pyfrc_core.runtime.scripts.inputs_file import load_inputs
 from pyfrc_core.sim.engine.past_run import PastRun
@@ -143,6 +144,32 @@ def test_its_inputs_are_those_of_the_driver_station_and_of_dashboards(tmp_path: 
         4.5: {"mode": "disabled"},
     }
     assert script.end_us == 5_000_000
+
+
+def test_a_log_of_advantagekit_of_2024(tmp_path: Path) -> None:
+    """What was read from dashboards has other names; the game message of its simulations is garbage."""
+    log = Written("AdvantageKit", '{"source":"AdvantageKit"}')
+    log.values("/DriverStation/Enabled", "boolean", "?", (0, False), (6, True), (8, False))
+    log.values("/DriverStation/Joystick0/AxisValues", "float[]", "", (0, b""), (7, struct.pack("<2f", 0.5, -1)))
+    log.values("/DriverStation/GameSpecificMessage", "string", "", (0, b""), (1, b"\xef\xbf\xbd" * 90))
+    log.values("/DashboardInputs/Auto Choices", "string", "", (0, b"None"), (1, b"Example Auto"))
+    log.values("/DashboardInputs/Flywheel Speed", "double", "d", (0, 1500.0), (7.5, 1600.0))
+    script = load_inputs(log.save(tmp_path / "match.wpilog"))
+    assert [(step.at_us, dict(step.writes)) for step in script.steps] == [
+        (
+            20_000,
+            {
+                "event.game_specific_message": "\ufffd" * 21,
+                "joysticks[0].plugged": False,
+                "nt:/SmartDashboard/Auto Choices/selected": "Example Auto",
+                "nt:/SmartDashboard/Flywheel Speed": 1500.0,
+            },
+        ),
+        (5_000_000, {"mode": "teleop"}),
+        (6_000_000, {"joysticks[0].plugged": True, "joysticks[0].axes[0]": 0.5, "joysticks[0].axes[1]": -1.0}),
+        (6_500_000, {"nt:/SmartDashboard/Flywheel Speed": 1600.0}),
+        (7_000_000, {"mode": "disabled"}),
+    ]
 
 
 def test_unchanged_code_does_the_same(project: RobotProject) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import pytest
+
 from pyfrc_core.sim.engine.changes import Change, RunBegan
 from pyfrc_core.sim.engine.messages import MODE, NO_CONNECTION, UNKNOWN_MODE
 from pyfrc_core.sim.live.runs import RobotRuns
@@ -199,9 +201,10 @@ def values_of(changes: Iterable[RunBegan | Change]) -> set[str]:
     return {path for each in changes for path in each.values}
 
 
-def test_structs_come_as_their_parts() -> None:
+@pytest.mark.parametrize("table", ["", "/AdvantageKit"])
+def test_structs_come_as_their_parts(table: str) -> None:
     robot = Robot()
-    schema = Received("/.schema/struct:Point", "structschema", b"float x;float y", ON - 1)
+    schema = Received(f"{table}/.schema/struct:Point", "structschema", b"float x;float y", ON - 1)
     point = Received("/p", "struct:Point", b"\0\0\x80?\0\0\0@", ON - 2)
     robot.connect(point, schema)
     assert robot.changes("nt:/p/x") == [(0.0, 1.0)]

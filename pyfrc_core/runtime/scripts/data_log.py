@@ -55,6 +55,8 @@ _FROM_OUTSIDE = re.compile(r"NT:(/.+/selected|/Preferences/[^.].*)", re.DOTALL)
 _BEFORE_US, _AFTER_US = 5_000_000, 3_000_000
 
 _STATIONS = ("unknown", "red1", "red2", "red3", "blue1", "blue2", "blue3")
+#: The most bytes of the event's name and of the game message.
+_MOST_TEXT_BYTES = 63
 _MATCH_TYPES = ("none", "practice", "qualification", "elimination")
 
 #: The number of controls of a joystick that is plugged in, and their initial value.
@@ -257,12 +259,13 @@ class _State:
         yield "control.eStop", bool(self.values.get("DS:estop")), False
         fms_attached = bool(ours.get("control.fmsAttached", fms.get("FMSControlData", 0) & FMS_ATTACHED))
         yield "control.fmsAttached", fms_attached, False
-        yield "event.name", ours.get("event.name", fms.get("EventName", station.EVENT_NAME)), station.EVENT_NAME
+        name = ours.get("event.name", fms.get("EventName", station.EVENT_NAME))
+        yield "event.name", _as_sent(name), station.EVENT_NAME
         yield "event.match_number", int(ours.get("event.match_number", fms.get("MatchNumber", 0))), 0
         match_type = int(ours.get("event.match_type", fms.get("MatchType", 0)))
         yield "event.match_type", _named(_MATCH_TYPES, match_type), "none"
         message = ours.get("event.game_specific_message", fms.get("GameSpecificMessage", ""))
-        yield "event.game_specific_message", message, ""
+        yield "event.game_specific_message", _as_sent(message), ""
         if (left := ours.get(REMAINING)) is not None:
             yield REMAINING, left, 0.0
         yield OPMODE, self.values.get(f"{_HAL}control.opmode", ""), ""  # of the mode that follows
@@ -286,6 +289,11 @@ class _State:
                 most, initially = _CONTROLS[sort]
                 for number, value in enumerate((values or [])[:most], CURRENT.first_button if sort == "buttons" else 0):
                     yield from self._changed(f"joysticks[{stick}].{sort}[{number}]", value, initially)
+
+
+def _as_sent(text: str) -> str:
+    """Return a text as far as a driver station can send it: AdvantageKit has logged longer ones."""
+    return text.encode("utf-8", "replace")[:_MOST_TEXT_BYTES].decode("utf-8", "ignore")
 
 
 def _named(names: tuple[str, ...], number: int) -> str:

@@ -47,7 +47,8 @@ BUTTONS = [
 #: A pattern of the entries of NetworkTables that robot code does not compute: its inputs, what was printed, and for how
 #: long it computed.
 NOT_COMPUTED = rf"{TABLE}/(?!(?:Real|Replay)Outputs/(?!Logger/|LoggedRobot/|LogTracer/|Console$))"
-_READ_FROM_NETWORK = re.compile(r"/(?:Network|Dashboard)Inputs(/.+)", re.DOTALL)
+#: What was read from NetworkTables; until 2024, AdvantageKit left out the table, SmartDashboard.
+_READ_FROM_NETWORK = re.compile(r"/(Network|Dashboard)Inputs(/.+)", re.DOTALL)
 #: The tables that are not what a subsystem has measured.
 _OF_THE_ROBOT = re.compile(
     r"(?:(?:Real|Replay)(?:Outputs|Metadata)|DriverStation|SystemStats|PowerDistribution|RadioStatus"
@@ -77,8 +78,9 @@ def entry_of(name: str, type_name: str) -> str | None:
     found = _READ_FROM_NETWORK.fullmatch(name)
     if found is None:
         return None
-    is_choice = type_name == "string" and found[1].startswith("/SmartDashboard/")
-    return f"NT:{found[1]}/selected" if is_choice else f"NT:{found[1]}"
+    entry = found[2] if found[1] == "Network" else f"/SmartDashboard{found[2]}"
+    is_choice = type_name == "string" and entry.startswith("/SmartDashboard/")
+    return f"NT:{entry}/selected" if is_choice else f"NT:{entry}"
 
 
 def subsystems(paths: Iterable[str]) -> Iterator[str]:
