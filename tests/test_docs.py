@@ -382,3 +382,22 @@ def test_a_page_to_read_at_once_stays_short(document: str, most: int) -> None:
 def test_every_room_says_what_it_is_for() -> None:
     for file in (ROOT / "pyfrc_core").rglob("__init__.py"):
         assert file.read_text("utf-8").startswith('"""'), file
+
+
+def test_each_place_outside_of_a_project_is_listed() -> None:
+    """Where a module asks for a user's directory, and what the list of such files has for it."""
+    listed = {
+        "deploy/host_keys.py": "`~/.pyfrc/known_hosts`",
+        "physics/registry.py": "caches, `pint-...`",
+        "sim/ui/web/recorded_page.py": "",  # writes nothing there
+        "sim/view.py": "user data, `view`",
+        "sync/cache.py": "`~/wpilib/YEAR/robotpy`",
+        "virtual_robot/robot.py": "user data, `virtual-robot`",
+    }
+    core = ROOT / "pyfrc_core"
+    asks = re.compile(r"platformdirs\.user_|Path\.home\(\)|\.expanduser\(")
+    found = {file.relative_to(core).as_posix() for file in core.rglob("*.py") if asks.search(file.read_text("utf-8"))}
+    assert found == listed.keys()
+    text = (ROOT / "docs/commands.md").read_text("utf-8")
+    for name in filter(None, listed.values()):
+        assert f"| {name} |" in text
