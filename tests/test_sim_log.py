@@ -437,6 +437,7 @@ CAMERAS = """
             for pose in self.poses.readQueue():
                 self.seen += 1
                 wpilib.SmartDashboard.putNumber("sum", sum(pose.value))
+                wpilib.SmartDashboard.putNumber("at", pose.time)
             wpilib.SmartDashboard.putNumber("seen", self.seen)
             wpilib.SmartDashboard.putNumber("angle", GAIN * self.angle.getDouble(0))
             wpilib.SmartDashboard.putNumber("tag", self.tag.get())
@@ -461,7 +462,7 @@ CHANCE = """
 
         def update_sim(self, hal_data, now, tm_diff):
             noise = [self.chance.uniform(-0.5, 0.5) for _ in range(3)]
-            self.poses.set(noise)
+            self.poses.set(noise, round(now * 1e6) - 3_000)  # when the picture was taken
             self.seen_at.set(Pose2d(noise[1], 0.0, 0.0))
             self.tag.set(self.chance.randint(1, 30))
             if now < 1.0:

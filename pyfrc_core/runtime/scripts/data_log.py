@@ -92,6 +92,7 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
         )
     begin_us, end_us = _part(sent, records[-1].at_us)
     first_us = PACKET_US if begin_us else 0  # what was logged before is there with the first packet
+    last_us = _packet(end_us - begin_us)
     state, steps = _State(given), []
     if _has(records, _OF_SIMULATION):
         state.is_simulation = True
@@ -101,11 +102,8 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
             if record.name == NETWORK_INPUTS
             for target in record.value
         }
-
-    def arrival_us(record: logs.Record) -> int:
-        return max(first_us, _arrival_us(record, begin_us))
-
-    for at_us, together in groupby(sorted(records, key=arrival_us), key=arrival_us):
+    others = (record for record in records if not _is_of_camera(record.name))
+    for at_us, together in groupby(others, key=lambda record: max(first_us, _packet(record.at_us - begin_us))):
         written: dict[str, Any] = {}
         for record in together:
             if record.name == NETWORK_INPUTS:
@@ -113,12 +111,14 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
                 continue
             state.values[record.name] = record.value
             state.types[record.name] = record.type_name
-        if at_us > _packet(end_us - begin_us):
+        if at_us > last_us:
             break
         if at_us > 0 and (writes := {**dict(state.changes()), **written}):  # before, no driver station is connected
             steps.append(Step(at_us, writes))
-    last_us = _packet(end_us - begin_us)
-    return InputScript(tuple(_with_match_time(steps, last_us)), last_us + PACKET_US, file=file.name)
+    of_cameras = (record for record in records if _is_of_camera(record.name))
+    seen = _seen((record for record in of_cameras if record.name not in state.written_outside), begin_us, first_us)
+    steps = [*_with_match_time(steps, last_us), *(step for step in seen if step.at_us <= last_us)]
+    return InputScript(tuple(sorted(steps, key=lambda step: step.at_us)), last_us + PACKET_US, file=file.name)
 
 
 def _part(sent: list[logs.Record], last_us: int) -> tuple[int, int]:
@@ -158,10 +158,17 @@ def _is_of_camera(name: str) -> bool:
     return name.startswith("NT:") and camera_of(name.removeprefix("NT:")) is not None
 
 
-def _arrival_us(record: logs.Record, begin_us: int) -> int:
-    """Return the time of the packet with which a value arrives; that of a camera arrives after the packet's physics."""
-    at_us = record.at_us - begin_us
-    return max(0, at_us // PACKET_US) * PACKET_US if _is_of_camera(record.name) else _packet(at_us)
+def _seen(records: Iterable[logs.Record], begin_us: int, first_us: int) -> Iterator[Step]:
+    """Yield what cameras have measured, with the exact times: code corrects the robot's place of that time."""
+    for at_us, together in groupby(records, key=lambda record: max(first_us, record.at_us - begin_us)):
+        yield Step(at_us, dict(map(_measured, together)))
+
+
+def _measured(record: logs.Record) -> tuple[str, Any]:
+    name, type_name, value = record.name.removeprefix("NT:"), record.type_name, record.value
+    if isinstance(value, bytes):
+        return HOLD + data_target(name, type_name), value.hex()
+    return HOLD + entry_target(name, _NAMED_TYPES.get(type_name, "")), value
 
 
 def _has(records: Iterable[logs.Record], name: str) -> bool:
@@ -224,14 +231,9 @@ class _State:
             for stick in range(station.JOYSTICKS):
                 yield from self._joystick(stick)
         for name, value in self.values.items():
-            is_of_camera = _is_of_camera(name)
-            if (is_of_camera or self._is_from_outside(name)) and name not in self.written_outside:
-                type_name = self.types[name]
-                if isinstance(value, bytes):
-                    target, value = data_target(name.removeprefix("NT:"), type_name), value.hex()
-                else:
-                    target = entry_target(name.removeprefix("NT:"), _NAMED_TYPES.get(type_name, ""))
-                yield from self._changed(HOLD + target if is_of_camera else target, value, None)
+            if self._is_from_outside(name) and name not in self.written_outside:
+                target = entry_target(name.removeprefix("NT:"), _NAMED_TYPES.get(self.types[name], ""))
+                yield from self._changed(target, value, None)
 
     def _is_from_outside(self, name: str) -> bool:
         return name in self.given or (not self.is_simulation and bool(_FROM_OUTSIDE.fullmatch(name)))

@@ -3,8 +3,8 @@
 A write to such a target is there after the physics of its packet, and again after that of each later packet, until
 null is written: physics does not change what a log has. A device that the robot does not have is left out.
 
-What a camera measured is published once, after the physics of its packet. What simulation code publishes there itself
-is left out: a subscriber would get both.
+What a camera measured is published once, with the time of the write, after the physics of that packet or the next one.
+What simulation code publishes there itself is left out: a subscriber would get both.
 """
 
 from __future__ import annotations
@@ -98,12 +98,12 @@ class Held:
         self._values: dict[str, Any] = {}
         #: Where `hal_data` has them.
         self._places: dict[str, tuple[Any, Any]] = {}
-        #: What is to be published, by target, and the names of all entries that are held.
-        self._news: dict[str, Any] = {}
+        #: What is to be published: the target, the value and its time; and the names of all entries that are held.
+        self._news: list[tuple[str, Any, int]] = []
         self._names: set[str] = set()
         self._replaced = PatchTable()
 
-    def write(self, target: str, value: object) -> None:
+    def write(self, target: str, value: object, now_us: int) -> None:
         """Hold a value from the end of this packet on; None leaves it to physics."""
         path = target.removeprefix(HOLD)
         if path.startswith(NETWORK):
@@ -112,7 +112,7 @@ class Held:
                 self._names.discard(name)
             else:
                 self._names.add(name)
-                self._news[path] = value
+                self._news.append((path, value, now_us))
         elif value is None:
             self._values.pop(path, None)
         else:
@@ -131,9 +131,9 @@ class Held:
                 place[key] = value
             except (PyfrcError, LookupError):  # the robot does not have it, or not yet
                 continue
-        news, self._news = self._news, {}
-        for target, value in news.items():
-            self._entries.write(target, value)
+        news, self._news = self._news, []
+        for target, value, at_us in news:
+            self._entries.write(target, value, at_us)
 
     def replace_simulation(self) -> None:
         """Leave out what simulation code publishes under a name that is held, until `close`."""

@@ -123,7 +123,7 @@ class Targets:
             for listener in self._when_network_written:
                 listener(target, value)
         elif target.startswith(HOLD):
-            self.held.write(target, value)
+            self.held.write(target, value, now_us)
         elif (stick := PLUGGED.fullmatch(target)) is not None:
             station.plug_in(int(stick[1])) if value else station.unplug(int(stick[1]))
         else:

@@ -13,6 +13,7 @@ import ntcore
 
 from ...compat.private_name import PrivateName
 from ...errors import UsageError
+from . import timing
 
 NETWORK_LOG = PrivateName(
     "ntcore._logutil:NtLogForwarder.on_instance_start",
@@ -245,13 +246,18 @@ class Entry:
         """The name of the entry's type; empty if it has none yet."""
         return self._entry.get_topic().get_type_string()
 
-    def write(self, value: Any, type_name: str = "") -> bool:
+    def write(self, value: Any, type_name: str = "", at_us: int | None = None) -> bool:
         """Write a plain value, and return whether the entry can have it.
 
         :param type_name: one of `TYPES`; empty: that of the value in Python
+        :param at_us: the value's time, in microseconds of robot time; None: now
         :raises TypeError, ValueError, RuntimeError: when no value can be made of it
         """
-        return self._entry.set_value(value_of_type(value, type_name) if type_name else value)
+        if at_us is None:
+            return self._entry.set_value(value_of_type(value, type_name) if type_name else value)
+        made = value_of_type(value, type_name) if type_name else ntcore.Value.make_value(value)
+        made.set_time(timing.hal_time(at_us))
+        return self._entry.set_value(made)
 
     def keep(self) -> None:
         """Make the entry persistent."""
@@ -269,11 +275,13 @@ class DataEntry:
     """
 
     def __init__(self, name: str, type_name: str) -> None:
-        publisher = _tables().get_raw_topic(name).publish(type_name)
-        #: Write the bytes.
-        self.write: Callable[[bytes], None] = publisher.set
+        self._publisher = _tables().get_raw_topic(name).publish(type_name)
         #: Publish it no longer.
-        self.unpublish: Callable[[], None] = publisher.close
+        self.unpublish: Callable[[], None] = self._publisher.close
+
+    def write(self, value: bytes, at_us: int | None = None) -> None:
+        """Write the bytes; the arguments are those of `Entry.write`."""
+        self._publisher.set(value, 0 if at_us is None else timing.hal_time(at_us))
 
 
 class Server:

@@ -31,7 +31,7 @@ _ROUNDING, _SMALLEST = 1e-6, 1e-9
 _GIVEN = re.compile(
     rf"joysticks\[\d\]\.(axes|buttons|povs)|control\.|event\.|alliance_station|time\."
     rf"|{VALUE}/(FMSInfo|DS|DriverStation)/|{VALUE}/Robot/ProgramStartTime"
-    rf"|{VALUE}/.*( \(physics\)/|/Ids$)"  # the simulated field, and the numbers of commands
+    rf"|{VALUE}/.*( \(physics\)/|/VisionSystemSim-|/Ids$)"  # the simulated field, and the numbers of commands
     rf"|{VALUE}{kit_names.NOT_COMPUTED}"
     rf"|{re.escape(TYPE)}|{re.escape(MODE)}|{re.escape(POSE)}"
 )
