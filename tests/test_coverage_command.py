@@ -12,7 +12,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
-from conftest import MakeProject, RobotProject, sampled
+from conftest import SHORT_MATCH, MakeProject, RobotProject, sampled
 
 from pyfrc_core.measure.coverage import never_run
 
@@ -91,7 +91,7 @@ TESTS = """
         control.run_test(lambda tm: tm < 1)
 """
 
-FILES = {"robot.py": ROBOT, "helpers.py": HELPERS, "tests/test_a.py": TESTS}
+FILES = {"robot.py": ROBOT, "helpers.py": HELPERS, "tests/test_a.py": TESTS, "pyproject.toml": SHORT_MATCH}
 
 
 @pytest.fixture(scope="module")

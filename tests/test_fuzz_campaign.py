@@ -49,7 +49,7 @@ def kept(project: Any) -> dict[str, bytes]:
 
 
 #: More than one batch: the second goes on from where the first has come to.
-CAMPAIGN = ("--seed", "1", "--runs", "36")
+CAMPAIGN = ("--seed", "7", "--runs", "34")
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +68,7 @@ def test_a_bug_is_found_kept_and_gone_when_it_is_repaired(campaign, make_project
     place = project.place("robot.py", "# the bug")
     assert f"{place}: IndexError: tuple index out of range\n" in result.stdout
     assert re.search(
-        r"^36 matches, 0\.\d\d h of robot time, 100% of the robot's lines, 1 failure$", result.stdout, re.M
+        r"^34 matches, 0\.\d\d h of robot time, 100% of the robot's lines, 1 failure$", result.stdout, re.M
     )
     file = "tests/fuzz/indexerror-robot-pull.jsonl"
     assert f"pyfrc replay {file}\n" in result.stdout
@@ -88,7 +88,7 @@ def test_a_bug_is_found_kept_and_gone_when_it_is_repaired(campaign, make_project
     assert tested.outcomes() == {f"{REGRESSIONS}::test_it_is_repaired[indexerror-robot-pull]": "FAILED"}
 
     before = kept(project)
-    again = project.run("fuzz", "--seed", "1", "--runs", "1")
+    again = project.run("fuzz", "--seed", "7", "--runs", "1")
     assert again.code == 1
     assert f"still fails: {file}" in again.output
     assert kept(project).keys() == before.keys()

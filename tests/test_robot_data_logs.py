@@ -239,7 +239,8 @@ SYSID = """
 
 def test_what_a_sysid_routine_writes_is_in_the_runs_log(make_project) -> None:
     """With the names and units that WPILib's own writes; no other log is started."""
-    made = make_project({"robot.py": SYSID, "tests/sysid_test.py": "from pyfrc.tests import test_autonomous\n"})
+    tests = {"tests/sysid_test.py": "from pyfrc.tests import test_autonomous\n"}
+    made = make_project({"robot.py": SYSID, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n", **tests})
     result = made.run("test")
     assert result.code == 0, result.output
     (file,) = made.path.rglob("*.wpilog")
