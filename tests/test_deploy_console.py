@@ -36,16 +36,13 @@ class MyRobot(wpilib.TimedRobot):
 
 @contextlib.contextmanager
 def running(project, *args: str) -> Iterator[StartedCommand]:
-    """The command, ended by Ctrl-C at the end; one that hangs is killed before it holds up the suite."""
+    """The command, ended by Ctrl-C at the end."""
     with project.start(*args) as it:
-        guard = threading.Timer(2 * PATIENCE, it.kill)
-        guard.start()
         try:
             yield it
         finally:
             it.send_signal(signal.SIGINT)
             it.rest()
-            guard.cancel()
 
 
 def wait_for(command: StartedCommand, text: str) -> None:
