@@ -128,4 +128,6 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None, 
     project = chosen_project(directory, main, robot_class)
     with loading(verbosity().quiet):
         from pyfrc_core.sim.simulate import SimRequest, simulate
-    sys.exit(simulate(project, SimRequest(**request, quiet=verbosity().quiet), partial(click.echo, nl=False)))
+    chosen = verbosity()
+    whole = SimRequest(**request, quiet=chosen.quiet, verbose=chosen.verbose)
+    sys.exit(simulate(project, whole, partial(click.echo, nl=False)))

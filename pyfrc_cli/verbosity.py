@@ -58,5 +58,7 @@ def _option(letter: str, name: str, help_text: str) -> click.Option:
     )
 
 
-VERBOSE = _option("v", "verbose", "Show the traceback of errors; with test, name each test.")
+VERBOSE = _option(
+    "v", "verbose", "Show the traceback of errors; with test, name each test; with sim --log, each difference."
+)
 QUIET = _option("q", "quiet", "Print only results, warnings and errors.")

@@ -116,7 +116,51 @@ def test_unchanged_code_does_the_same_and_changed_code_differs_where_the_change_
     first = "Elevator/setpoint" if log == "match.wpilog" else "pwm[1].value"  # a trace has nothing of NetworkTables
     assert f"differs first at 0:02.50, in {first}: " in said
     assert "pwm[1].value" in said
-    assert "sensors from the log: analog_in[0], analog_in[1], dio[0], dio[1], encoder[0], fpga_button, power" in said
+    from_log = "analog_in[0], analog_in[1], dio[0], dio[1], encoder[0], fpga_button, power"
+    assert f"sensors from the log, whatever today's code does: {from_log}" in said
+
+
+TWICE = """{"format": "pyfrc-input 1", "end": 7.0}
+{"t": 1.0, "set": {"mode": "teleop"}}
+{"t": 2.0, "set": {"joysticks[0].buttons[2]": true}}
+{"t": 2.5, "set": {"joysticks[0].buttons[2]": false}}
+{"t": 3.0, "set": {"mode": "disabled"}}
+{"t": 4.0, "set": {"mode": "teleop"}}
+{"t": 5.0, "set": {"joysticks[0].buttons[2]": true}}
+{"t": 5.5, "set": {"joysticks[0].buttons[2]": false}}
+{"t": 6.0, "set": {"mode": "disabled"}}
+"""
+NAMED = """
+            for number in range(12):
+                wpilib.SmartDashboard.putString(f"name {number}", "the name of part " * 4 + NAME)
+
+        def disabledPeriodic(self):
+            pass
+
+"""
+
+
+def test_what_differs_is_named_anew_after_each_enabling_and_shortly(make_project: MakeProject) -> None:
+    named = ROBOT.replace("GAIN = 0.5", 'GAIN = 0.5\n    NAME = "before"')
+    named = named.replace('setDefaultNumber("kP", 1.0)\n\n', f'setDefaultNumber("kP", 1.0){NAMED}')
+    named = named.replace("self.encoder = ", "self.turn = wpilib.DutyCycleEncoder(5)\n            self.encoder = ")
+    turning = PHYSICS.replace("self.turns +=", "DutyCycleEncoderSim(5).set(now % 1)\n            self.turns +=")
+    turning = "\n    from wpilib.simulation import DutyCycleEncoderSim\n" + turning
+    project = make_project({"robot.py": named, "physics.py": turning, "twice.jsonl": TWICE})
+    assert project.run(*SIM, "--script", "twice.jsonl", "--wpilog", "match.wpilog").code == 0
+    change(project, "robot.py", "GAIN = 0.5", "GAIN = 0.75")
+    said = log_of(project, "match.wpilog")
+    # The lift's output is one value of a device that has more, which are named once.
+    assert "differs first at 0:02.00, in Elevator/setpoint: " in said
+    assert "then in pwm[1].value (0:02.00)\n" in said
+    assert "after it was enabled at 0:04.00, in Elevator/setpoint (0:05.00), pwm[1].value (0:05.00)\n" in said
+    of_encoder = [line for line in said.splitlines() if "DutyCycleEncoder[5]" in line]
+    assert [line.partition(",")[0] for line in of_encoder] == ["sensors from the log"]
+    change(project, "robot.py", '"before"', '"after"')
+    said = log_of(project, "match.wpilog")
+    assert re.search(r"in name \d+: \.\.\..{,20} before in match.wpilog, \.\.\..{,20} after here", said)
+    assert "and 5 more (-v names all)" in said
+    assert "name 11 (" in project.run("-v", *SIM, "--log", "match.wpilog").stdout
 
 
 def test_sensors_measure_what_they_measured_in_the_log(recorded: RobotProject) -> None:
@@ -481,7 +525,7 @@ def test_cameras_measure_what_they_measured_in_the_log(log: str, make_project: M
     own.rename(project.path / "robot.wpilog")
     said = log_of(project, log, "--tolerance", "0", "--record", "again.jsonl")
     assert "no difference: " in said
-    assert "sensors from the log: limelight, photonvision/front" in said
+    assert "sensors from the log, whatever today's code does: limelight, photonvision/front" in said
     result = project.run("replay", "again.jsonl")  # the recording of this run has them, too
     assert result.code == 0, result.output
     change(project, "robot.py", "GAIN = 1.0", "GAIN = 0.5")

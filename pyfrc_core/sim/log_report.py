@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import islice
-from typing import TYPE_CHECKING
+from itertools import islice, takewhile
+from typing import TYPE_CHECKING, Any
 
 from ..hal.paths import format_path, parse_path
+from ..runtime.robot_time import PACKET_US
 from ..runtime.scripts.sensors import camera_of
 from ..wording import counted
 from .engine.messages import VALUE
 from .engine.past_run import PastRun
 from .engine.source import Source
+from .logs.align import enabled_moments
 from .ui.models.wording import clock
 
 if TYPE_CHECKING:
@@ -21,23 +23,26 @@ if TYPE_CHECKING:
 #: The most values that differ, and the most sensors, that are named.
 _MOST_NAMED = 8
 _SOURCES = {
-    "log": "sensors from the log",
+    "log": "sensors from the log, whatever today's code does",
     "physics": "sensors from physics",
     "nothing": "sensors that neither the log nor physics move",
     "replay": "inputs of subsystems, which only the replay of AdvantageKit or PyKit gives to the code",
 }
+#: The longest value that is shown whole, in letters.
+_LONGEST = 40
 
 
 class LogReport:
     """Compares a simulation with the log that drives it.
 
     :param log: the branch of the source that is the log
+    :param names_all: whether to name all values that differ, and all sensors
     """
 
-    def __init__(self, source: Source, log: PastRun) -> None:
+    def __init__(self, source: Source, log: PastRun, names_all: bool = False) -> None:
         from .ui.web.collector import Collector
 
-        self._log = log
+        self._log, self._most = log, None if names_all else _MOST_NAMED
         self._collector: Collector = Collector(source, lambda: None)
         self._collector.start()
 
@@ -52,15 +57,15 @@ class LogReport:
         if branch is None or found is None:
             return
         yield from self._differences(found, branch.number)
-        for kind, paths in runs.sensors(branch.number).items():
-            if paths:
-                yield f"{_SOURCES[kind]}: {_listed(paths if kind == 'replay' else _devices(paths))}"
+        for kind, names in _devices_by_source(runs.sensors(branch.number)).items():
+            if names:
+                yield f"{_SOURCES[kind]}: {self._listed(names)}"
 
     def _differences(self, found: FirstDifference, branch: int) -> Iterator[str]:
         log, runs = self._log, self._collector.runs
         by = found.by
         how = f"within {by.share * 100:g} % of their range" if by.share else "exactly"
-        differing = found.sorted()
+        differing = _named(found)
         if not found.compared:
             yield f"nothing to compare: {log.name} has no value that the robot's code sets here, too"
             return
@@ -68,10 +73,25 @@ class LogReport:
             yield f"no difference: {counted(found.compared, 'value')} that {log.name} has, too, {how} the same"
             return
         (path, time), *others = differing
-        here, there = (_short((runs.values_at(time, number) or {}).get(path)) for number in (None, branch))
+        there, here = _shown(*((runs.values_at(time, number) or {}).get(path) for number in (branch, None)))
         yield f"differs first at {clock(time)}, in {name_of(path)}: {there} in {log.name}, {here} here"
         if others:
-            yield "then in " + _listed([f"{name_of(path)} ({clock(time)})" for path, time in others])
+            yield f"then in {self._listed(map(_with_time, others))}"
+        for moment in enabled_moments(log.histories["network"])[1:]:
+            yield from self._after(moment + log.offset, time, branch)
+
+    def _after(self, enabled: float, first: float, branch: int) -> Iterator[str]:
+        """Say what differs from a later enabling on, of what was equal before it."""
+        before = enabled - PACKET_US / 1_000_000
+        if before <= first or (found := self._collector.runs.first_difference(branch, None, before)) is None:
+            return
+        if anew := [each for each in _named(found) if each[1] > before]:
+            yield f"after it was enabled at {clock(enabled)}, in {self._listed(map(_with_time, anew))}"
+
+    def _listed(self, names: Iterable[str]) -> str:
+        names = list(names)
+        left_out = 0 if self._most is None else len(names) - self._most
+        return ", ".join(islice(names, self._most)) + (f" and {left_out} more (-v names all)" if left_out > 0 else "")
 
 
 def name_of(path: str) -> str:
@@ -79,23 +99,44 @@ def name_of(path: str) -> str:
     return path.removeprefix(f"{VALUE}/SmartDashboard/").removeprefix(f"{VALUE}/")
 
 
-def _devices(paths: Iterable[str]) -> list[str]:
-    """Return the devices of some sensors, in their order."""
-    found: dict[str, None] = {}
-    for path in paths:
-        if (camera := camera_of(path.removeprefix(VALUE))) is not None:
-            found[camera] = None
-            continue
-        segments = parse_path(path)
-        found[str(segments[1]) if segments[0] == "CAN" else format_path(segments[:-1] or segments)] = None
-    return list(found)
+def _with_time(difference: tuple[str, float]) -> str:
+    path, time = difference
+    return f"{name_of(path)} ({clock(time)})"
 
 
-def _listed(names: list[str]) -> str:
-    more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
-    return ", ".join(islice(names, _MOST_NAMED)) + more
+def _named(found: FirstDifference) -> list[tuple[str, float]]:
+    """Return the values that differ, the earliest first; one for each device of `hal_data` at a moment."""
+    one_each: dict[object, tuple[str, float]] = {}
+    for path, time in found.sorted():
+        one_each.setdefault((path if path.startswith(VALUE) else _device(path), time), (path, time))
+    return list(one_each.values())
 
 
-def _short(value: object) -> str:
-    text = f"{value:.6g}" if isinstance(value, float) else str(value)
-    return text if len(text) <= 40 else f"{text[:37]}..."
+def _devices_by_source(sensors: dict[str, list[str]]) -> dict[str, list[str]]:
+    """Return the devices of sensors in their order; among those that nothing moves, none of which something moves."""
+    found = {
+        kind: list(dict.fromkeys(paths if kind == "replay" else map(_device, paths))) for kind, paths in sensors.items()
+    }
+    moved = {*found["log"], *found["physics"]}
+    return found | {"nothing": [name for name in found["nothing"] if name not in moved]}
+
+
+def _device(path: str) -> str:
+    if (camera := camera_of(path.removeprefix(VALUE))) is not None:
+        return camera
+    segments = parse_path(path)
+    return str(segments[1]) if segments[0] == "CAN" else format_path(segments[:-1] or segments)
+
+
+def _shown(one: Any, other: Any) -> tuple[str, str]:
+    """Return two values as texts; of long ones, the place where they differ."""
+    texts = [f"{value:.6g}" if isinstance(value, float) else str(value) for value in (one, other)]
+    equal = takewhile(lambda letters: letters[0] == letters[1], zip(*texts, strict=False))
+    same = sum(1 for _ in equal)
+    skipped = max(same - _LONGEST // 2, 0) if max(map(len, texts)) > _LONGEST else 0
+    first, second = (
+        ("..." if skipped else "")
+        + (text[skipped:] if len(text) - skipped <= _LONGEST else f"{text[skipped : skipped + _LONGEST - 3]}...")
+        for text in texts
+    )
+    return first, second

@@ -82,7 +82,8 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
             closing.enter_context(watching(simulation, front_end.saved))
         if page is not None:
             page.follow(simulation, front_end if kind.shows_network else None)
-        report = LogReport(simulation, log.run) if log is not None and not kind.shows_network else None
+        reported = None if log is None or kind.shows_network else log.run
+        report = None if reported is None else LogReport(simulation, reported, request.verbose)
         try:
             code = front_end.run(simulation)
         except KeyboardInterrupt:  # in the terminal: another way to close a window

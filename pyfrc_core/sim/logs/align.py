@@ -21,9 +21,7 @@ def moment_of(network: ValueHistory, align: Align) -> float | None:
     """
     if align == "start":
         return 0.0
-    times, values = network.changes(MODE)
-    modes = [(time, value) for time, value in zip(times, values, strict=True) if value is not MISSING]
-    enabled = [(time, value) for time, value in modes if not str(value).startswith("disabled")]
+    enabled = [(time, mode) for time, mode in _modes(network) if not mode.startswith("disabled")]
     if align == "match":
         found = [time for (time, mode), (_, after) in pairwise(enabled) if mode == "autonomous" and after == "teleop"]
         if found:
@@ -31,7 +29,22 @@ def moment_of(network: ValueHistory, align: Align) -> float | None:
     return enabled[0][0] if enabled else None
 
 
+def enabled_moments(network: ValueHistory) -> list[float]:
+    """Return the moments at which a robot that was disabled is enabled, in the run's seconds."""
+    modes = [(0.0, "disabled"), *_modes(network)]
+    return [
+        time
+        for (_, before), (time, mode) in pairwise(modes)
+        if before.startswith("disabled") and not mode.startswith("disabled")
+    ]
+
+
 def offset_of(network: ValueHistory, beside: ValueHistory, align: Align) -> float | None:
     """Return what is added to the times of one run to show it beside another; None if one of them lacks the moment."""
     own, other = moment_of(network, align), moment_of(beside, align)
     return None if own is None or other is None else round(other - own, 6)
+
+
+def _modes(network: ValueHistory) -> list[tuple[float, str]]:
+    times, values = network.changes(MODE)
+    return [(time, str(value)) for time, value in zip(times, values, strict=True) if value is not MISSING]

@@ -41,6 +41,7 @@ class SimRequest:
     :param speed: robot seconds per second; None: real time, or as fast as possible when unattended
     :param nt_port: None: the usual port, or none when unattended; 0: none
     :param quiet: print only the robot's output and what is wrong
+    :param verbose: name all that differs from a log
     :param share: what clients on the network may do; None: they are not served. Those who may drive get NetworkTables
     :param port: where to serve a page; None: at any free port
     :param allow_host: where else browsers find a page, through a forwarded port
@@ -66,6 +67,7 @@ class SimRequest:
     nt_port: int | None = None
     extensions: tuple[str, ...] = ()
     quiet: bool = False
+    verbose: bool = False
     share: Literal["view", "drive"] | None = None
     port: int | None = None
     allow_host: tuple[str, ...] = ()

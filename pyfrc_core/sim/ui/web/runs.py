@@ -224,10 +224,11 @@ class Runs:
                 found[path] = curve | {"t": [time + offset for time in curve["t"]]} if offset else curve
         return found
 
-    def first_difference(self, number: int, paths: Iterable[str] | None) -> FirstDifference | None:
+    def first_difference(self, number: int, paths: Iterable[str] | None, after: float = 0.0) -> FirstDifference | None:
         """Return where a branch and the present run first differ; None if there is no such branch that is compared.
 
         :param paths: the values to compare; None: all
+        :param after: look only from then on, in seconds of robot time
         """
         with self._lock:
             branch = self._branch(number)
@@ -235,7 +236,8 @@ class Runs:
                 return None
             end = max(history.end for history in self._histories.values())
             compared: list[tuple[ValueHistory, ValueHistory, str]] = []
-            found = FirstDifference(branch.begin, min(end, branch.end) + _ROUNDING, branch.compared, branch.offset)
+            begin, end = max(branch.begin, after), min(end, branch.end) + _ROUNDING
+            found = FirstDifference(begin, end, branch.compared, branch.offset)
             for stream, history in self._histories.items():
                 former = branch.histories[stream]
                 known = self._known(history, former, branch.compared) if paths is None else paths
