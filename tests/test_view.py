@@ -223,6 +223,18 @@ def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:
         assert wrong == []
 
 
+def test_the_page_names_the_command_that_has_ended(tmp_path: Path, browser: Browser) -> None:
+    require("the page of pyfrc view in a browser", missing_browser())
+    with served_source(source_of(tmp_path)) as server:
+        page = browser.new_page()
+        page.set_default_timeout(PATIENCE * 1000)
+        page.goto(server.address)
+        page.locator(".recorded code", has_text="match.wpilog").wait_for()
+        server.front_end.close()
+        page.get_by_text("pyfrc view has ended. This is its last state. Start pyfrc view again").wait_for()
+        page.close()
+
+
 def test_curves_of_another_log_are_kept_for_it_and_not_shown(tmp_path: Path, browser: Browser) -> None:
     require("the page of pyfrc view in a browser", missing_browser())
     first, second = a_match(), practice()

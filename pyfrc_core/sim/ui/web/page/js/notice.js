@@ -3,9 +3,10 @@ import { model } from "#js/model.js";
 import { Icon, Live, html } from "#js/view.js";
 
 const LOST = {
-  lost: "The connection to pyfrc sim was lost, reconnecting… The page shows the last state.",
-  refused: "This address is not valid any more. Open the one that pyfrc sim prints.",
-  closed: "The simulation was closed. This is its last state. Start pyfrc sim again, and open the address that it prints.",
+  lost: (command) => `The connection to ${command} was lost, reconnecting… The page shows the last state.`,
+  refused: (command) => `This address is not valid any more. Open the one that ${command} prints.`,
+  closed: (command) =>
+    `${command === "pyfrc sim" ? "The simulation was closed" : `${command} has ended`}. This is its last state. Start ${command} again, and open the address that it prints.`,
 };
 
 export class Notice extends Live {
@@ -13,7 +14,8 @@ export class Notice extends Live {
   seen = "";
 
   render() {
-    const lost = LOST[model.connection];
+    const command = model.hello?.source?.kind === "simulation" ? "pyfrc sim" : "pyfrc view";
+    const lost = LOST[model.connection]?.(command);
     if (model.status.note !== this.note) {
       this.note = model.status.note;
       this.seen = "";
