@@ -74,6 +74,9 @@ class MyRobot(wpilib.TimedRobot):
         self.elevator.stop()
         self.arm.stop()
 
+    def disabledPeriodic(self) -> None:
+        """Called every 20 ms while the robot is disabled."""
+
     def go_to(self, place: tuple[float, float]) -> None:
         """Set the goals of both mechanisms."""
         height, angle = place

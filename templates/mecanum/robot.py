@@ -120,3 +120,6 @@ class MyRobot(wpilib.TimedRobot):
     def disabledInit(self) -> None:
         """Called once when the robot is disabled: stop, so that nothing moves suddenly later."""
         self.drive.stopMotor()
+
+    def disabledPeriodic(self) -> None:
+        """Called every 20 ms while the robot is disabled."""

@@ -24,3 +24,17 @@ class MyRobot(commands2.TimedCommandRobot):
         """Called once when teleop starts: cancel the autonomous command, so that the driver takes over."""
         if self.autonomous_command is not None:
             self.autonomous_command.cancel()
+
+    # The scheduler does what is to be done every 20 ms, in commands and in `periodic` of the subsystems.
+
+    def robot_periodic(self) -> None:
+        """Called every 20 ms in every mode."""
+
+    def autonomous_periodic(self) -> None:
+        """Called every 20 ms in autonomous."""
+
+    def teleop_periodic(self) -> None:
+        """Called every 20 ms in teleop."""
+
+    def disabled_periodic(self) -> None:
+        """Called every 20 ms while the robot is disabled."""

@@ -36,3 +36,6 @@ class MyRobot(magicbot.MagicRobot):
         self.drivetrain.go(-self.gamepad.get_left_y(), -self.gamepad.get_right_x())
         if self.gamepad.get_a_button():
             self.shooter_control.fire()
+
+    def disabled_periodic(self) -> None:
+        """Called every 20 ms while the robot is disabled."""

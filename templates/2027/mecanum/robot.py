@@ -128,3 +128,6 @@ class MyRobot(wpilib.TimedRobot):
     def disabled_init(self) -> None:
         """Called once when the robot is disabled: stop, so that nothing moves suddenly later."""
         self.drive.stop_motor()
+
+    def disabled_periodic(self) -> None:
+        """Called every 20 ms while the robot is disabled."""

@@ -33,3 +33,9 @@ class MyRobot(wpilib.TimedRobot):
     def disabled_init(self) -> None:
         """Called once when the robot is disabled: stop, so that nothing moves suddenly later."""
         self.drive.stop_motor()
+
+    def disabled_periodic(self) -> None:
+        """Called every 20 ms while the robot is disabled."""
+
+    def robot_periodic(self) -> None:
+        """Called every 20 ms in every mode, after the others."""
