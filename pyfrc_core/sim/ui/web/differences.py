@@ -25,8 +25,9 @@ from .plots import picked, resolve, same
 
 #: The most paths that are named.
 _MOST_NAMED = 20
-#: Times that are equal but for rounding, and numbers that are equal in any case.
-_ROUNDING, _SMALLEST = 1e-6, 1e-9
+#: Times that are equal but for rounding. Numbers that differ by less than this share of the largest one, or of 1, are
+#: equal where there is noise: a robot that stands turns by 1e-7 rad, in which there is no range to compare with.
+_ROUNDING, _SMALLEST = 1e-6, 1e-6
 #: Values that both runs have from outside, and those that robot code does not set.
 _GIVEN = re.compile(
     rf"joysticks\[\d\]\.(axes|buttons|povs)|control\.|event\.|alliance_station|time\."
