@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -34,6 +35,7 @@ ROBOT = """
             self.volts.set([self.turns / 4, 12.0])
             self.pose.set(Pose2d(self.turns / 50, 2.0, Rotation2d(0.5)))
 """
+TEMPLATES = Path(__file__).parents[1] / "templates"
 #: What WPILib 2027 publishes: when the process was started.
 PROGRAM_START = "nt:/Robot/ProgramStartTime"
 SIM = ("sim", "--ui", "none", "--mode", "teleop", "--seconds", "1", "--wpilog")
@@ -148,3 +150,19 @@ def test_a_log_that_is_written_anew_does_not_change_what_others_have_opened(make
     with (project.path / "a.wpilog").open("rb") as opened:
         logged(project, "a.wpilog")
         assert opened.read() == before
+
+
+@pytest.mark.slow
+@pytest.mark.season_2026
+@pytest.mark.parametrize("template", ["command", "elevator-arm", "magic", "mecanum", "swerve", "tank", "timed"])
+def test_an_unchanged_template_does_what_its_log_has(template: str, make_project: MakeProject) -> None:
+    project = make_project({})
+    project.copy(TEMPLATES / template)
+    drive = '{"format": "pyfrc-input 1", "end": 4.0}\n{"t": 0.5, "set": {"mode": "autonomous"}}\n'
+    drive += '{"t": 2.0, "set": {"mode": "teleop", "joysticks[0].axes[1]": -0.6, "joysticks[0].buttons[1]": true}}\n'
+    (project.path / "drive.jsonl").write_text(drive, encoding="utf-8")
+    result = project.run("sim", "--ui", "none", "--script", "drive.jsonl", "--wpilog", "match.wpilog")
+    assert result.code == 0, result.output
+    said = project.run("sim", "--ui", "none", "--log", "match.wpilog").stdout
+    assert "no difference: " in said
+    assert "exactly the same" in said
