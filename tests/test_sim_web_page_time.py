@@ -344,9 +344,9 @@ def test_the_page_says_that_the_simulation_was_closed(browser, make_project) -> 
     with served(make_project(ROBOT), speed=1, paused=False) as server, page_of(browser, server) as person:
         server.front_end.close()
         person.page.get_by_text("The simulation was closed. This is its last state.").wait_for()
-        person.page.locator(".live-now", has_text="No connection").wait_for()
+        person.page.locator(".live-now", has_text="Ended").wait_for()
         assert person.button("Enable").is_disabled()
-        person.state("Teleoperated disabled")
+        person.state("Ended")
         person.wrong.clear()  # the browser's own words about the lost connection
 
 

@@ -172,7 +172,9 @@ class Headless(FrontEnd):
             what = (
                 "by its script" if simulation.options.script is not None else "disabled, until a dashboard enables it"
             )
-        until = "until you press Ctrl-C" if end is None else f"for {end:g} s of robot time; Ctrl-C ends it earlier"
+        until = "until you press Ctrl-C"
+        if end is not None:
+            until = f"for {round(end, 2):g} s of robot time; Ctrl-C ends it earlier"
         self._say(f"running {simulation.project.main_file.name} {what}, {until}\n")
 
     def saved(self, files: list[str]) -> None:

@@ -29,8 +29,8 @@ class App extends Live {
 
 const WAITING = {
   connecting: "Connecting to the simulation…",
-  lost: "There is no answer from pyfrc sim. Trying again…",
-  refused: "This address is not valid any more. Open the one that pyfrc sim prints.",
+  lost: "There is no answer from pyfrc. Trying again…",
+  refused: "This address is not valid any more. Open the one that pyfrc prints.",
   closed: "The simulation was closed.",
   unreadable: "This file is not complete, or this browser is too old to read it. A browser of 2023 or later is needed.",
 };
