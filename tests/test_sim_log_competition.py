@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
+import random
 import re
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from conftest import MakeProject, RobotProject
@@ -48,11 +51,36 @@ CHANGES = {
 }
 
 
-def drive(made: RobotProject, name: str, *options: str) -> None:
+def drive(made: RobotProject, name: str, *options: str, script: str = DRIVE) -> None:
     made.copy(ROBOTS / name)
-    (made.path / "drive.jsonl").write_text(DRIVE, encoding="utf-8")
+    (made.path / "drive.jsonl").write_text(script, encoding="utf-8")
     result = made.run(*SIM, "--script", "drive.jsonl", *options)
     assert result.code == 0, result.output
+
+
+def whole_match() -> str:
+    """Return a script of a match of 150 s, in which sticks and buttons of both controllers change all the time."""
+    chance, end = random.Random(7), 151.5
+    steps: dict[float, dict[str, Any]] = {
+        0.5: {"mode": "autonomous", "match_time": 15.0},
+        15.5: {"mode": "disabled", "match_time": 0.0},
+        16.5: {"mode": "teleop", "match_time": end - 16.5},
+        end: {"mode": "disabled", "match_time": 0.0},
+    }
+
+    def at(time: float) -> dict[str, Any]:
+        return steps.setdefault(round(min(time, end - 0.1), 2), {})
+
+    time = 17.0
+    while time < end - 0.5:
+        for pad in (0, 1):
+            axis, button = chance.choice((0, 1, 4)), chance.randint(1, 10)
+            at(time)[f"joysticks[{pad}].axes[{axis}]"] = chance.choice((0.0, 0.4, -0.4, 1.0, -1.0))
+            at(time)[f"joysticks[{pad}].buttons[{button}]"] = True
+            at(time + 0.3)[f"joysticks[{pad}].buttons[{button}]"] = False
+        time += chance.choice((0.3, 0.6, 1.0))
+    lines = ({"t": time, "set": values} for time, values in sorted(steps.items()))
+    return "\n".join(map(json.dumps, ({"format": "pyfrc-input 1", "end": end + 1}, *lines)))
 
 
 def log_of(project: RobotProject, log: str) -> str:
@@ -84,6 +112,14 @@ def test_a_changed_line_differs_where_it_acts(name: str, make_project: MakeProje
     assert "differs first at 0:0" in differing
     assert output in differing
     assert published in differing
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_unchanged_code_does_the_same_in_a_whole_match(name: str, make_project: MakeProject) -> None:
+    # The noise of SPARKs lets each run drive a little differently, and the cameras see the robot there.
+    project = make_project({})
+    drive(project, name, "--wpilog", "match.wpilog", script=whole_match())
+    assert "no difference: " in log_of(project, "match.wpilog")
 
 
 def test_a_robot_whose_devices_are_simulated_in_real_time_is_compared_by_what_it_publishes(
