@@ -109,8 +109,7 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
             if record.name == NETWORK_INPUTS:
                 written |= record.value
                 continue
-            state.values[record.name] = record.value
-            state.types[record.name] = record.type_name
+            state.take(record)
         if at_us > last_us:
             break
         if at_us > 0 and (writes := {**dict(state.changes()), **written}):  # before, no driver station is connected
@@ -217,9 +216,25 @@ class _State:
     given: Collection[str] = ()
     is_simulation: bool = False
     written_outside: Collection[str] = ()
-    values: dict[str, Any] = field(default_factory=dict)
-    types: dict[str, str] = field(default_factory=dict)
+    _sent: dict[str, Any] = field(default_factory=dict)
+    _fms: dict[str, Any] = field(default_factory=dict)
+    _hal: dict[str, Any] = field(default_factory=dict)
+    #: Values that are written to NetworkTables, by target.
+    _from_outside: dict[str, Any] = field(default_factory=dict)
     _written: dict[str, Any] = field(default_factory=dict)
+
+    def take(self, record: logs.Record) -> None:
+        """Take a value of the log."""
+        name, value = record.name, record.value
+        if name.startswith("DS:"):
+            self._sent[name.removeprefix("DS:")] = value
+        elif name.startswith(_HAL):
+            self._hal[name.removeprefix(_HAL)] = value
+        elif name.startswith(_FMS):
+            self._fms[name.removeprefix(_FMS)] = value
+        if self._is_from_outside(name):
+            target = entry_target(name.removeprefix("NT:"), _NAMED_TYPES.get(record.type_name, ""))
+            self._from_outside[target] = value
 
     def changes(self) -> Iterator[tuple[str, Any]]:
         """Return what to write: nothing but the lost connection while no driver station is attached."""
@@ -230,12 +245,12 @@ class _State:
                 yield from self._changed(target, value, initially)
             for stick in range(station.JOYSTICKS):
                 yield from self._joystick(stick)
-        for name, value in self.values.items():
-            if self._is_from_outside(name) and name not in self.written_outside:
-                target = entry_target(name.removeprefix("NT:"), _NAMED_TYPES.get(self.types[name], ""))
-                yield from self._changed(target, value, None)
+        for target, value in self._from_outside.items():
+            yield from self._changed(target, value, None)
 
     def _is_from_outside(self, name: str) -> bool:
+        if name in self.written_outside:
+            return False
         return name in self.given or (not self.is_simulation and bool(_FROM_OUTSIDE.fullmatch(name)))
 
     def _changed(self, target: str, value: object, initially: object) -> Iterator[tuple[str, Any]]:
@@ -244,21 +259,20 @@ class _State:
             yield target, value
 
     def _attached(self) -> bool:
-        if (attached := self.values.get(f"{_HAL}control.dsAttached")) is not None:
+        if (attached := self._hal.get("control.dsAttached")) is not None:
             return bool(attached)
-        return bool(self.values.get(f"{_FMS}FMSControlData", DS_ATTACHED) & DS_ATTACHED)
+        return bool(self._fms.get("FMSControlData", DS_ATTACHED) & DS_ATTACHED)
 
     def _station(self) -> Iterator[tuple[str, Any, Any]]:
         """Return targets with their values now, and at the start of a run.
 
         A log of a simulation has both: what the robot has made of a packet comes with a turn of its loop.
         """
-        fms = {name.removeprefix(_FMS): value for name, value in self.values.items() if name.startswith(_FMS)}
-        ours = {name.removeprefix(_HAL): value for name, value in self.values.items() if name.startswith(_HAL)}
+        fms, ours = self._fms, self._hal
         place = int(fms.get("StationNumber", 1)) + (0 if fms.get("IsRedAlliance", True) else 3)
         place = int(ours.get("alliance_station", place))
         yield "alliance_station", _named(_STATIONS, place), "red1"
-        yield "control.eStop", bool(self.values.get("DS:estop")), False
+        yield "control.eStop", bool(self._sent.get("estop")), False
         fms_attached = bool(ours.get("control.fmsAttached", fms.get("FMSControlData", 0) & FMS_ATTACHED))
         yield "control.fmsAttached", fms_attached, False
         name = ours.get("event.name", fms.get("EventName", station.EVENT_NAME))
@@ -270,15 +284,15 @@ class _State:
         yield "event.game_specific_message", _as_sent(message), ""
         if (left := ours.get(REMAINING)) is not None:
             yield REMAINING, left, 0.0
-        yield OPMODE, self.values.get(f"{_HAL}control.opmode", ""), ""  # of the mode that follows
+        yield OPMODE, ours.get("control.opmode", ""), ""  # of the mode that follows
         yield MODE, self._mode(), "disabled"
 
     def _mode(self) -> str:
-        enabled, autonomous, test = (self.values.get(f"DS:{name}") for name in ("enabled", "autonomous", "test"))
+        enabled, autonomous, test = (self._sent.get(name) for name in ("enabled", "autonomous", "test"))
         return mode_name(enabled, selected(autonomous, test))
 
     def _joystick(self, stick: int) -> Iterator[tuple[str, Any]]:
-        controls = {sort: self.values.get(f"DS:joystick{stick}/{sort}") for sort in _CONTROLS}
+        controls = {sort: self._sent.get(f"joystick{stick}/{sort}") for sort in _CONTROLS}
         if all(values is None for values in controls.values()):
             return
         is_plugged = any(controls.values())
