@@ -156,10 +156,13 @@ def test_what_differs_is_named_anew_after_each_enabling_and_shortly(make_project
     assert "after it was enabled at 0:04.00, in Elevator/setpoint (0:05.00), pwm[1].value (0:05.00)\n" in said
     of_encoder = [line for line in said.splitlines() if "DutyCycleEncoder[5]" in line]
     assert [line.partition(",")[0] for line in of_encoder] == ["sensors from the log"]
+    assert " only: " not in said
     change(project, "robot.py", '"before"', '"after"')
+    change(project, "robot.py", '"Elevator/setpoint"', '"Elevator/goal"')
     said = log_of(project, "match.wpilog")
     assert re.search(r"in name \d+: \.\.\..{,20} before in match.wpilog, \.\.\..{,20} after here", said)
-    assert "and 5 more (-v names all)" in said
+    assert "and 4 more (-v names all)" in said
+    assert "in match.wpilog only: Elevator/setpoint\nhere only: Elevator/goal\n" in said
     assert "name 11 (" in project.run("-v", *SIM, "--log", "match.wpilog").stdout
 
 

@@ -57,6 +57,7 @@ class LogReport:
         if branch is None or found is None:
             return
         yield from self._differences(found, branch.number)
+        yield from self._in_one_only(found.end, branch.number)
         for kind, names in _devices_by_source(runs.sensors(branch.number)).items():
             if names:
                 yield f"{_SOURCES[kind]}: {self._listed(names)}"
@@ -87,6 +88,17 @@ class LogReport:
             return
         if anew := [each for each in _named(found) if each[1] > before]:
             yield f"after it was enabled at {clock(enabled)}, in {self._listed(map(_with_time, anew))}"
+
+    def _in_one_only(self, end: float, branch: int) -> Iterator[str]:
+        """Say what only one of the two publishes: a renamed value, or a log of another robot."""
+        from .ui.web.differences import is_published
+
+        here, there = (set(self._collector.runs.values_at(end, number) or ()) for number in (None, branch))
+        if not any(map(is_published, there)):  # a trace has nothing of NetworkTables
+            return
+        for where, paths in ((f"in {self._log.name} only", there - here), ("here only", here - there)):
+            if names := sorted(map(name_of, filter(is_published, paths))):
+                yield f"{where}: {self._listed(names)}"
 
     def _listed(self, names: Iterable[str]) -> str:
         names = list(names)

@@ -33,9 +33,13 @@ _GIVEN = re.compile(
     rf"joysticks\[\d\]\.(axes|buttons|povs)|control\.|event\.|alliance_station|time\."
     rf"|{VALUE}/(FMSInfo|DS|DriverStation)/|{VALUE}/Robot/ProgramStartTime"
     rf"|{VALUE}/.*( \(physics\)/|/VisionSystemSim-|/Ids$)"  # the simulated field, and the numbers of commands
+    rf"|{VALUE}/.*/state_descriptions$"  # docstrings, which magicbot publishes
     rf"|{VALUE}{kit_names.NOT_COMPUTED}"
     rf"|{re.escape(TYPE)}|{re.escape(MODE)}|{re.escape(POSE)}"
 )
+
+#: Entries that logs add to what the robot publishes, and those that describe a table or a value.
+_OF_LOGS = re.compile(rf"{VALUE}/(console$|messages$|systemTime$|pose/|(.*/)?\.[^/]+)")
 
 #: A value from a moment on.
 Held = tuple[float, Any]
@@ -140,6 +144,11 @@ class _Close:
         if isinstance(one, tuple) and isinstance(other, tuple):
             return len(one) == len(other) and all(map(self, one, other))
         return isinstance(one, str) != isinstance(other, str)  # data logs have lists as texts
+
+
+def is_published(path: str) -> bool:
+    """Return whether a path is of a value in NetworkTables that robot code sets, and none that describes others."""
+    return path.startswith(VALUE) and not _OF_LOGS.match(path) and not _is_from_outside(path)
 
 
 def _is_from_outside(path: str) -> bool:
