@@ -204,6 +204,30 @@ def test_marks_and_moments_are_found_on_the_timeline(person: Seen) -> None:
     page.get_by_text("Saved kept/drive.jsonl").wait_for(state="detached")
 
 
+def test_after_a_click_on_the_timeline_arrows_look_around_until_escape(person: Seen) -> None:
+    page = person.page
+    drive(person)
+    timeline = page.get_by_role("slider", name="Timeline")
+    timeline.click(position={"x": 20, "y": 14})
+    page.locator(".timebar.past").wait_for()
+    moment = float(timeline.get_attribute("aria-valuenow"))
+    page.keyboard.press("ArrowRight")
+    page.locator(f".timeline[aria-valuenow='{moment + 0.02:.2f}']").wait_for()
+    page.keyboard.press("PageUp")
+    page.locator(f".timeline[aria-valuenow='{min(moment + 1.02, person.simulation.status.length):.2f}']").wait_for()
+    page.keyboard.press("Escape")
+    page.locator(".timebar.past").wait_for(state="detached")
+    page.keyboard.press("ArrowLeft")
+    drawn = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+    page.evaluate(drawn)
+    assert page.locator(".timebar.past").count() == 0
+    # The emergency stop is the space bar, also there.
+    timeline.click(position={"x": 20, "y": 14})
+    page.keyboard.press(" ")
+    page.locator(".timebar.past").wait_for(state="detached")
+    person.state("Emergency stopped")
+
+
 @pytest.mark.slow
 def test_every_value_can_be_searched_and_plotted_by_keys_alone(person: Seen) -> None:
     page = person.page

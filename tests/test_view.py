@@ -223,6 +223,47 @@ def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:
         assert wrong == []
 
 
+def test_arrow_keys_go_on_from_where_a_person_has_clicked(tmp_path: Path, browser: Browser) -> None:
+    require("the page of pyfrc view in a browser", missing_browser())
+    with served_source(source_of(tmp_path)) as server:
+        page = browser.new_page(viewport={"width": 1180, "height": 820})
+        page.set_default_timeout(PATIENCE * 1000)
+        page.goto(server.address)
+        timeline = page.get_by_role("slider", name="Timeline")
+
+        def moment() -> float:
+            return float(timeline.get_attribute("aria-valuenow") or 0)
+
+        def goes(key: str, by: float) -> None:
+            expected = f"{moment() + by:.2f}"
+            page.keyboard.press(key)
+            page.locator(f".timeline[aria-valuenow='{expected}']").wait_for()
+
+        page.locator(".recorded code", has_text="match.wpilog").wait_for()
+        box = timeline.bounding_box()
+        assert box is not None
+        page.mouse.click(box["x"] + box["width"] * 0.3, box["y"] + 14)
+        page.locator(".timeline:not([aria-valuetext^=live])").wait_for()
+        goes("ArrowRight", 0.02)
+        goes("PageUp", 1)
+        goes("ArrowLeft", -0.02)
+        # The field, a button and an empty place take no keys away; a box for text does.
+        page.get_by_label("Look at the packet before").click()
+        goes("PageDown", -1)
+        page.get_by_role("button", name="Add value").first.click()
+        page.keyboard.type("speed")
+        before = moment()
+        page.keyboard.press("ArrowLeft")
+        page.keyboard.press("Enter")
+        plot = page.locator(".u-over").first
+        plot.wait_for()
+        assert moment() == before
+        plot.click(position={"x": 100, "y": 20})
+        page.wait_for_function(f"() => document.querySelector('.timeline').ariaValueNow !== '{before:.2f}'")
+        goes("Shift+ArrowRight", 1)
+        page.close()
+
+
 def test_the_page_names_the_command_that_has_ended(tmp_path: Path, browser: Browser) -> None:
     require("the page of pyfrc view in a browser", missing_browser())
     with served_source(source_of(tmp_path)) as server:

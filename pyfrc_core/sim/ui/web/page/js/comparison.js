@@ -1,7 +1,7 @@
 // Where the log that drives this run differs from it, and what moves the robot's sensors: a sentence, and a list.
 import { compared } from "#js/compare.js";
 import { clock } from "#js/format.js";
-import { look } from "#js/past.js";
+import { goTo } from "#js/input/moment_keys.js";
 import { html, render } from "#js/view.js";
 
 const SOURCES = [
@@ -20,11 +20,11 @@ export function nameOf(path) {
 export function FirstDifference({ difference, found }) {
   if (difference === null && !found) return html`<button class="quiet" disabled>No difference</button>`;
   if (!found) {
-    return html`<button class="quiet" onClick=${() => look(difference)} title="The first moment at which the branch differs from this run">
+    return html`<button class="quiet" onClick=${() => goTo(difference)} title="The first moment at which the branch differs from this run">
       Differs at ${clock(difference)}</button>`;
   }
   const text = difference === null ? "No difference" : `Differs first at ${clock(difference)}, in ${nameOf(found.paths[0])}`;
-  return html`<button class="quiet first-difference" disabled=${difference === null} onClick=${() => look(difference)}
+  return html`<button class="quiet first-difference" disabled=${difference === null} onClick=${() => goTo(difference)}
       title="The first moment at which the log differs from what the code does now"><span>${text}</span></button>`;
 }
 
@@ -33,9 +33,9 @@ export function showComparison() {
   const dialog = document.createElement("dialog");
   dialog.className = "comparison";
   const { branch, found } = compared;
-  const goTo = (t) => () => {
+  const closeAt = (t) => () => {
     dialog.close();
-    look(t);
+    goTo(t);
   };
   render(
     html`<form method="dialog">
@@ -43,7 +43,7 @@ export function showComparison() {
       ${found.others.length === 0 && html`<p>No value differs.</p>`}
       ${found.others.length > 0 && html`<table><thead><tr><th>Differs first at</th><th>Value</th></tr></thead>
         <tbody>${found.others.map(([path, t]) => html`<tr key=${path}>
-          <td><button type="button" class="quiet" onClick=${goTo(t)}>${clock(t)}</button></td><td>${nameOf(path)}</td></tr>`)}</tbody></table>`}
+          <td><button type="button" class="quiet" onClick=${closeAt(t)}>${clock(t)}</button></td><td>${nameOf(path)}</td></tr>`)}</tbody></table>`}
       <table><thead><tr><th>Sensors</th><th>Value</th></tr></thead>
         <tbody>${SOURCES.flatMap(([source, text]) => found.sensors[source].map((path) => html`<tr key=${path}><td>${text}</td><td>${path}</td></tr>`))}</tbody></table>
       <div class="dialog-buttons"><button class="primary" value="ok">Close</button></div>

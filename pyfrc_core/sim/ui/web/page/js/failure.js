@@ -1,8 +1,9 @@
 // Why the robot program has ended: the user's own line first, and the ways to go on.
 import { command } from "#js/connection.js";
 import { clock } from "#js/format.js";
+import { goTo } from "#js/input/moment_keys.js";
 import { model } from "#js/model.js";
-import { live, look } from "#js/past.js";
+import { live } from "#js/past.js";
 import { SourceLink } from "#js/source.js";
 import { Icon, Live, html } from "#js/view.js";
 
@@ -27,9 +28,9 @@ export class FailureBar extends Live {
             ${watch && " Save the corrected file, and the simulation goes on."}</span>
         </div>
         <div class="failure-actions">
-          ${model.isOver && failure.t > 0 && html`<button onClick=${() => look(failure.t - BACK)}>2 s before</button>`}
+          ${model.isOver && failure.t > 0 && html`<button onClick=${() => goTo(failure.t - BACK)}>2 s before</button>`}
           ${goesBack && model.isDriven && html`<button class="primary" onClick=${() => goBack(failure.t)} disabled=${!model.mayDrive}>Go back 2 s and drive on</button>`}
-          ${failure.t > 0 && html`<button onClick=${() => look(failure.t)}>Values of that moment</button>`}
+          ${failure.t > 0 && html`<button onClick=${() => goTo(failure.t)}>Values of that moment</button>`}
           ${!watch && model.isDriven && html`<button onClick=${reload} disabled=${!model.mayDrive} title="After you have corrected it: run it with the same inputs until this moment">Load the code again</button>`}
           ${model.isDriven && html`<button onClick=${restart} disabled=${!model.mayDrive}><${Icon} name="restart" />Restart</button>`}
         </div>

@@ -4,8 +4,9 @@ import { compared } from "#js/compare.js";
 import { Drawn } from "#js/drawn.js";
 import { clock, clockTick } from "#js/format.js";
 import { gapsOf, hatch } from "#js/gaps.js";
+import { lookByKey } from "#js/input/moment_keys.js";
 import { model } from "#js/model.js";
-import { isForgotten, length, live, look, lookBy, lookByPackets } from "#js/past.js";
+import { isForgotten, length, live, look } from "#js/past.js";
 import { watch, unwatch } from "#js/series.js";
 import { color } from "#js/settings.js";
 import { html } from "#js/view.js";
@@ -178,6 +179,7 @@ export class Timeline extends Drawn {
 
   begin = (event) => {
     if (event.button !== 0) return;
+    event.currentTarget.focus(); // the arrow keys go on from there
     event.currentTarget.setPointerCapture(event.pointerId);
     this.dragging = true;
     look(this.timeAt(event));
@@ -191,27 +193,17 @@ export class Timeline extends Drawn {
     this.setState({ hover: { t, left } });
   };
 
-  end = (event) => {
+  end = () => {
     this.dragging = false;
-    event.currentTarget.blur();
   };
 
   leave = () => this.setState({ hover: null });
 
   key = (event) => {
-    const far = event.shiftKey ? 50 : 1;
-    const acts = {
-      ArrowLeft: () => lookByPackets(-far),
-      ArrowRight: () => lookByPackets(far),
-      PageDown: () => lookBy(-1),
-      PageUp: () => lookBy(1),
-      Home: () => look(0),
-      End: live,
-      Escape: live,
-    };
-    if (!acts[event.key]) return;
-    event.preventDefault();
+    if (lookByKey(event)) return event.stopPropagation();
+    if (event.key !== "Escape") return;
     event.stopPropagation();
-    acts[event.key]();
+    event.currentTarget.blur(); // the arrow keys drive again
+    live();
   };
 }

@@ -40,6 +40,7 @@ let starts = null;
 function seen(name, fields) {
   return () => {
     live();
+    if (document.activeElement?.matches(".timeline")) /** @type {any} */ (document.activeElement).blur(); // arrows drive again
     command(name, fields);
   };
 }
@@ -121,9 +122,11 @@ function isTyping(target) {
   return target.matches?.('input:not([type="range"]):not([type="checkbox"]):not([type="radio"]), textarea, select, [contenteditable]');
 }
 
-// Whether the keyboard is on a control that Enter, the space bar or arrows work.
-function isControl(target) {
-  return target.matches?.('button, a, summary, input, [role="slider"], [role="separator"], [tabindex="0"]');
+// Whether the keyboard is on a control that a key works: of the timeline only arrows, so that the emergency stop stays.
+function isControl(target, name) {
+  if (!["return", "kp_enter", "space", "left", "right", "up", "down"].includes(name)) return false;
+  const isArrow = ["left", "right", "up", "down"].includes(name);
+  return target.matches?.(`button, a, summary, input, [role="separator"], [tabindex="0"]${isArrow ? "" : ':not([role="slider"])'}`);
 }
 
 function down(event) {
@@ -136,7 +139,7 @@ function down(event) {
     }
     return;
   }
-  if (["return", "kp_enter", "space", "left", "right", "up", "down"].includes(name) && isControl(event.target)) return;
+  if (isControl(event.target, name)) return;
   const act = ACTIONS[name];
   if (act) {
     event.preventDefault();

@@ -1,9 +1,9 @@
 // What has changed around the moment that is shown, what changes rarely first: a state, a fault, a command.
 import { ask } from "#js/connection.js";
 import { clock, valueText } from "#js/format.js";
+import { goTo } from "#js/input/moment_keys.js";
 import { model } from "#js/model.js";
 import { nameOf } from "#js/names.js";
-import { look } from "#js/past.js";
 import { addToPlot, carryPath } from "#js/plotting.js";
 import { Icon, Live, html } from "#js/view.js";
 
@@ -53,5 +53,5 @@ function Change({ path, t, before, after, count }) {
     <span class="row-label">${nameOf(path)}</span>
     <span class="faint">${valueText(before)} → ${valueText(after)}</span>
     <span class="row-tools"><button class="tool" title="Plot this value" aria-label=${`Plot ${nameOf(path)}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button></span>
-    <button class="quiet when" title="Look at the moment of this change" onClick=${() => look(t)}>${clock(t)}</button></div>`;
+    <button class="quiet when" title="Look at the moment of this change" onClick=${() => goTo(t)}>${clock(t)}</button></div>`;
 }

@@ -1,7 +1,7 @@
 // What the robot prints: by level, by time, by search.
 import { clock } from "#js/format.js";
+import { goTo } from "#js/input/moment_keys.js";
 import { model } from "#js/model.js";
-import { look } from "#js/past.js";
 import { settings } from "#js/settings.js";
 import { SourceLink } from "#js/source.js";
 import { Icon, Live, classes, createRef, html } from "#js/view.js";
@@ -63,7 +63,7 @@ export class ConsolePanel extends Live {
 
 function Line({ line }) {
   return html`<div class=${`line ${line.level}`}>
-    <button class="line-time" title="Look at this moment" onClick=${() => look(line.t)}>${clock(line.t)}</button>
+    <button class="line-time" title="Look at this moment" onClick=${() => goTo(line.t)}>${clock(line.t)}</button>
     <span class="line-text">${line.text || " "}</span>
     ${line.file && html`<${SourceLink} file=${line.file} line=${line.line} />`}
   </div>`;

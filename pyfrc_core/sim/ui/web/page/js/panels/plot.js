@@ -5,8 +5,9 @@ import { compared } from "#js/compare.js";
 import { ask } from "#js/connection.js";
 import { Computed, curveValue, isComputed, keyOf, numberIn, pathsOf, strokeOf, titleOf, unitOf } from "#js/curves.js";
 import { gapsOf, hatch } from "#js/gaps.js";
+import { goTo } from "#js/input/moment_keys.js";
 import { model } from "#js/model.js";
-import { length, look } from "#js/past.js";
+import { length } from "#js/past.js";
 import { buildChart } from "#js/plot_chart.js";
 import { aligned, csvOf, download } from "#js/plot_data.js";
 import { statistics } from "#js/plot_math.js";
@@ -266,7 +267,7 @@ export class PlotPanel extends Live {
     this.plot.over.addEventListener("wheel", this.wheel, { passive: false });
     // While a robot is driven, a slip of the hand must not lead to the past.
     const isMeant = (event) => event.detail === 1 && (event.altKey || !model.isDriven);
-    this.plot.over.addEventListener("click", (event) => isMeant(event) && look(this.plot.posToVal(event.offsetX, "x")));
+    this.plot.over.addEventListener("click", (event) => isMeant(event) && goTo(this.plot.posToVal(event.offsetX, "x")));
   }
 
   resize() {
