@@ -428,7 +428,10 @@ def test_the_page_gets_the_first_difference_and_what_moves_the_sensors(recorded:
         assert (branch["name"], branch["offset"], branch["compared"]) == ("match.wpilog", 0.0, True)
         found = page.ask(type="first_difference", branch=branch["id"], paths=None)
         assert (found["t"], found["paths"][:2]) == (2.5, ["nt:/SmartDashboard/Elevator/setpoint", "pwm[1].value"])
-        assert [path for path, _ in found["others"]] == [*found["paths"][:2], "pwm[1].raw_value"]
+        assert [path for path, *_ in found["others"]] == [*found["paths"][:2], "pwm[1].raw_value"]
+        for path, time, *texts in found["others"][1:]:
+            both = [page.ask(type="values", t=time, branch=each)["values"][path] for each in (branch["id"], None)]
+            assert texts == [f"{value:.6g}" for value in both]
         assert "encoder[0].count" in found["sensors"]["log"]
         assert found["sensors"]["physics"] == []
         # From the past on, a person drives: then physics moves the encoder again.
@@ -449,12 +452,13 @@ def test_a_person_sees_where_the_log_differs(recorded: RobotProject, browser: Br
         page.on("pageerror", lambda error: wrong.append(str(error)))
         page.set_default_timeout(PATIENCE * 1000)
         page.goto(server.address)
-        sentence = page.get_by_role("button", name="Differs first at 0:02.50, in pwm[1].value")
+        sentence = page.get_by_role("button", name="Differs first at 0:02.50, in Elevator/setpoint")
         sentence.click()
         page.locator("time.clock", has_text="0:02.50").wait_for()
         page.get_by_title("Compare with an earlier run", exact=True).click()
         page.locator(".menu-list button", has_text="What differs").click()
-        page.locator(".comparison tr", has_text="pwm[1].raw_value").wait_for()
+        row = page.locator(".comparison tr", has_text="pwm[1].value").locator("td")
+        assert row.all_inner_texts()[1:] == ["pwm[1].value", "0.278884", "0.52988"]
         page.locator(".comparison tr", has_text="From the log").get_by_text("encoder[0].count").wait_for()
         page.get_by_role("button", name="Close", exact=True).click()
         page.close()

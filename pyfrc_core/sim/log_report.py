@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import islice, takewhile
-from typing import TYPE_CHECKING, Any
+from itertools import islice
+from typing import TYPE_CHECKING
 
 from ..hal.paths import format_path, parse_path
 from ..runtime.robot_time import PACKET_US
@@ -14,7 +14,7 @@ from .engine.messages import VALUE
 from .engine.past_run import PastRun
 from .engine.source import Source
 from .logs.align import enabled_moments
-from .ui.models.wording import clock
+from .ui.models.wording import clock, differing_texts
 
 if TYPE_CHECKING:
     from .ui.web.collector import Collector
@@ -28,8 +28,6 @@ _SOURCES = {
     "nothing": "sensors that neither the log nor physics move",
     "replay": "inputs of subsystems, which only the replay of AdvantageKit or PyKit gives to the code",
 }
-#: The longest value that is shown whole, in letters.
-_LONGEST = 40
 
 
 class LogReport:
@@ -74,7 +72,7 @@ class LogReport:
             yield f"no difference: {counted(found.compared, 'value')} that {log.name} has, too, {how} the same"
             return
         (path, time), *others = differing
-        there, here = _shown(*((runs.values_at(time, number) or {}).get(path) for number in (branch, None)))
+        there, here = differing_texts(*((runs.values_at(time, number) or {}).get(path) for number in (branch, None)))
         yield f"differs first at {clock(time)}, in {name_of(path)}: {there} in {log.name}, {here} here"
         if others:
             yield f"then in {self._listed(map(_with_time, others))}"
@@ -138,17 +136,3 @@ def _device(path: str) -> str:
         return camera
     segments = parse_path(path)
     return str(segments[1]) if segments[0] == "CAN" else format_path(segments[:-1] or segments)
-
-
-def _shown(one: Any, other: Any) -> tuple[str, str]:
-    """Return two values as texts; of long ones, the place where they differ."""
-    texts = [f"{value:.6g}" if isinstance(value, float) else str(value) for value in (one, other)]
-    equal = takewhile(lambda letters: letters[0] == letters[1], zip(*texts, strict=False))
-    same = sum(1 for _ in equal)
-    skipped = max(same - _LONGEST // 2, 0) if max(map(len, texts)) > _LONGEST else 0
-    first, second = (
-        ("..." if skipped else "")
-        + (text[skipped:] if len(text) - skipped <= _LONGEST else f"{text[skipped : skipped + _LONGEST - 3]}...")
-        for text in texts
-    )
-    return first, second

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+from itertools import takewhile
+from typing import Any
 
 from ....physics.pose import Pose
 from ....processes.standstill import REPORTED_AFTER
@@ -23,6 +25,8 @@ NO_OPMODE = "No opmode"
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?", re.ASCII)
 _NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
 _MOST_QUOTED = 40
+#: The longest of two differing values that is shown whole, in letters.
+_LONGEST_DIFFERING = 40
 
 # Colours and the like, for terminals.
 _ESCAPES = re.compile(r"\x1b(\[[0-?]*[ -/]*[@-~]|[@-Z\\-_])|[\x00-\x08\x0b-\x1f\x7f]")
@@ -32,6 +36,23 @@ def clock(seconds: float) -> str:
     """Return a moment of robot time as ``1:02.34``, precise enough to show each packet."""
     minutes, hundredths = divmod(round(max(seconds, 0.0) * 100), 6000)
     return f"{minutes}:{hundredths // 100:02}.{hundredths % 100:02}"
+
+
+def differing_texts(one: Any, other: Any) -> tuple[str, str]:
+    """Return two values as texts; of long ones, the place where they differ."""
+    texts = [f"{value:.6g}" if isinstance(value, float) else str(value) for value in (one, other)]
+    if texts[0] == texts[1]:  # numbers that are close
+        texts = [str(value) for value in (one, other)]
+    equal = takewhile(lambda letters: letters[0] == letters[1], zip(*texts, strict=False))
+    same = sum(1 for _ in equal)
+    longest = _LONGEST_DIFFERING
+    skipped = max(same - longest // 2, 0) if max(map(len, texts)) > longest else 0
+    first, second = (
+        ("..." if skipped else "")
+        + (text[skipped:] if len(text) - skipped <= longest else f"{text[skipped : skipped + longest - 3]}...")
+        for text in texts
+    )
+    return first, second
 
 
 def speed_text(speed: float) -> str:

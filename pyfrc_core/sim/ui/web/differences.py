@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -21,10 +21,11 @@ from ....runtime.scripts.trace_difference import rank
 from ...engine.messages import MODE, POSE, TYPE, VALUE
 from ...engine.past_run import EXACT, Comparison
 from ...engine.value_history import MISSING, ValueHistory
+from ..models.wording import differing_texts
 from .plots import picked, resolve, same
 
-#: The most paths that are named.
-_MOST_NAMED = 20
+#: The most paths that are named; and of those that differ from a log, with when, and both values.
+_MOST_NAMED, _MOST_OTHERS = 20, 200
 #: Times that are equal but for rounding. Numbers that differ by less than this share of the largest one, or of 1, are
 #: equal where there is noise: a robot that stands turns by 1e-7 rad, in which there is no range to compare with.
 _ROUNDING, _SMALLEST = 1e-6, 1e-6
@@ -60,6 +61,8 @@ class FirstDifference:
     offset: float = 0.0
     #: The first moments of all values that differ; in former runs only of the earliest.
     found: dict[str, float] = field(default_factory=dict)
+    #: The values then: of the other run, and of this one.
+    values: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     #: How many values were compared.
     compared: int = 0
 
@@ -77,6 +80,19 @@ class FirstDifference:
         """Return all values that differ, the earliest first."""
         return sorted(self.found.items(), key=lambda each: (each[1], not each[0].startswith(VALUE), rank(each[0])))
 
+    def plain(self, clean: Callable[[str], str]) -> dict[str, Any]:
+        """Return it for a page: of a log, with all values that differ.
+
+        :param clean: changes each text
+        """
+        answer: dict[str, Any] = {"t": self.time, "paths": self.paths}
+        if self.by.is_log:
+            answer["others"] = others = []
+            for path, time in self.sorted()[:_MOST_OTHERS]:
+                both = (value if _is_number(value) else clean(str(value)) for value in self.values[path])
+                others.append((path, time, *differing_texts(*both)))
+        return answer
+
     def compare(self, one: ValueHistory, other: ValueHistory, path: str) -> None:
         """Look for a difference in this value."""
         if self.by.is_log and (path in self.by.given or _is_from_outside(path)):
@@ -86,13 +102,17 @@ class FirstDifference:
         left = list(_changes(one, path, self.begin, end))
         shifted = _changes(other, path, self.begin - self.offset, end - self.offset)
         right = [(time + self.offset, value) for time, value in shifted]
-        time = self._difference(left, right, end)
-        if time is not None and (self.by.is_log or self.time is None or time <= self.time):
+        difference = self._difference(left, right, end)
+        if difference is None:
+            return
+        time, there, here = difference
+        if self.by.is_log or self.time is None or time <= self.time:
             if not self.by.is_log and self.time is not None and time < self.time:
                 self.found.clear()  # later ones do not matter
-            self.found[path] = time
+            self.found[path], self.values[path] = time, (there, here)
 
-    def _difference(self, left: list[Held], right: list[Held], end: float) -> float | None:
+    def _difference(self, left: list[Held], right: list[Held], end: float) -> tuple[float, Any, Any] | None:
+        """Return the first moment, and the values of the other run and of this one."""
         if left == right:  # as most are
             return None
         late = self.by.late
@@ -106,13 +126,13 @@ class FirstDifference:
             here, there = _at(left, lefts, time), _at(right, rights, time)
             if here is MISSING or there is MISSING:
                 if here is not there and not self.by.is_log:
-                    return time
+                    return time, there, here
             elif not close(here, there) and not (
                 late
                 and _comes_close(here, _between(right, rights, time, late), close)
                 and _comes_close(there, _between(left, lefts, time, late), close)
             ):
-                return time
+                return time, there, here
         return None
 
     def _close(self, left: list[Held], right: list[Held]) -> _Close:

@@ -66,7 +66,9 @@ def recorded_page(source: Source, collector: Collector, title: RunTitle) -> str:
         "hello": _cleaned(_hello(source, collector, title), clean),
         **collector.runs.packed(clean),
         "branches": [
-            branch.plain() | branch.packed(clean) | {"difference": collector.runs.plain_difference(branch.number)}
+            branch.plain()
+            | branch.packed(clean)
+            | {"difference": collector.runs.plain_difference(branch.number, clean=clean)}
             for branch in branches
         ],
     }

@@ -17,8 +17,6 @@ from .plots import MOST_POINTS, picked, resolve, same, series
 
 #: About how much memory the values of all runs may take together.
 MOST_BYTES = 256 << 20
-#: The most values that are named with where they differ from a log.
-_MOST_OTHERS = 200
 #: Times that are equal but for rounding.
 _ROUNDING = 1e-6
 #: The most changes around a moment that are named.
@@ -248,15 +246,17 @@ class Runs:
                 found.compare(history, former, path)
         return found
 
-    def plain_difference(self, number: int, paths: Iterable[str] | None = None) -> dict[str, Any] | None:
-        """Return the same for a page: of a log, with all values that differ, and what moves the sensors."""
+    def plain_difference(
+        self, number: int, paths: Iterable[str] | None = None, clean: Callable[[str], str] = str
+    ) -> dict[str, Any] | None:
+        """Return the same for a page: of a log, with all values that differ, and what moves the sensors.
+
+        :param clean: changes each text
+        """
         found = self.first_difference(number, paths)
         if found is None:
             return None
-        answer: dict[str, Any] = {"t": found.time, "paths": found.paths}
-        if found.by.is_log:
-            answer |= {"others": found.sorted()[:_MOST_OTHERS], "sensors": self.sensors(number)}
-        return answer
+        return found.plain(clean) | ({"sensors": self.sensors(number)} if found.by.is_log else {})
 
     def sensors(self, number: int) -> dict[str, list[str]]:
         """Return the sensors of the present run, by where their values come from: a log that drives it, or not.

@@ -41,9 +41,9 @@ export function showComparison() {
     html`<form method="dialog">
       <h2>${branch.name} and today’s code</h2>
       ${found.others.length === 0 && html`<p>No value differs.</p>`}
-      ${found.others.length > 0 && html`<table><thead><tr><th>Differs first at</th><th>Value</th></tr></thead>
-        <tbody>${found.others.map(([path, t]) => html`<tr key=${path}>
-          <td><button type="button" class="quiet" onClick=${closeAt(t)}>${clock(t)}</button></td><td>${nameOf(path)}</td></tr>`)}</tbody></table>`}
+      ${found.others.length > 0 && html`<table><thead><tr><th>Differs first at</th><th>Value</th><th>In the log</th><th>Here</th></tr></thead>
+        <tbody>${found.others.map(([path, t, there, here]) => html`<tr key=${path}>
+          <td><button type="button" class="quiet" onClick=${closeAt(t)}>${clock(t)}</button></td><td>${nameOf(path)}</td><td>${there}</td><td>${here}</td></tr>`)}</tbody></table>`}
       <table><thead><tr><th>Sensors</th><th>Value</th></tr></thead>
         <tbody>${SOURCES.flatMap(([source, text]) => found.sensors[source].map((path) => html`<tr key=${path}><td>${text}</td><td>${path}</td></tr>`))}</tbody></table>
       <div class="dialog-buttons"><button class="primary" value="ok">Close</button></div>
