@@ -3,6 +3,8 @@
 Other processes that robot code has started may hold the pipe open after the robot's end, so end-of-file says nothing.
 This process keeps a writing end of its own, and writes a marker when it wants to know that all before it has been read.
 What libraries print about themselves is left out.
+
+A process that has a clock of its own can say when it has printed something, by a `stamp` behind it.
 """
 
 from __future__ import annotations
@@ -11,7 +13,7 @@ import os
 import re
 import threading
 from codecs import getincrementaldecoder
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 from ..compat.library_output import LibraryOutput
@@ -21,19 +23,24 @@ read = os.read
 
 _MOST_AT_ONCE = 1 << 16
 
+#: The stamps of a text: how many characters are before each, and the time that it says, in microseconds.
+Stamps = Sequence[tuple[int, int]]
+
 
 class OutputPipe:
     """Reads, in a thread of its own, what is written into `writing_end`.
 
-    :param on_text: called with what has been printed, in that thread
+    :param on_text: called with what has been printed, and with its stamps, in that thread
     """
 
-    def __init__(self, on_text: Callable[[str], object]) -> None:
+    def __init__(self, on_text: Callable[[str, Stamps], object]) -> None:
         self._on_text = on_text
         self._reading_end, self.writing_end = os.pipe()
         # Nothing that is printed holds these random bytes.
         self._name = b"\0pyfrc-" + os.urandom(16).hex().encode() + b":"
-        self._marker = re.compile(re.escape(self._name) + rb"(\d+)\0")
+        self._marker = re.compile(re.escape(self._name) + rb"(?:(?P<flush>\d+)|@(?P<time>\d+))\0")
+        #: What is printed behind a text to say when that was; formatted with the microseconds.
+        self.stamp = f"{self._name.decode()}@{{}}\0"
         self._lock = threading.Lock()
         self._markers = 0
         self._waiting: dict[int, threading.Event] = {}
@@ -71,22 +78,29 @@ class OutputPipe:
         held, output = b"", LibraryOutput()
         while data := read(self._reading_end, _MOST_AT_ONCE):
             held += data
-            while (marker := self._marker.search(held)) is not None:
-                self._pass_on(output.feed(decoder.decode(held[: marker.start()])) + output.flush())
-                held = held[marker.end() :]
-                if (number := int(marker[1])) == 0:  # that of `close`
+            text, stamps, at = "", [], 0
+            for marker in self._marker.finditer(held):
+                text += output.feed(decoder.decode(held[at : marker.start()]))
+                at = marker.end()
+                if marker["time"] is not None:
+                    stamps.append((len(text), int(marker["time"])))
+                    continue
+                self._pass_on(text + output.flush(), stamps)
+                text, stamps = "", []
+                if (number := int(marker["flush"])) == 0:  # that of `close`
                     return
                 self._waiting.pop(number).set()
             # The beginning of a marker whose rest comes with the next piece.
-            start = held.rfind(b"\0")
+            start = held.rfind(b"\0", at)
             cut = start if start >= 0 and self._may_begin_a_marker(held[start:]) else len(held)
-            self._pass_on(output.feed(decoder.decode(held[:cut])))
+            self._pass_on(text + output.feed(decoder.decode(held[at:cut])), stamps)
             held = held[cut:]
 
     def _may_begin_a_marker(self, data: bytes) -> bool:
-        return self._name.startswith(data) or (data.startswith(self._name) and data[len(self._name) :].isdigit())
+        rest = data.removeprefix(self._name)
+        return self._name.startswith(data) or (rest != data and (rest == b"@" or rest.removeprefix(b"@").isdigit()))
 
-    def _pass_on(self, text: str) -> None:
+    def _pass_on(self, text: str, stamps: Stamps) -> None:
         if text:
             with suppress(Exception):  # a pipe that is not read any more would stop the robot
-                self._on_text(text)
+                self._on_text(text, stamps)

@@ -45,6 +45,7 @@ class Hosting:
     :param fork: whether to fork robots' processes
     :param temporary: the simulation's directory, to tidy away when it has been killed itself
     :param name: by which it introduces itself: the connection of a host that was ended may be accepted late
+    :param stamp: what says when something was printed; see `OutputPipe`
     """
 
     address: Any
@@ -52,6 +53,7 @@ class Hosting:
     fork: bool
     temporary: str
     name: str = "host"
+    stamp: str = ""
 
 
 @dataclass(frozen=True)
@@ -209,5 +211,5 @@ def _run_robot(hosting: Hosting, launch: Launch, log: CrashLog) -> None:
     if connection is None:
         return
     close_in_forks(connection)
-    run_robot(pickle.loads(launch.job), connection, log)
+    run_robot(pickle.loads(launch.job), connection, log, hosting.stamp)
     end_of_output(connection)

@@ -1,5 +1,7 @@
 """What robots have printed, for several readers: each reads all of it, at its own pace.
 
+What Python code has printed comes with the robot time at which it did, so that no reader has to be quick.
+
 A robot that prints without end must not fill the memory: beyond `_MOST` characters, the oldest text is dropped.
 """
 
@@ -7,6 +9,9 @@ from __future__ import annotations
 
 import threading
 from collections import deque
+from itertools import takewhile
+
+from ...processes.output_pipe import Stamps
 
 #: How many characters are kept, and about how many of them in one piece.
 _MOST, _PIECE = 1 << 24, 1 << 16
@@ -24,10 +29,16 @@ class OutputLog:
         self._pieces: deque[str] = deque([""])
         #: The number of characters before the first piece, and at the end of the last.
         self._begin = self._end = 0
+        #: The same numbers where robot times are known, with these.
+        self._stamps: deque[tuple[int, int]] = deque()
 
-    def append(self, text: str) -> None:
+    def append(self, text: str, stamps: Stamps = ()) -> None:
         """Add a text at the end."""
         with self._lock:
+            for length, time_us in stamps:
+                if self._stamps and self._stamps[-1][1] == time_us:  # one for all that a loop prints
+                    self._stamps.pop()
+                self._stamps.append((self._end + length, time_us))
             if len(self._pieces[-1]) < _PIECE:
                 text_before = self._pieces.pop()
                 self._pieces.append(text_before + text)
@@ -36,6 +47,8 @@ class OutputLog:
             self._end += len(text)
             while self._end - self._begin > _MOST and len(self._pieces) > 1:
                 self._begin += len(self._pieces.popleft())
+            while self._stamps and self._stamps[0][0] <= self._begin:
+                self._stamps.popleft()
 
     def cursor(self, from_start: bool = True) -> OutputCursor:
         """Return a reader of its own.
@@ -44,8 +57,11 @@ class OutputLog:
         """
         return OutputCursor(self, 0 if from_start else self._end)
 
-    def read(self, at: int, most: int | None) -> tuple[int, str]:
-        """Return the text from a position, with the position where it begins: later, where text was dropped."""
+    def read(self, at: int, most: int | None) -> tuple[int, str, list[tuple[int, int]]]:
+        """Return the text from a position, with its stamps.
+
+        :returns: first, the position where it begins: later, where text was dropped
+        """
         with self._lock:
             begin, before, found = max(at, self._begin), self._begin, ""
             if begin < self._end:
@@ -54,7 +70,9 @@ class OutputLog:
                     before += len(piece)
                     if most is not None and len(found) >= most:
                         break
-            return begin, found[:most]
+            found = found[:most]
+            stamps = takewhile(lambda stamp: stamp[0] > begin, reversed(self._stamps))
+            return begin, found, [(min(end - begin, len(found)), us) for end, us in stamps][::-1]
 
 
 class OutputCursor:
@@ -68,9 +86,21 @@ class OutputCursor:
 
         :param most: return at most this many characters, and the rest with the next calls
         """
-        begin, text = self._log.read(self._at, most)
+        return "".join(text for text, _ in self.read_timed(most))
+
+    def read_timed(self, most: int | None = None) -> list[tuple[str, float | None]]:
+        """Return the same in pieces, each with the robot time of its end in seconds, if that is known."""
+        begin, text, stamps = self._log.read(self._at, most)
         dropped, self._at = begin - self._at, begin + len(text)
-        return f"[pyfrc: {dropped} characters of output were dropped here]\n{text}" if dropped else text
+        pieces: list[tuple[str, float | None]] = []
+        if dropped:
+            pieces.append((f"[pyfrc: {dropped} characters of output were dropped here]\n", None))
+        at = 0
+        for end, time_us in stamps:
+            if end > at:
+                pieces.append((text[at:end], time_us / 1_000_000))
+                at = end
+        return [*pieces, (text[at:], None)] if at < len(text) else pieces
 
     def read_last(self, most: int) -> str:
         """Return the end of what was printed since the last call, and skip the text before it.

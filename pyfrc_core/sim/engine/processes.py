@@ -21,7 +21,7 @@ from ...processes.channel import Channel, Connection, Outbox
 from ...processes.crash_report import moment_of, standstill_of
 from ...processes.fork import FORK_IS_SAFE
 from ...processes.groups import kill_group
-from ...processes.output_pipe import OutputPipe
+from ...processes.output_pipe import OutputPipe, Stamps
 from ...processes.spawn import Interpreter
 from ...processes.standstill import Standstill, loading_for
 from ...project.robot_files import RobotFiles
@@ -58,7 +58,7 @@ class RobotProcesses:
 
     :param on_message: what a robot's process says, with the number of its launch
     :param on_exit: it has ended: the launch's number, the exit code, its crash log's contents
-    :param on_output: what robots print
+    :param on_output: what robots print, stamped with robot time
     :param fork: whether to fork them; where that is not safe, each is a new interpreter, and while one runs, the next
         is started ahead: to start the robot again takes no time
     """
@@ -67,7 +67,7 @@ class RobotProcesses:
         self,
         on_message: Callable[[int, Message], object],
         on_exit: Callable[[int, int, bytes], object],
-        on_output: Callable[[str], object],
+        on_output: Callable[[str, Stamps], object],
         fork: bool | None = None,
     ) -> None:
         self._on_message, self._on_exit, self._on_output = on_message, on_exit, on_output
@@ -196,7 +196,7 @@ class RobotProcesses:
 
     def _start_host(self) -> _Spare:
         name, output = f"host {next(self._hosts)}", OutputPipe(self._on_output)
-        hosting = Hosting(self._listener.address, self._key, self._forks, self._temporary.name, name)
+        hosting = Hosting(self._listener.address, self._key, self._forks, self._temporary.name, name, output.stamp)
         return _Spare(name, host_process.start_host(hosting, output.writing_end), output)
 
     def _end_spare(self) -> None:

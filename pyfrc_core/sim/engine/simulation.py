@@ -13,6 +13,7 @@ from types import TracebackType
 from ...config.pictures import field_picture
 from ...errors import PyfrcError, UsageError
 from ...processes.crash_report import describe_exit, moment_of
+from ...processes.output_pipe import Stamps
 from ...project import Project
 from ...runtime.robot_time import PACKET_US, to_us
 from ...runtime.scripts.script import InputScript
@@ -355,8 +356,8 @@ class Simulation(Controls, SimulationSource):
             self.reports.notify_all()
         self._echo_failure(failure)
 
-    def _on_output(self, text: str) -> None:
-        self._output.append(text)
+    def _on_output(self, text: str, stamps: Stamps) -> None:
+        self._output.append(text, stamps)
         with self.reports:
             self.reports.notify_all()
         self.echo(text)

@@ -10,7 +10,7 @@ from functools import partial
 import pytest
 
 from ...compat.pytest_private import captures_output
-from ...processes.output_pipe import OutputPipe
+from ...processes.output_pipe import OutputPipe, Stamps
 
 _STANDARD = (1, 2)
 
@@ -50,7 +50,7 @@ def uncaptured_output(config: pytest.Config) -> Iterator[UncapturedOutput | None
         output.close()
 
 
-def _write(descriptor: int, text: str) -> None:
+def _write(descriptor: int, text: str, stamps: Stamps) -> None:
     data = text.encode(errors="replace")
     while data:
         data = data[os.write(descriptor, data) :]

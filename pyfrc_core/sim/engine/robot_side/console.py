@@ -1,8 +1,8 @@
-"""A copy of what robot code prints, for a data log.
+"""What robot code prints, with the robot time at which it does: for the simulation's console, and for a data log.
 
-Python's streams are copied: what C++ code prints by itself, such as WPILib's warnings about joysticks, goes to the
-terminal alone. To have that, too, standard output would have to be a file of this process, and a crash would lose its
-end.
+Only Python's streams know it: what C++ code prints by itself, such as WPILib's warnings about joysticks, is in no data
+log, and has no time of its own in the console. To have that, too, standard output would have to be a file of this
+process, and a crash would lose its end.
 """
 
 from __future__ import annotations
@@ -12,50 +12,73 @@ from collections.abc import Callable
 from typing import Any, TextIO
 
 from ....processes.lent_streams import replace_streams
+from ....runtime.clock import Clock
 
-Put = Callable[[str], object]
+#: Takes the microseconds of robot time, and a line.
+Put = Callable[[int, str], object]
 
 
 class Console:
-    """The lines that are printed in this process from now on. Those before `begin` are kept for it."""
+    """What is printed in this process from now on.
 
-    def __init__(self) -> None:
+    :param stamp: what to print behind each text that ends a line; see `OutputPipe`
+    :param keeps: whether to keep lines for `begin`
+    """
+
+    def __init__(self, clock: Clock, stamp: str, keeps: bool) -> None:
+        self._clock, self._stamp = clock, stamp
         self._process = os.getpid()
         self._before: list[str] = []
-        self._put: Put = self._before.append
-        replace_streams(lambda stream: _Copied(stream, self._add))
+        self._put: Put | None = (lambda now_us, line: self._before.append(line)) if keeps else None
+        replace_streams(lambda stream: _Stamped(stream, self))
 
     def begin(self, put: Put) -> None:
         """Pass each line to `put`."""
         for line in self._before:
-            put(line)
+            put(self._clock.now_us, line)
         self._put = put
 
     def end(self) -> None:
         """Pass on no more."""
-        self._put = lambda line: None
+        self._put = None
 
-    def _add(self, line: str) -> None:
-        if os.getpid() == self._process:  # else robot code has forked this process
-            self._put(line)
+    @property
+    def keeps(self) -> bool:
+        """Whether anyone wants the lines."""
+        return self._put is not None
+
+    def stamp_for(self, lines: str) -> str:
+        """Note whole lines, and return the stamp for them."""
+        if os.getpid() != self._process:  # robot code has forked this one: the clock stands still
+            return ""
+        now_us = self._clock.now_us
+        if (put := self._put) is not None:
+            for line in lines.split("\n"):
+                put(now_us, line)
+        return self._stamp.format(now_us)
 
 
-class _Copied:
+class _Stamped:
     """A stream in the place of another one."""
 
-    def __init__(self, stream: TextIO, put: Put) -> None:
-        self._stream, self._put, self._open = stream, put, ""
+    def __init__(self, stream: TextIO, console: Console) -> None:
+        self._stream, self._console, self._open = stream, console, ""
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
 
     def write(self, text: str) -> int:
-        """Write a text, and pass on the lines that it ends."""
-        written = self._stream.write(text)
-        *whole, self._open = (self._open + text).split("\n")
-        for line in whole:
-            self._put(line)
-        return written
+        """Write a text, with a stamp behind the lines that it ends."""
+        lines, newline, rest = text.rpartition("\n")
+        if newline:
+            # In one piece, or the end of the process might come between.
+            self._stream.write(f"{lines}\n{self._console.stamp_for(self._open + lines)}{rest}")
+            self._open = ""
+        else:
+            self._stream.write(text)
+        if self._console.keeps:
+            self._open += rest
+        return len(text)
 
     def writelines(self, texts: Any) -> None:
         """Write several texts."""

@@ -44,28 +44,29 @@ from .wpilog import WpiLog
 _INSTALLED = ("site-packages", "dist-packages")
 
 
-def run_robot(job: Job, connection: Connection, log: CrashLog) -> None:
+def run_robot(job: Job, connection: Connection, log: CrashLog, stamp: str) -> None:
     """Run a robot until the other end of `connection` is closed, or the robot fails; the failure is sent there.
 
     :param log: written to when the process ends by itself
+    :param stamp: see `Console`
     """
     for name in job.options.extensions:
         robots.load_extension(LOADABLE[name].module)
     if WINDOW not in job.options.extensions:
-        _run(job, connection, log)
+        _run(job, connection, log, stamp)
         return
-    robot = threading.Thread(target=_run, name="robot", args=(job, connection, log), daemon=True)
+    robot = threading.Thread(target=_run, name="robot", args=(job, connection, log, stamp), daemon=True)
     robot.start()
     robots.show_window()
     with suppress(OSError):
         connection.send(WindowClosed())
 
 
-def _run(job: Job, connection: Connection, log: CrashLog) -> None:
+def _run(job: Job, connection: Connection, log: CrashLog, stamp: str) -> None:
     project, files = job.project, job.project.files
     run = RobotRun(LogPlace.of_run(project.root))
     loaded = False
-    console = None if job.options.wpilog is None else Console()
+    console = Console(run.clock, stamp, keeps=job.options.wpilog is not None)
     try:
         keep_no_bytecode_of_new_code(project.root)
         patches.install(files)
@@ -83,7 +84,7 @@ def _run(job: Job, connection: Connection, log: CrashLog) -> None:
             def construct() -> None:
                 if physics is not None:
                     physics.attach(run)
-                if job.options.wpilog is not None and console is not None:
+                if job.options.wpilog is not None:
                     closing.enter_context(_logged(run, project, job.options.wpilog, console))
                 gc.freeze()  # or a collection of all modules would hold up the loop
                 run.construct(robot_class)  # not frozen: libraries such as PyKit find its objects by the collector
@@ -132,7 +133,7 @@ def _logged(run: RobotRun, project: Project, file: Path, console: Console) -> It
         log.close()
 
     before_sudden_exit["--wpilog"] = close
-    console.begin(lambda line: log.print(run.clock.now_us, line))
+    console.begin(log.print)
     changes = run.hal_data.changes()
     written: dict[str, Any] = {}
     run.when_network_written.append(written.__setitem__)

@@ -135,10 +135,10 @@ class Collector:
         # Before the changes are read, so that they are at least as new as what is shown beside them.
         snapshot, status = source.snapshot, source.status
         now = _moment_of(before)
-        if output := self._output.read():
-            for line in self.console.add(output, now):
+        for output, printed_at in self._output.read_timed():
+            for line in self.console.add(output, now if printed_at is None else printed_at):
                 if line.level in ("error", "warning"):
-                    self.marks.add(now, line.level, line.text.strip())
+                    self.marks.add(line.t, line.level, line.text.strip())
         changes = self._read_changes()
         self.state = state = self._state_of(snapshot, status)
         self._note_events(state, now)
@@ -193,7 +193,8 @@ class Collector:
 
     def _look_at_hal(self, event: RunBegan | Change) -> None:
         if isinstance(event, RunBegan):
-            self.marks.forget_after(event.time, except_own=event.new_code)
+            if event.number > 1:  # what the first one has printed may have been read before
+                self.marks.forget_after(event.time, except_own=event.new_code)
             if event.number > 1 and not event.new_code:
                 what = f"went on from {clock(event.time)}" if event.time else "restarted"
                 self.marks.add(event.time, "run", what)

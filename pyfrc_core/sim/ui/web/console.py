@@ -33,7 +33,7 @@ class ConsoleLine:
     """One line.
 
     :param n: its number; they count from 1
-    :param t: the robot time at which it was seen, in seconds
+    :param t: the robot time at which it was printed; of what C++ code prints, at which it was seen; in seconds
     :param file: the file of the project that it names, relative to its root; empty: none
     """
 
