@@ -350,8 +350,7 @@ class Simulation(Controls, SimulationSource):
             text = describe_exit(report, status, self.project.files, "while it was simulated")
             headline, _, details = text.partition("\n\n")
             moment = moment_of(report)
-            seconds = self._recording.length_us / 1_000_000 if moment is None else moment.seconds
-            failure = Failure(headline, details, seconds)
+            failure = Failure(headline, details, moment.seconds if moment else self._recording.length_us / 1_000_000)
             self._fail(failure)
             self.reports.notify_all()
         self._echo_failure(failure)
