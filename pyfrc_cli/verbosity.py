@@ -58,7 +58,5 @@ def _option(letter: str, name: str, help_text: str) -> click.Option:
     )
 
 
-VERBOSE = _option(
-    "v", "verbose", "Show the traceback of errors; with test, name each test; with sim --log, each difference."
-)
+VERBOSE = _option("v", "verbose", "Show the traceback of errors; name each test, and each difference from a log.")
 QUIET = _option("q", "quiet", "Print only results, warnings and errors.")

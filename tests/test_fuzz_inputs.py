@@ -18,7 +18,7 @@ from pyfrc_core.fuzz.inputs.network_values import NetworkRead, NetworkValues
 from pyfrc_core.fuzz.inputs.robot_constants import find_constants
 from pyfrc_core.fuzz.inputs.values import UNKNOWN, RobotConstants, can_be
 from pyfrc_core.hal import HalData
-from pyfrc_core.runtime.scripts.network_entries import entry_target, parse_entry_target
+from pyfrc_core.runtime.scripts.network_targets import entry_target, parse_entry_target
 from pyfrc_core.runtime.scripts.script import load_script
 from pyfrc_core.runtime.scripts.targets import Targets
 

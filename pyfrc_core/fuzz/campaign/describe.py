@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from ...runtime.clock import PACKET_US
 from ...runtime.scripts.joysticks import CONTROL
-from ...runtime.scripts.network_entries import NETWORK, parse_entry_target
+from ...runtime.scripts.network_targets import NETWORK, parse_entry_target
 from ...runtime.scripts.script import InputScript
 from ...runtime.scripts.targets import MATCH_TIME, MODE, PLUGGED, REMAINING, RESTART
 from ...wpi import station

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from ...runtime.clock import PACKET_US
-from ...runtime.scripts.network_entries import NETWORK, entry_target, parse_entry_target
+from ...runtime.scripts.network_targets import NETWORK, entry_target, parse_entry_target
 from ...wpi import dashboards, network
 from ...wpi import names as robot_names
 from .network_values import SEES_TARGET, NetworkRead, NetworkValues, is_setting

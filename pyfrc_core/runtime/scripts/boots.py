@@ -15,7 +15,7 @@ from itertools import starmap
 from typing import Any
 
 from ...wpi import network
-from .network_entries import NETWORK, parse_entry_target
+from .network_targets import NETWORK, parse_entry_target
 from .script import InputScript, Step
 from .targets import MATCH_TIME, RESTART
 

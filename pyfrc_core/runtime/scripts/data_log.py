@@ -27,7 +27,7 @@ from ...wpi import logs, station
 from ..robot_time import PACKET_US
 from . import kit_names
 from .modes import DS_ATTACHED, FMS_ATTACHED, mode_name, selected
-from .network_entries import NETWORK_INPUTS, data_target, entry_target, parse_entry_target
+from .network_targets import NETWORK_INPUTS, data_target, entry_target, parse_entry_target
 from .script import InputScript, ScriptError, Step
 from .sensors import HOLD, camera_of
 from .targets import MATCH_TIME, MODE, OPMODE, REMAINING, plugged

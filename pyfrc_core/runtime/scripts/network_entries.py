@@ -1,71 +1,23 @@
-"""Entries of NetworkTables as targets of input scripts.
-
-``nt:/SmartDashboard/x`` has the type of its value, and a number is a double. Where that is not so, the target names the
-type as NetworkTables does: ``nt:int:/vision/id``, ``nt:double[]:/limelight/botpose`` (also for an empty list),
-``nt:struct:Pose2d:/vision/pose``, whose value is a list of the struct's numbers (structs of doubles only). In lists of
-doubles and in structs, ``"nan"`` is not a number: JSON has no word for it. ``nt:data(struct:Pose2d):/vision/pose`` has
-the bytes of any type that consists of bytes, as hexadecimal digits.
-"""
+"""Writes entries of NetworkTables for input scripts, by their targets (`network_targets`)."""
 
 from __future__ import annotations
 
 import math
-import re
 import struct
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from ...errors import UsageError
 from ...wpi import network
-
-NETWORK = "nt:"
-#: The entry in logs of simulations with what was written from outside: texts, each with the JSON of a script's writes.
-NETWORK_INPUTS = "/network_inputs"
+from .network_targets import DATA, STRUCT, parse_entry_target
 
 #: What cameras send for a pose that they could not compute.
 NOT_A_NUMBER = "nan"
 
-_STRUCT, _DATA = "struct:", "data("
 _DOUBLES = ("float[]", "double[]")
-_TYPED = re.compile(r"((?:struct:\w+|[a-z]+)(?:\[\])?|data\([^()/]+\)):")
 
 #: Writes a value to one entry, with its time in microseconds; None: now.
 _Writer = Callable[[Any, "int | None"], None]
-
-
-def entry_target(name: str, type_name: str = "") -> str:
-    """Return the target of an entry; with the name of its type where its values do not show it."""
-    return f"{NETWORK}{type_name}:{name}" if type_name else NETWORK + name
-
-
-def data_target(name: str, type_name: str) -> str:
-    """Return the target of an entry that has bytes, by the name of its type."""
-    return entry_target(name, f"{_DATA}{type_name})")
-
-
-def struct_target(name: str, type_name: str) -> str | None:
-    """Return the target of an entry that has structs; None for other types."""
-    return entry_target(name, type_name) if type_name.startswith(_STRUCT) else None
-
-
-def numbers_of(data: bytes) -> list[float]:
-    """Return a struct's doubles, as scripts have them; empty if it has other members, or what JSON has no word for."""
-    if len(data) % 8:
-        return []
-    numbers = list(struct.unpack(f"<{len(data) // 8}d", data))
-    return numbers if all(map(math.isfinite, numbers)) else []
-
-
-def parse_entry_target(target: str) -> tuple[str, str]:
-    """Return the name of a target's entry, and the name of its type; empty where its values show it."""
-    rest = target.removeprefix(NETWORK)
-    typed = _TYPED.match(rest)  # the name of an entry may begin without a slash
-    if typed is None or not (
-        typed[1].removesuffix("[]") in network.TYPES or typed[1].startswith(_STRUCT) or typed[1].startswith(_DATA)
-    ):
-        type_name, slash, name = rest.partition("/")
-        return slash + name if slash else type_name, type_name.removesuffix(":") if slash else ""
-    return rest[typed.end() :], typed[1]
 
 
 class NetworkEntries:
@@ -102,7 +54,7 @@ def _writer(name: str, type_name: str, at_end: Callable[[Callable[[], object]], 
 
     :param at_end: is given what unpublishes it
     """
-    if type_name.startswith(_STRUCT):
+    if type_name.startswith(STRUCT):
         structs = network.DataEntry(name, type_name)
         at_end(structs.unpublish)
 
@@ -113,8 +65,8 @@ def _writer(name: str, type_name: str, at_end: Callable[[Callable[[], object]], 
                 raise UsageError(f"{name} is a struct, written as a list of its numbers, not {value!r}") from None
 
         return write_struct
-    if type_name.startswith(_DATA):
-        data = network.DataEntry(name, type_name.removeprefix(_DATA).removesuffix(")"))
+    if type_name.startswith(DATA):
+        data = network.DataEntry(name, type_name.removeprefix(DATA).removesuffix(")"))
         at_end(data.unpublish)
 
         def write_data(value: str, at_us: int | None) -> None:

@@ -10,7 +10,7 @@ from ...hal.kinds import UnknownKey
 from ...wpi import robots
 from ..clock import INPUT, MEASURED, PACKET_US, to_us
 from ..robot import RobotRun
-from .network_entries import NETWORK
+from .network_targets import NETWORK
 from .script import InputScript, ScriptError, Step
 from .sensors import HOLD
 from .targets import MATCH_TIME, Targets

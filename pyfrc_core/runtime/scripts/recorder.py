@@ -12,7 +12,7 @@ from ...compat.unrepeatable import is_real_time
 from ...hal.change_reader import MISSING, Change, same
 from ...wpi import network, station
 from ..robot import RobotRun
-from .network_entries import NETWORK, numbers_of, struct_target
+from .network_targets import NETWORK, numbers_of, struct_target
 from .script import InputScript, Step
 from .targets import MATCH_TIME, MODE, PACKET, REMAINING, Countdown, plugged
 

@@ -6,7 +6,7 @@
 - ``packet``: true: a packet is delivered at once, out of turn, as tests can have it
 - ``restart``: true: the robot program ends as without power, and starts again; more in `boots`
 - ``nt:/SmartDashboard/x``: an entry of NetworkTables; a SendableChooser's choice is its entry ``selected``;
-  more in `network_entries`
+  more in `network_targets`
 - ``hold:encoder[0].count``, ``hold:nt:/limelight/tx``: what a sensor or a camera measures, whatever physics writes;
   null ends it; more in `sensors`
 - anything else: a path in `hal_data`, such as ``joysticks[0].axes[1]`` or ``event.game_specific_message``
@@ -22,8 +22,10 @@ from ...errors import UsageError
 from ...hal import HalData, LiveDict, format_path, parse_path
 from ...wpi import station
 from ..clock import to_us
-from .network_entries import NETWORK, NetworkEntries
-from .sensors import HOLD, Held
+from .held import Held
+from .network_entries import NetworkEntries
+from .network_targets import NETWORK
+from .sensors import HOLD
 
 MODE, MATCH_TIME, PACKET, RESTART = "mode", "match_time", "packet", "restart"
 #: The path of the name of the chosen opmode.

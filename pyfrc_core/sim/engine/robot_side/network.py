@@ -12,7 +12,7 @@ import socket
 from collections.abc import Callable
 from typing import Any
 
-from ....runtime.scripts.network_entries import NETWORK
+from ....runtime.scripts.network_targets import NETWORK
 from ....wpi import dashboards, network
 from ..snapshot import Chooser
 

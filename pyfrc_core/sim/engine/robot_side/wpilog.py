@@ -15,7 +15,7 @@ from typing import Any
 
 from ....disk_space import check_disk_space
 from ....errors import UsageError
-from ....runtime.scripts.network_entries import NETWORK_INPUTS
+from ....runtime.scripts.network_targets import NETWORK_INPUTS
 from ....season import CURRENT
 from ....wpi import geometry, logs
 
