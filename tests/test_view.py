@@ -86,6 +86,21 @@ def test_a_page_has_the_other_logs_too(make_project: Any) -> None:
     assert run["branches"][0]["network"]["values"]["nt:/SmartDashboard/speed"]["v"][:2] == [0.0, 0.5]
 
 
+def test_logs_of_the_same_name_are_told_apart_by_their_directories(make_project: Any) -> None:
+    made = make_project({"a/match1/readme.txt": "", "a/match2/readme.txt": "", "b/match2/readme.txt": ""})
+    files = ["a/match1/Q12.wpilog", "a/match2/Q12.wpilog", "b/match2/Q12.wpilog", "other.wpilog"]
+    for file in files:
+        a_match().save(made.path / file)
+    assert made.run("view", *files, "--page", "all.html", "-q").code == 0
+    hello = run_in(made.path / "all.html")["hello"]
+    assert hello["source"]["title"] == "pyfrc view match1/Q12.wpilog"
+    assert [each["name"] for each in hello["branches"]] == [
+        "a/match2/Q12.wpilog",
+        "b/match2/Q12.wpilog",
+        "other.wpilog",
+    ]
+
+
 def test_what_cannot_be_shown_is_said_in_a_sentence(make_project: Any) -> None:
     made = make_project({"photo.png": "no log", "match.hoot": "CTRE"})
     a_match().save(made.path / "match.wpilog")
@@ -137,6 +152,9 @@ def test_a_log_that_is_dropped_on_the_page_becomes_a_branch(tmp_path: Path) -> N
             status, answer = send(server, name, data)
             assert (status, "branch" in answer) == (200, False)
             assert answer["text"].startswith(name)
+        send(server, "practice.wpilog", practice().data)  # of another directory, which a browser does not tell
+        page.until(lambda: len(page.parts["branches"]) == 2)
+        assert [each["name"] for each in page.parts["branches"]] == ["practice.wpilog", "practice (2).wpilog"]
 
 
 def test_what_changes_rarely_comes_first_among_the_changes_around_a_moment(tmp_path: Path) -> None:
@@ -219,6 +237,9 @@ def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:
         page.locator(".notice", has_text="practice.wpilog is shown beside this").wait_for()
         page.get_by_title("Compare with another log", exact=True).click()
         page.locator(".menu-list button", has_text="practice.wpilog").first.wait_for()
+        page.keyboard.press("Escape")
+        page.evaluate(drop, ["practice.wpilog", list(practice().data)])
+        page.locator(".notice", has_text="practice (2).wpilog is shown beside this").wait_for()
         page.close()
         assert wrong == []
 
@@ -294,8 +315,8 @@ def test_curves_of_another_log_are_kept_for_it_and_not_shown(tmp_path: Path, bro
         page.goto(opened_server.address)
         page.locator(".recorded code", has_text=name).wait_for()
         page.get_by_role("button", name="Remove nt:").first.wait_for()
-        names = page.locator("[data-panel='plot:1'] .legend .curve")
-        assert names.all_inner_texts() == expected
+        names = "[...document.querySelectorAll(`[data-panel='plot:1'] .legend .curve`)].map((each) => each.innerText)"
+        page.wait_for_function(f"() => JSON.stringify({names}) === `{json.dumps(expected, separators=(',', ':'))}`")
         return page
 
     def add(page: Any, name: str) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -76,7 +77,8 @@ def view(request: ViewRequest, say: Say) -> int:
         )
     project = project_or_none() or _no_project()
     height = field_of(project).height
-    first, *others = [_opened(file, height, request, say) for file in request.files]
+    names = _names(request.files)
+    first, *others = [_opened(*each, height, request, say) for each in zip(request.files, names, strict=True)]
     what_if = WhatIf(project, request.files[0], say)
     source = LogSource(
         project,
@@ -149,10 +151,21 @@ def _no_project() -> Project:
     return Project(root / MAIN_FILE)
 
 
-def _opened(file: Path, height: float, request: ViewRequest, say: Say) -> OpenedLog:
+def _names(files: Sequence[Path]) -> list[str]:
+    """Return the names of files; of those with the same name, with as much of the path as tells them apart."""
+    paths = [Path(os.path.abspath(file)).parts for file in files]  # noqa: PTH100 - links keep their names
+    found = []
+    for own in paths:
+        others = [each for each in paths if each != own]
+        needed = (count for count in range(1, len(own)) if all(each[-count:] != own[-count:] for each in others))
+        found.append(Path(*own[-next(needed, len(own)) :]).as_posix())
+    return found
+
+
+def _opened(file: Path, name: str, height: float, request: ViewRequest, say: Say) -> OpenedLog:
     if not request.quiet and file.is_file() and (size := file.stat().st_size) > _LARGE:
         say(f"Reading {file} ({size >> 20} MB)...\n")
-    opened = open_log(file, height)
+    opened = open_log(file, height, name)
     if opened.problem:
         say(f"{file}: {opened.problem}.\n")
     return opened

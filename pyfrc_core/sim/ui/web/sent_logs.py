@@ -6,7 +6,8 @@ import asyncio
 import tempfile
 from contextlib import suppress
 from dataclasses import replace
-from pathlib import Path
+from itertools import count
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any
 
 from starlette.requests import ClientDisconnect, Request
@@ -63,6 +64,7 @@ class SentLogs:
 
     def _open(self, file: Path, name: str) -> dict[str, Any]:
         collector = self._collector
+        name = _untaken(name, {branch.name for branch in collector.runs.branches})
         opened = open_log(file, collector.state.field.height, name)
         offset = offset_of(opened.run.histories["network"], collector.runs.network, "enabled")
         branch = collector.runs.add_branch(replace(opened.run, offset=offset or 0.0))
@@ -70,3 +72,10 @@ class SentLogs:
         problem = f" But {opened.problem}." if opened.problem else ""
         collector.announce(f"{name} is a branch, aligned {how}.")
         return {"branch": branch, "text": f"{name} is shown beside this, aligned {how}.{problem}"}
+
+
+def _untaken(name: str, taken: set[str]) -> str:
+    """Return a name, with a number if there is another log of that name: a browser does not tell the path."""
+    path = PurePath(name)
+    numbered = (f"{path.stem} ({number}){path.suffix}" for number in count(2))
+    return name if name not in taken else next(each for each in numbered if each not in taken)
