@@ -188,3 +188,47 @@ def test_the_axis_of_time_has_times(drove: Seen) -> None:
         }"""
     )
     assert set(steps) <= {0.1, 0.2, 1, 2, 5, 15, 20, 30, 60, 120, 300}
+
+
+def test_a_chart_keeps_a_height_below_many_curves_and_above_many_states(person: Seen) -> None:
+    page = person.page
+    page.set_viewport_size({"width": 1600, "height": 1000})
+    paths = [
+        "sim.pose[0]",
+        "sim.pose[1]",
+        "sim.pose[2]",
+        "pwm[0].value",
+        "sim.mode",
+        "dio[3].value",
+        "alliance_station",
+    ]
+    page.evaluate(ADD, paths)
+    for is_table in (False, True):
+        if is_table:
+            page.locator(PLOT).get_by_role("button", name="Table").click()
+            page.locator(f"{PLOT} .curve-table").wait_for()
+        drawn(person)
+        least = {".u-over": 80, ".legend": 60 if is_table else 20}
+        for part, height in least.items():
+            assert page.locator(f"{PLOT} {part}").bounding_box()["height"] >= height
+    page.locator(f"{PLOT} .plot-bands").scroll_into_view_if_needed()
+
+
+def test_what_the_robot_publishes_and_outputs_is_offered_first(person: Seen) -> None:
+    page = person.page
+    person.tab("Plot 1").click()
+    page.locator(PLOT).get_by_role("button", name="Add value").click()
+    offered = page.locator(f"{PLOT} .picker li button")
+    page.locator(f"{PLOT} .picker li button[title='nt:/SmartDashboard/kP']").wait_for()
+    assert offered.first.get_attribute("title").startswith("nt:/")
+    page.get_by_label("Search all values").fill("pwm[0]")
+    offered.filter(has_text="raw_value").wait_for()
+    titles = [each.get_attribute("title") for each in offered.all()]
+    assert (titles[0], titles[-1]) == ("pwm[0].value", "pwm[0].raw_value")
+    page.get_by_label("Search all values").fill("left motor")
+    offered.first.wait_for()
+    assert offered.first.get_attribute("title") == "pwm[0].value"
+    page.get_by_label("Search all values").fill("0")
+    page.locator(f"{PLOT} .picker li button[title='pwm[0].value']").wait_for()
+    titles = [each.get_attribute("title") for each in offered.all()]
+    assert titles.index("pwm[0].value") < titles.index("joysticks[0].axes[0]")

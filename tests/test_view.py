@@ -345,6 +345,55 @@ def test_curves_of_another_log_are_kept_for_it_and_not_shown(tmp_path: Path, bro
         page.close()
 
 
+#: The colours in the middle of each band below a plot, at a share of its width.
+BANDS = """([share, count]) => {
+  const canvas = document.querySelector("[data-panel='plot:1'] .plot-bands");
+  const [x, step] = [canvas.width * share, canvas.height / count];
+  const colorAt = (y) => canvas.getContext("2d").getImageData(x, y, 1, 1).data.join();
+  return Array.from({ length: count }, (_, n) => colorAt(step * (n + 0.3)));
+}"""
+
+
+def test_states_of_the_other_log_are_drawn_below_those_of_the_first(tmp_path: Path, browser: Browser) -> None:
+    require("the page of pyfrc view in a browser", missing_browser())
+    opened = []
+    for name, (until, state) in {"a.wpilog": (4, b"IDLE"), "b.wpilog": (6, b"AIMING")}.items():
+        log = Written()
+        log.values("NT:/on", "boolean", "?", (0, True), (until, False), (10, False))
+        log.values("NT:/state", "string", "", (0, b"START"), (2, state), (10, b"END"))
+        opened.append(open_log(log.save(tmp_path / name), HEIGHT))
+    source = LogSource(Project(tmp_path / "robot.py"), opened[0], (opened[1].run,))
+    with served_source(source) as server:
+        page = browser.new_page(viewport={"width": 1600, "height": 1000})
+        page.set_default_timeout(PATIENCE * 1000)
+        page.goto(server.address)
+        page.locator(".recorded code", has_text="a.wpilog").wait_for()
+        for name in ("nt:/on", "nt:/state"):
+            page.get_by_role("button", name="Add value").first.click()
+            page.keyboard.type(name)
+            page.keyboard.press("Enter")
+        page.locator("[data-panel='plot:1']").get_by_role("button", name="All", exact=True).click()
+        bands = page.locator("[data-panel='plot:1'] .plot-bands")
+        page.wait_for_function("() => document.querySelector(`[data-panel='plot:1'] .plot-bands`).clientHeight === 49")
+        page.get_by_title("Compare with another log", exact=True).click()
+        page.locator(".menu-list button", has_text="b.wpilog").first.click()
+        page.wait_for_function("() => document.querySelector(`[data-panel='plot:1'] .plot-bands`).clientHeight === 95")
+        on, on_there, _, _ = page.evaluate(BANDS, [0.3, 4])
+        assert on != on_there  # fainter
+        off, still_on, idle, aiming = page.evaluate(BANDS, [0.5, 4])
+        assert (off == on, still_on == on_there, idle == aiming) == (False, True, False)
+        page.locator("[data-panel='plot:1']").get_by_role("button", name="Table").click()
+        page.locator(".timeline").focus()
+        page.keyboard.press("Home")
+        for _ in range(3):
+            page.keyboard.press("PageUp")
+        rows = page.locator("[data-panel='plot:1'] .curve-table tr")
+        rows.filter(has_text="state").filter(has_text="IDLE").wait_for()
+        rows.filter(has_text="in the branch").filter(has_text="AIMING").wait_for()
+        assert bands.is_visible()
+        page.close()
+
+
 def test_the_code_of_a_project_can_be_run_with_a_log(tmp_path: Path, browser: Browser) -> None:
     require("the page of pyfrc view in a browser", missing_browser())
     log = open_log(a_match().save(tmp_path / "match.wpilog"), HEIGHT)

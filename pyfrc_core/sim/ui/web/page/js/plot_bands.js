@@ -7,13 +7,16 @@ import { strokeOf } from "#js/curves.js";
 import { color } from "#js/settings.js";
 
 const GAP = 3; // pixels between bands
+const FAINT = 0.55; // how much weaker the bands of the branch are
 
+// bands: curves with their `series`; those of the compared branch, below the run's, with its name as `other`
 export function drawBands(canvas, bands, { width, inside, band, range: [from, to], now, past }) {
   const height = bands.length * (band + GAP) + GAP;
   const context = sizeCanvas(canvas, width, height);
   const x = (t) => inside.left + ((t - from) / (to - from)) * inside.width;
   context.textBaseline = "middle";
   context.font = font(11);
+  let seen = new Map(); // value: its number; a state looks the same in both
   bands.forEach((one, index) => {
     const top = GAP + index * (band + GAP);
     context.save();
@@ -22,7 +25,8 @@ export function drawBands(canvas, bands, { width, inside, band, range: [from, to
     context.fillStyle = color("track");
     context.fill();
     context.clip();
-    drawBand(context, one, top, band, x, from, Math.min(to, now));
+    if (one.other === undefined) seen = new Map();
+    drawBand(context, one, top, band, x, [from, Math.min(to, one.series.until ?? now), inside.left + inside.width], seen);
     context.restore();
   });
   if (past !== undefined && past >= from && past <= to) {
@@ -31,28 +35,32 @@ export function drawBands(canvas, bands, { width, inside, band, range: [from, to
   }
 }
 
-function drawBand(context, { series, color: number, path }, top, height, x, from, to) {
+function drawBand(context, { series, color: number, path, kind, other }, top, height, x, [from, to, right], seen) {
   const { t, v } = series;
-  const seen = new Map();
+  const strength = other === undefined ? 1 : FAINT;
   for (let index = Math.max(indexAfter(t, from) - 1, 0); index < t.length && t[index] <= to; index++) {
     const left = Math.max(x(t[index]), x(from));
-    const right = Math.min(index + 1 < t.length ? x(t[index + 1]) : x(to), x(to));
+    const end = Math.min(index + 1 < t.length ? x(t[index + 1]) : x(to), x(to));
     const value = v[index];
     if (value === false || value === null) continue;
     if (!seen.has(value)) seen.set(value, seen.size);
-    context.globalAlpha = value === true ? 0.75 : 0.35 + 0.35 * (seen.get(value) % 2);
+    context.globalAlpha = strength * (value === true ? 0.75 : 0.35 + 0.35 * (seen.get(value) % 2));
     context.fillStyle = strokeOf({ color: number });
-    context.fillRect(left, top, Math.max(right - left - (value === true ? 0 : 1), 1), height);
+    context.fillRect(left, top, Math.max(end - left - (value === true ? 0 : 1), 1), height);
     context.globalAlpha = 1;
     const text = value === true ? "" : valueText(value);
-    if (text && context.measureText(text).width < right - left - 8) {
-      context.fillStyle = color("text");
-      context.textAlign = "left";
-      context.fillText(text, left + 5, top + height / 2);
-    }
+    if (text && context.measureText(text).width < end - left - 8) write(context, text, left + 5, top + height / 2);
   }
-  if (series.kind !== "boolean") return;
+  if (kind === "boolean") write(context, nameOf(path), x(from) + 6, top + height / 2);
+  if (other === undefined) return;
+  const width = Math.min(context.measureText(other).width, (right - x(from)) / 2);
+  context.fillStyle = color("track");
+  context.fillRect(right - width - 12, top, width + 12, height);
+  write(context, other, right - width - 6, top + height / 2, width);
+}
+
+function write(context, text, left, middle, most = undefined) {
   context.fillStyle = color("text");
   context.textAlign = "left";
-  context.fillText(nameOf(path), x(from) + 6, top + height / 2);
+  context.fillText(text, left, middle, most);
 }

@@ -7,6 +7,8 @@ import { showBeside } from "#js/popup.js";
 import { Component, Icon, createRef, html } from "#js/view.js";
 
 const MOST = 60;
+const LAST = /^nt:\/(LiveWindow|\.schema)|^event\.|\/\.\w+$|raw_value$/;
+const FROM_OUTSIDE = /^nt:\/(FMSInfo|DS|DSLog|DriverStation)\//;
 
 export class PlotPicker extends Component {
   state = { open: false, search: "" };
@@ -85,15 +87,17 @@ function searched(text) {
   return found;
 }
 
-// The paths of single values, what people plot most first.
-function* allPaths() {
-  const late = [];
-  for (const [path, value] of model.values) {
-    const isLate = path.startsWith("nt:/LiveWindow") || path.startsWith("nt:/.schema") || path.startsWith("event.") || /\/\.\w+$/.test(path);
-    for (const each of Array.isArray(value) ? elementsOf(path, value) : [path]) {
-      if (isLate) late.push(each);
-      else yield each;
-    }
-  }
-  yield* late;
+// The paths of single values, what people plot most first: what the robot publishes, what it outputs, its sensors, all else.
+function allPaths() {
+  const rows = model.panels.flatMap((panel) => panel.rows);
+  const pathsOf = (settable) => new Set(rows.filter((row) => row.settable === settable).flatMap((row) => row.paths));
+  const [outputs, sensors] = [pathsOf(false), pathsOf(true)];
+  const rank = (path) => {
+    if (LAST.test(path)) return 4;
+    if (path.startsWith("nt:")) return FROM_OUTSIDE.test(path) ? 3 : 0;
+    return outputs.has(path) || path.startsWith("sim.") ? 1 : sensors.has(path) ? 2 : 3;
+  };
+  const groups = [[], [], [], [], []];
+  for (const [path, value] of model.values) groups[rank(path)].push(...(Array.isArray(value) ? elementsOf(path, value) : [path]));
+  return groups.flat();
 }

@@ -3,19 +3,19 @@
 import { ElementSize } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
 import { ask } from "#js/connection.js";
-import { Computed, curveValue, isComputed, keyOf, numberIn, pathsOf, strokeOf, titleOf, unitOf } from "#js/curves.js";
-import { gapsOf, hatch } from "#js/gaps.js";
+import { Computed, curveValue, isComputed, keyOf, numberIn, pathsOf, titleOf, unitOf } from "#js/curves.js";
+import { gapsOf } from "#js/gaps.js";
 import { goTo } from "#js/input/moment_keys.js";
 import { model } from "#js/model.js";
 import { length } from "#js/past.js";
 import { buildChart } from "#js/plot_chart.js";
 import { aligned, csvOf, download } from "#js/plot_data.js";
 import { statistics } from "#js/plot_math.js";
+import { drawGaps, drawMoment, drawPoints } from "#js/plot_overlays.js";
 import { PlotPicker } from "#js/plot_picker.js";
 import { drawBands } from "#js/plot_bands.js";
 import { addCurve, addToPlot, carriedPath, changePlot, hasPath, plotOf } from "#js/plotting.js";
 import { unwatch, watch } from "#js/series.js";
-import { color } from "#js/settings.js";
 import { Icon, Live, classes, createRef, html } from "#js/view.js";
 import { AbsentCurves, isAbsent } from "#js/panels/absent_curves.js";
 import { PlotAxes } from "#js/panels/plot_axes.js";
@@ -257,8 +257,8 @@ export class PlotPanel extends Live {
         hooks: {
           setSelect: [(plot) => this.select(plot)],
           setCursor: [(plot) => this.hover(plot)],
-          drawAxes: [(plot) => !xCurve && this.drawGaps(plot)],
-          draw: [(plot) => (xCurve ? this.drawPoints(plot) : this.drawMoment(plot))],
+          drawAxes: [(plot) => !xCurve && drawGaps(plot, gapsOf(this.modes, length()))],
+          draw: [(plot) => (xCurve ? drawPoints(plot, this.lines, (line) => this.pointOf(line)) : drawMoment(plot))],
         },
       },
       this.columns(width),
@@ -324,37 +324,9 @@ export class PlotPanel extends Live {
     this.setState({});
   }
 
-  drawGaps(plot) {
-    const { left, top, width, height } = plot.bbox;
-    for (const gap of gapsOf(this.modes, length())) {
-      const [from, to] = gap.map((t) => Math.min(Math.max(plot.valToPos(t, "x", true), left), left + width));
-      if (to > from) hatch(plot.ctx, from, top, to - from, height, devicePixelRatio);
-    }
-  }
-
-  drawMoment(plot) {
-    if (!model.past) return;
-    const x = plot.valToPos(model.past.t, "x", true);
-    const { left, top, width, height } = plot.bbox;
-    if (x < left || x > left + width) return;
-    plot.ctx.fillStyle = color("past");
-    plot.ctx.fillRect(x - devicePixelRatio / 2, top, Math.max(devicePixelRatio, 1.5), height);
-  }
-
-  // Where the curves over another one are at the moment that is shown.
-  drawPoints(plot) {
+  pointOf(line) {
     const t = model.past?.t ?? model.t;
-    const { left, top, width, height } = plot.bbox;
-    for (const line of this.lines.filter((each) => !each.hidden)) {
-      const [x, y] = [{ ...this.xCurve, other: line.other }, line].map((curve) => numberIn(this.valueOf(curve, t)));
-      if (x === null || y === null) continue;
-      const place = [plot.valToPos(x, "x", true), plot.valToPos(y, line.axis, true)];
-      if (place[0] < left || place[0] > left + width || place[1] < top || place[1] > top + height) continue;
-      plot.ctx.fillStyle = strokeOf(line);
-      plot.ctx.beginPath();
-      plot.ctx.arc(...place, 4.5 * devicePixelRatio, 0, 2 * Math.PI);
-      plot.ctx.fill();
-    }
+    return [{ ...this.xCurve, other: line.other }, line].map((curve) => numberIn(this.valueOf(curve, t)));
   }
 
   drawBands() {
@@ -365,7 +337,8 @@ export class PlotPanel extends Live {
     if (!curves.length) return;
     const { width } = this.size;
     const inside = this.plot ? { left: this.plot.bbox.left / devicePixelRatio, width: this.plot.bbox.width / devicePixelRatio } : { left: 8, width: width - 16 };
-    const bands = curves.map((curve) => ({ ...curve, series: this.seriesOf(curve) }));
+    const withOther = (curve) => [curve, ...(compared.id === null ? [] : [{ ...curve, other: compared.branch?.name || "branch" }])];
+    const bands = curves.flatMap(withOther).map((curve) => ({ ...curve, series: this.seriesOf(curve), kind: this.watched.get(curve.path)?.kind }));
     drawBands(canvas, bands, { width, inside, band: BAND, range: this.range(), now: length(), past: model.past?.t });
   }
 

@@ -26,7 +26,7 @@ export function PlotLegend({ plot, bare, isTable, hasBranch, isNumber, shownOf, 
       </li>`)}
     </ul>`;
   }
-  const rows = curves.flatMap((curve) => (hasBranch && isNumber(curve) ? [curve, { ...curve, other: true }] : [curve]));
+  const rows = curves.flatMap((curve) => (hasBranch ? [curve, { ...curve, other: true }] : [curve]));
   return html`<div class="legend curve-table"><table aria-label="Curves">
     <thead><tr><th>Curve</th><th class="number">Value</th>${COLUMNS.map((each) => html`<th key=${each} class="number">${each}</th>`)}<th></th></tr></thead>
     <tbody>${rows.map((curve) => {
