@@ -242,19 +242,21 @@ robot = "10.12.34.77"
 subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
 subprocess.run(["ip", "address", "add", robot + "/24", "dev", "lo"], check=True)
 server = network.Server(robot, 5810)
-number = int.from_bytes(socket.inet_aton(robot), "big")
-with socket.create_server(("127.0.0.1", 1742)) as listener:
-    def serve():
-        connected = listener.accept()[0]
-        connected.sendall(json.dumps({"robotIP": number}).encode() + b"\\n")
-        connected.recv(1)
-    threading.Thread(target=serve, daemon=True).start()
-    found = LiveRobot(Project(pathlib.Path("robot.py").resolve()), addresses_for("1234", None), lambda host: None)
-    found.start()
-    with found.reports:
-        found.reports.wait_for(lambda: found.status.network_address, 60)
-    print(found.status.network_address)
-    found.close()
+said = {"robotIP": int.from_bytes(socket.inet_aton(robot), "big"), "robotIp": robot}  # until 2026, and from 2027 on
+
+def serve(listener):
+    connected = listener.accept()[0]
+    connected.sendall(json.dumps(said).encode() + b"\\n")
+    connected.recv(1)
+
+for port in (1742, 6770):
+    threading.Thread(target=serve, args=(socket.create_server(("127.0.0.1", port)),), daemon=True).start()
+found = LiveRobot(Project(pathlib.Path("robot.py").resolve()), addresses_for("1234", None), lambda host: None)
+found.start()
+with found.reports:
+    found.reports.wait_for(lambda: found.status.network_address, 60)
+print(found.status.network_address)
+found.close()
 """
 
 
