@@ -209,7 +209,7 @@ def test_after_a_click_on_the_timeline_arrows_look_around_until_escape(person: S
     drive(person)
     timeline = page.get_by_role("slider", name="Timeline")
     timeline.click(position={"x": 20, "y": 14})
-    page.locator(".timebar.past").wait_for()
+    page.locator(".timebar.past .timeline:not([aria-valuetext^=live])").wait_for()
     moment = float(timeline.get_attribute("aria-valuenow"))
     page.keyboard.press("ArrowRight")
     page.locator(f".timeline[aria-valuenow='{moment + 0.02:.2f}']").wait_for()
