@@ -378,10 +378,12 @@ def test_states_of_the_other_log_are_drawn_below_those_of_the_first(tmp_path: Pa
         page.get_by_title("Compare with another log", exact=True).click()
         page.locator(".menu-list button", has_text="b.wpilog").first.click()
         page.wait_for_function("() => document.querySelector(`[data-panel='plot:1'] .plot-bands`).clientHeight === 95")
-        on, on_there, _, _ = page.evaluate(BANDS, [0.3, 4])
-        assert on != on_there  # fainter
-        off, still_on, idle, aiming = page.evaluate(BANDS, [0.5, 4])
-        assert (off == on, still_on == on_there, idle == aiming) == (False, True, False)
+        page.wait_for_function(  # until the curves are there, and drawn; those of the branch are fainter
+            f"""() => {{
+                const [on, onThere] = ({BANDS})([0.3, 4]), [off, stillOn, idle, aiming] = ({BANDS})([0.5, 4]);
+                return on !== onThere && off !== on && stillOn === onThere && idle !== aiming;
+            }}"""
+        )
         page.locator("[data-panel='plot:1']").get_by_role("button", name="Table").click()
         page.locator(".timeline").focus()
         page.keyboard.press("Home")
