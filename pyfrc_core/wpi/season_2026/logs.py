@@ -115,7 +115,8 @@ def _records(reader: DataLogReader, beginnings: tuple[str, ...], of_data: tuple[
                 entries[start.entry] = start.name, start.type
         elif not record.isControl() and record.getEntry() in entries:
             name, type_name = entries[record.getEntry()]
-            yield Record(record.getTimestamp(), name, type_name, _READ.get(type_name, _data)(record))
+            read: Callable[[DataLogRecord], Any] = _READ.get(type_name, _data)
+            yield Record(record.getTimestamp(), name, type_name, read(record))
 
 
 #: Logs that could not be written, kept alive: WPILib aborts the process when it closes such a log.

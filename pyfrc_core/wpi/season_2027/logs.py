@@ -146,7 +146,8 @@ def _records(reader: DataLogReader, beginnings: tuple[str, ...], of_data: tuple[
                 entries[start.entry] = _AS_IN_2026.get(start.name, start.name), start.type
         elif not record.is_control() and record.get_entry() in entries:
             name, type_name = entries[record.get_entry()]
-            at_us, value = record.get_timestamp() % timing.ROUND // 1_000, _READ.get(type_name, _data)(record)
+            read: Callable[[DataLogRecord], Any] = _READ.get(type_name, _data)
+            at_us, value = record.get_timestamp() % timing.ROUND // 1_000, read(record)
             if name == "DS:controlWord":
                 yield from (Record(at_us, part, "boolean", get(value)) for part, get in _OF_CONTROL_WORD.items())
             else:
