@@ -436,7 +436,7 @@ def test_a_simulation_that_a_log_drives_is_started_and_ended(make_project: Any) 
 
 
 def test_a_log_that_is_overwritten_while_it_is_shown_stays(tmp_path: Path) -> None:
-    """Another program may write the file anew, such as a simulation, or a copy of the next match."""
+    """Another program may write the file again, such as a simulation, or a copy of the next match."""
     with served_source(source_of(tmp_path)) as server, server.page() as page:
         (tmp_path / "match.wpilog").write_bytes(b"")
         asked = {"from": 0, "to": 100, "points": 1000}

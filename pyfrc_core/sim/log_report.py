@@ -61,8 +61,7 @@ class LogReport:
                 yield f"{_SOURCES[kind]}: {self._listed(names)}"
 
     def _differences(self, found: FirstDifference, branch: int) -> Iterator[str]:
-        log, runs = self._log, self._collector.runs
-        by = found.by
+        log, by = self._log, found.by
         how = f"within {by.share * 100:g} % of their range" if by.share else "exactly"
         differing = _named(found)
         if not found.compared:
@@ -72,7 +71,7 @@ class LogReport:
             yield f"no difference: {counted(found.compared, 'value')} that {log.name} has, too, {how} the same"
             return
         (path, time), *others = differing
-        there, here = differing_texts(*((runs.values_at(time, number) or {}).get(path) for number in (branch, None)))
+        there, here = differing_texts(*found.values[path])
         yield f"differs first at {clock(time)}, in {name_of(path)}: {there} in {log.name}, {here} here"
         if others:
             yield f"then in {self._listed(map(_with_time, others))}"
@@ -84,8 +83,8 @@ class LogReport:
         before = enabled - PACKET_US / 1_000_000
         if before <= first or (found := self._collector.runs.first_difference(branch, None, before)) is None:
             return
-        if anew := [each for each in _named(found) if each[1] > before]:
-            yield f"after it was enabled at {clock(enabled)}, in {self._listed(map(_with_time, anew))}"
+        if later := [each for each in _named(found) if each[1] > before]:
+            yield f"after it was enabled at {clock(enabled)}, in {self._listed(map(_with_time, later))}"
 
     def _in_one_only(self, end: float, branch: int) -> Iterator[str]:
         """Say what only one of the two publishes: a renamed value, or a log of another robot."""
