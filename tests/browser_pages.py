@@ -226,6 +226,10 @@ class Seen:
 
         expect(box).to_have_value(text, timeout=PATIENCE * 1000)
 
+    def drawn(self) -> None:
+        """Wait until the page has drawn what was changed."""
+        self.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
     def state(self, text: str) -> None:
         """Wait until the driver station shows this."""
         self.page.locator(".state b", has_text=text).wait_for()

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from sim_robots import PATIENCE
 from web_pages import served_source
 
 from pyfrc_core.project import Project
@@ -38,6 +40,7 @@ class Elsewhere:
         self.hal, self.network, self.output = ChangeFeed(), ChangeFeed(), OutputLog()
         self.written: list[Mapping[str, object]] = []
         self.people = 0
+        self.started = threading.Event()
 
     def output_cursor(self, from_start: bool = True) -> OutputCursor:
         return self.output.cursor(from_start)
@@ -68,6 +71,7 @@ class Elsewhere:
         for feed in (self.hal, self.network):
             feed.add(RunBegan(1, 0.0, {}))
         self.come(0.0)
+        self.started.set()
 
     def close(self) -> None:
         pass
@@ -95,6 +99,7 @@ def test_a_robot_elsewhere_is_not_driven_but_its_values_can_be_set(tmp_path: Pat
     source: Source = robot
     with served_source(source) as there:
         with there.page() as page:
+            assert robot.started.wait(PATIENCE)  # a page may come before its source has started
             robot.come(1.0, kP=0.5)
             page.until(lambda: page.values.get("nt:/kP") == 0.5)
             assert page.hello["source"] == {

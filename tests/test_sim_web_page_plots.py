@@ -23,21 +23,16 @@ def drive_once(person: Seen) -> Seen:
     return person
 
 
-def drawn(person: Seen) -> None:
-    """Wait until the page has drawn what was changed."""
-    person.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
-
-
 def shown(person: Seen, key: str) -> float:
     """Return the number that the legend shows for a curve."""
-    drawn(person)
+    person.drawn()
     one = person.page.locator(f"{PLOT} .legend li").filter(has=person.page.get_by_label(f"Remove {key}", exact=True))
     return float(one.locator("b").inner_text())
 
 
 def limits(person: Seen, axis: str) -> list[float]:
     """Return what the boxes of an axis show."""
-    drawn(person)
+    person.drawn()
     person.page.locator(PLOT).get_by_role("button", name="Axes").click()
     found = [float(person.page.get_by_label(f"{axis} axis {end}").input_value()) for end in ("from", "to")]
     person.page.keyboard.press("Escape")
@@ -207,7 +202,7 @@ def test_a_chart_keeps_a_height_below_many_curves_and_above_many_states(person: 
         if is_table:
             page.locator(PLOT).get_by_role("button", name="Table").click()
             page.locator(f"{PLOT} .curve-table").wait_for()
-        drawn(person)
+        person.drawn()
         least = {".u-over": 80, ".legend": 60 if is_table else 20}
         for part, height in least.items():
             assert page.locator(f"{PLOT} {part}").bounding_box()["height"] >= height

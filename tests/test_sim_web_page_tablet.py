@@ -54,7 +54,7 @@ class Fingers:
     """Fingers on the screen, each at a place of an element, as a share of its width and height."""
 
     def __init__(self, person: Seen) -> None:
-        self._page = person.page
+        self._person = person
         self._devices = person.page.context.new_cdp_session(person.page)
         self._points: dict[int, dict[str, float]] = {}
 
@@ -67,9 +67,10 @@ class Fingers:
         self._send(kind)
 
     def lift(self) -> None:
-        """Lift all of them."""
+        """Lift all of them, and wait until what was moved is drawn where the next finger looks for it."""
         self._points.clear()
         self._send("touchEnd")
+        self._person.drawn()
 
     def _send(self, kind: str) -> None:
         points = list(self._points.values())

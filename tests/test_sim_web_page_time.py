@@ -218,8 +218,7 @@ def test_after_a_click_on_the_timeline_arrows_look_around_until_escape(person: S
     page.keyboard.press("Escape")
     page.locator(".timebar.past").wait_for(state="detached")
     page.keyboard.press("ArrowLeft")
-    drawn = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
-    page.evaluate(drawn)
+    person.drawn()
     assert page.locator(".timebar.past").count() == 0
     # The emergency stop is the space bar, also there.
     timeline.click(position={"x": 20, "y": 14})
