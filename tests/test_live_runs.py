@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import pytest
 
 from pyfrc_core.sim.engine.changes import Change, RunBegan
+from pyfrc_core.sim.engine.choosers import choosers_in
 from pyfrc_core.sim.engine.messages import MODE, NO_CONNECTION, UNKNOWN_MODE
 from pyfrc_core.sim.live.runs import RobotRuns
 from pyfrc_core.wpi.network_news import Gone, Received
@@ -149,12 +150,12 @@ def test_topics_are_gone_but_not_those_of_a_connection_that_is_being_lost() -> N
 def test_a_chooser_that_went_away_and_is_back_is_one_chooser() -> None:
     robot = Robot()
     options = Received("/SmartDashboard/Auto/options", "string[]", ["a", "b"], ON - 1)
-    robot.connect(TYPE, options)
+    robot.connect(TYPE, options, Received("/SmartDashboard/Auto/.type", "string", "String Chooser", ON - 1))
     for second in range(1, 4):
         robot.take(Gone(options.name), clock_us=ON + second * 1_000_000)
         robot.take(clock_us=ON + second * 1_000_000 + 1)
         robot.take(options._replace(time_us=ON + second * 1_000_000 + 2))
-    assert list(robot.runs.choosers) == ["/SmartDashboard/Auto"]
+    assert [each.name for each in choosers_in(robot.runs.values)] == ["/SmartDashboard/Auto"]
 
 
 def test_a_program_that_started_again_is_another_run() -> None:

@@ -5,19 +5,6 @@ from __future__ import annotations
 from typing import Literal, NamedTuple
 
 
-class Chooser(NamedTuple):
-    """A chooser that robot code shows.
-
-    :param name: its table
-    :param active: the option that the robot uses
-    """
-
-    name: str
-    options: tuple[str, ...]
-    default: str
-    active: str
-
-
 class Widget(NamedTuple):
     """What the user of a dashboard can change of an object that robot code shows.
 

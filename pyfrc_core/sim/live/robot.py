@@ -16,7 +16,7 @@ from ...season import CURRENT
 from ...wpi import network_client
 from ...wpi.network_news import Connected, Gone, Lost, Received
 from ..engine.changes import ReportSignal
-from ..engine.choosers import chooser_at
+from ..engine.choosers import choosers_in
 from ..engine.field import field_of
 from ..engine.messages import NO_CONNECTION
 from ..engine.output_log import OWN, OutputCursor, OutputLog
@@ -164,9 +164,7 @@ class LiveRobot:
             self._report()
 
     def _take(self, client: network_client.Client, news: list[Received | Gone]) -> None:
-        number = self._runs.number
-        self._runs.take(news, monotonic(), client.now_us)
-        if number != self._runs.number:
+        if self._runs.take(news, monotonic(), client.now_us):
             self._say(f"0:00.00 is where the robot's own clock shows {self._runs.zero_us / 1e6:.2f} s.")
 
     def _explain(self) -> None:
@@ -238,7 +236,7 @@ class LiveRobot:
             mode=station.mode,
             scene=Scene(self.field),
             values=MappingProxyType(values),
-            choosers=tuple(filter(None, (chooser_at(runs.values, table) for table in runs.choosers))),
+            choosers=tuple(choosers_in(runs.values)),
             emergency_stopped=station.emergency_stopped,
             station_attached=station.attached,
             practice_since=None if left is None else 0.0,

@@ -27,9 +27,6 @@ _TOGETHER_US = 5_000
 #: How far the robot's clock may be behind the last value, in microseconds: computers guess it.
 _INEXACT_US = 500_000
 
-#: What the names of a chooser's options end with.
-_OPTIONS = "/options"
-
 Entry = RunBegan | Change
 
 
@@ -67,8 +64,6 @@ class RobotRuns:
         self._topics = TopicValues()
         #: The path of the seconds left in the match, if the robot publishes them.
         self.match_time_path: str | None = None
-        #: The tables of choosers.
-        self.choosers: dict[str, None] = {}
         #: When each topic got its value, on the robot's clock.
         self._times: dict[str, int] = {}
 
@@ -172,19 +167,13 @@ class RobotRuns:
                 together_until = time_us + _TOGETHER_US
                 self._end = max(self._end, (time_us - self.zero_us) / 1_000_000)
             names.add(name)
-            if name not in self._times:
-                self._look_at_new(name)
+            if self.match_time_path is None and name not in self._times and is_match_time(VALUE + name):
+                self.match_time_path = VALUE + name
             self._times[name] = time_us
             self._latest_us = max(self._latest_us, time_us)
             self._topics.take(name, type_name, value)
         if names:
             self._flush()
-
-    def _look_at_new(self, name: str) -> None:
-        if self.match_time_path is None and is_match_time(VALUE + name):
-            self.match_time_path = VALUE + name
-        if name.endswith(_OPTIONS):
-            self.choosers[name.removesuffix(_OPTIONS)] = None
 
     def _flush(self) -> None:
         """Add what has changed, at the moment `_end`."""

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from collections.abc import Callable
 
 from ...project import Project
 from ..engine.changes import ReportSignal
-from ..engine.choosers import chooser_at
+from ..engine.choosers import choosers_in
 from ..engine.field import field_of
-from ..engine.messages import MODE, POSE, VALUE
+from ..engine.messages import MODE, POSE
 from ..engine.output_log import OutputCursor, OutputLog
 from ..engine.past_run import PastRun
 from ..engine.scene import Point, Pose, Scene
-from ..engine.snapshot import Chooser, Snapshot, Status
+from ..engine.snapshot import Snapshot, Status
 from ..engine.source import Abilities, ChangeFeed, FedReader
 from ..engine.value_history import MISSING
 from .align import moment_of
@@ -23,8 +22,6 @@ from .open import OpenedLog
 _MOST_POINTS = 4000
 #: How long after the enabling code may set its place, in seconds.
 _SETTLED = 0.1
-#: Where the type of a table is.
-_TYPE = "/.type"
 
 
 class LogSource:
@@ -60,7 +57,7 @@ class LogSource:
             mode=str(network.now.get(MODE, "disabled")),
             scene=Scene(self.field, None if pose is MISSING else Pose(*pose), _trail(run)),
             values=run.histories["hal"].now,
-            choosers=tuple(_choosers(network.now)),
+            choosers=tuple(choosers_in(network.now)),
         )
 
     def output_cursor(self, from_start: bool = True) -> OutputCursor:
@@ -93,12 +90,3 @@ def _trail(run: PastRun) -> tuple[Point, ...]:
     _, poses = network.changes(POSE, (moment_of(network, "enabled") or 0.0) + _SETTLED)
     every = max(len(poses) // _MOST_POINTS, 1)
     return tuple((pose[0], pose[1]) for pose in poses[::every] if pose is not MISSING)
-
-
-def _choosers(values: Mapping[str, Any]) -> Iterator[Chooser]:
-    """Yield the choosers among values of NetworkTables."""
-    for path in values:
-        if path.startswith(VALUE) and path.endswith(_TYPE):
-            found = chooser_at(values, path.removeprefix(VALUE).removesuffix(_TYPE))
-            if found is not None:
-                yield found

@@ -10,7 +10,7 @@ from wpilib import Field2d
 from wpimath.geometry import Pose2d
 from wpiutil import Sendable, SendableBuilder, SendableRegistry
 
-from ..widgets import Chooser, Widget
+from ..widgets import Widget
 from . import network
 
 __all__ = ["Field2d", "place_robot", "robot_pose", "show_field", "show_poses", "shown", "widget_of"]
@@ -79,14 +79,6 @@ _CHOOSER = "String Chooser"
 
 #: Whether a field can be shown before there is a robot.
 WITHOUT_ROBOT = True
-
-
-def chooser_at(table: str) -> Chooser | None:
-    """Return the chooser that has this table; None if there is none."""
-    if network.text_of(f"{table}/.type") != _CHOOSER:
-        return None
-    options = tuple(network.texts_of(f"{table}/options"))
-    return Chooser(table, options, network.text_of(f"{table}/default"), network.text_of(f"{table}/active"))
 
 
 def written_entry(name: str) -> str:

@@ -9,7 +9,7 @@ import tunables
 from wpilib import Field2d
 from wpimath import Pose2d
 
-from ..widgets import Chooser, Widget
+from ..widgets import Widget
 from . import network
 
 __all__ = ["Field2d", "place_robot", "robot_pose", "show_field", "show_poses", "shown", "widget_of"]
@@ -77,14 +77,6 @@ _CHOOSER, _TYPE = "Selectable", "/.type"
 
 #: Whether a field can be shown before there is a robot, whose constructor connects tunables to NetworkTables.
 WITHOUT_ROBOT = False
-
-
-def chooser_at(table: str) -> Chooser | None:
-    """Return the chooser that has this table; None if there is none."""
-    if network.text_of(f"{table}/.type") != _CHOOSER:
-        return None
-    options, default = tuple(network.texts_of(f"{table}/options")), network.text_of(f"{table}/default")
-    return Chooser(table, options, default, network.text_of(f"{table}/selected/value") or default)
 
 
 def written_entry(name: str) -> str:

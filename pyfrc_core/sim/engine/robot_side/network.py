@@ -14,9 +14,8 @@ from typing import Any
 
 from ....runtime.scripts.network_targets import NETWORK
 from ....wpi import dashboards, network
+from ..choosers import TABLE_TYPE, chooser_at
 from ..snapshot import Chooser
-
-_TYPE = "/.type"
 
 
 def written_target(target: str) -> str:
@@ -38,10 +37,9 @@ class Choosers:
     def changed(self) -> tuple[Chooser, ...] | None:
         """Return all choosers; None when nothing has changed since the last call."""
         for published in self._news.read():
-            if published.name.endswith(_TYPE):
-                self._names.add(published.name.removesuffix(_TYPE))
-        found = (dashboards.chooser_at(name) for name in sorted(self._names))
-        choosers = tuple(Chooser(*each) for each in found if each is not None)
+            if published.name.endswith(TABLE_TYPE):
+                self._names.add(published.name.removesuffix(TABLE_TYPE))
+        choosers = tuple(filter(None, (chooser_at(network.value_of, name) for name in sorted(self._names))))
         if choosers == self._sent:
             return None
         self._sent = choosers
