@@ -42,8 +42,8 @@ class Elsewhere:
         self.people = 0
         self.started = threading.Event()
 
-    def output_cursor(self, from_start: bool = True) -> OutputCursor:
-        return self.output.cursor(from_start)
+    def output_cursor(self) -> OutputCursor:
+        return self.output.cursor()
 
     def change_cursor(self) -> FedReader:
         return self.hal.cursor()

@@ -114,7 +114,7 @@ class Source(Protocol):
     def branches(self) -> tuple[PastRun, ...]:
         """Other runs that are shown beside it; there may be more of them later."""
 
-    def output_cursor(self, from_start: bool = True) -> OutputCursor:
+    def output_cursor(self) -> OutputCursor:
         """Return a reader of what the robot prints."""
 
     def change_cursor(self) -> ChangeReader:

@@ -92,9 +92,9 @@ class LiveRobot:
             raise self._mistake
         return self._newest
 
-    def output_cursor(self, from_start: bool = True) -> OutputCursor:
+    def output_cursor(self) -> OutputCursor:
         """Return a reader of what the robot prints."""
-        return self._output.cursor(from_start)
+        return self._output.cursor()
 
     def change_cursor(self) -> FedReader:
         """Return a reader of the runs; a robot does not say more of `hal_data`."""

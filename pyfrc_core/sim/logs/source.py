@@ -60,7 +60,7 @@ class LogSource:
             choosers=tuple(choosers_in(network.now)),
         )
 
-    def output_cursor(self, from_start: bool = True) -> OutputCursor:
+    def output_cursor(self) -> OutputCursor:
         """Return a reader of nothing: what was printed is in `recorded`."""
         return OutputLog().cursor()
 
