@@ -32,14 +32,15 @@ class Recording:
     """
 
     def __init__(self, past: InputScript, known: bool = True) -> None:
-        self._past = past
-        self._known = known
+        self.past, self._known = past, known
         self._steps: History[Step] = History()
         #: The last steps, from the one with the number `_changing_from`, which may still change.
         self._changing: tuple[Step, ...] = ()
         self._changing_from = 0
-        self._lines: History[str] = History()
-        self._network_lines: History[str] = History()
+        #: The trace until now: one line for each packet that changed something.
+        self.lines: History[str] = History()
+        #: The changes of NetworkTables until now, if they are reported.
+        self.network_lines: History[str] = History()
         self._stations: History[StationState] = History()
         #: The end of the recording, in microseconds of robot time.
         self.length_us = 0
@@ -62,9 +63,9 @@ class Recording:
     def add_lines(self, lines: Iterable[str], network_lines: Iterable[str]) -> None:
         """Add what the robot did, as in `Update`."""
         for line in lines:
-            self._lines.append(to_us(line_time(line)), line)
+            self.lines.append(to_us(line_time(line)), line)
         for line in network_lines:
-            self._network_lines.append(to_us(line_time(line)), line)
+            self.network_lines.append(to_us(line_time(line)), line)
 
     def script(self) -> InputScript:
         """Return the robot's inputs, with the hash of what it did, if that is known."""
@@ -73,10 +74,10 @@ class Recording:
     def _script_until(self, time_us: int) -> InputScript:
         """Return the inputs until a moment, at most until one microsecond after the recording's end."""
         time_us = min(time_us, self.length_us + 1)
-        earlier = [step for step in self._past.steps if step.at_us <= time_us]
+        earlier = [step for step in self.past.steps if step.at_us <= time_us]
         steps = takewhile(lambda step: step.at_us <= time_us, chain(entries(self._steps), self._changing))
         return replace(
-            self._past,
+            self.past,
             steps=tuple(merge(earlier, steps, key=_AT)),
             end_us=self.length_us + 1,
             packages={name: version(name) for name in ("pyfrc", "wpilib")},
@@ -89,7 +90,7 @@ class Recording:
         if not self._known:
             return None
         digest = hashlib.sha256()
-        for line in entries(self._lines):
+        for line in entries(self.lines):
             digest.update(hashed_part(line.rstrip("\n")).encode())
         return digest.hexdigest()
 
@@ -103,8 +104,8 @@ class Recording:
         part.length_us = time_us
         part.is_open = self.is_open
         if not self.is_open:
-            part._lines = self._lines.until(time_us)
-            part._network_lines = self._network_lines.until(time_us)
+            part.lines = self.lines.until(time_us)
+            part.network_lines = self.network_lines.until(time_us)
         part._stations = self._stations.until(time_us)
         return part
 
@@ -115,21 +116,6 @@ class Recording:
         again.is_open = True
         again._stations = self._stations.until(self.length_us + 1)
         return again
-
-    @property
-    def past(self) -> InputScript:
-        """The script of the first part."""
-        return self._past
-
-    @property
-    def lines(self) -> History[str]:
-        """The trace until now: one line for each packet that changed something."""
-        return self._lines
-
-    @property
-    def network_lines(self) -> History[str]:
-        """The changes of NetworkTables until now, if they are reported."""
-        return self._network_lines
 
     @property
     def station(self) -> StationState:
@@ -144,5 +130,5 @@ class Recording:
 
     def _trace(self) -> Iterator[str]:
         yield json.dumps({"format": FORMAT}) + "\n"
-        yield from entries(self._lines)
+        yield from entries(self.lines)
         yield json.dumps({"sha256": self.digest()}) + "\n"
