@@ -11,7 +11,6 @@ import json
 import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import islice
 from types import MappingProxyType
 from typing import Any
@@ -45,10 +44,6 @@ class ReportSignal(threading.Condition):
             self.wait_for(lambda: self.count > count, timeout)
 
 
-#: The types of values that cannot change, and have no parts.
-_PLAIN = frozenset({float, int, bool, str})
-
-
 @dataclass(frozen=True)
 class RunBegan:
     """Another run of the robot began; what was read of moments after `time` is no longer part of the session's past.
@@ -79,13 +74,11 @@ class Change:
     gone: tuple[str, ...] = ()
 
 
-@lru_cache(maxsize=64)  # the snapshot and each reader need the same lines, at about the same time
 def change_of(line: str) -> Change:
     """Return the change that a line of a trace describes."""
     change = json.loads(line)
     found = change["set"] | change.get(UNREPEATABLE, {})
-    values = {path: value if type(value) in _PLAIN else frozen(value) for path, value in found.items()}
-    return Change(change["t"], MappingProxyType(values), tuple(change.get("gone", ())))
+    return Change(change["t"], frozen(found), tuple(change.get("gone", ())))
 
 
 def frozen(value: object) -> Any:
@@ -114,8 +107,7 @@ class RunChanges:
     def begin(self, time: float, values: Mapping[str, object], new_code: bool = False) -> None:
         """Note what the run begins with; only the first call counts."""
         if self.began is None:
-            unchangeable = {path: frozen(value) for path, value in values.items()}
-            self.began = RunBegan(self.number, time, MappingProxyType(unchangeable), new_code)
+            self.began = RunBegan(self.number, time, frozen(values), new_code)
 
 
 class ChangeCursor:

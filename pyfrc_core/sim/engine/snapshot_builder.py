@@ -85,7 +85,7 @@ class SnapshotBuilder:
 
 def _values(before: Snapshot, update: Update) -> dict[str, Any]:
     if update.base is not None:
-        return {path: frozen(value) for path, value in update.base.items()}
+        return dict(frozen(update.base))
     values = before.values.copy()
     for change in map(change_of, update.lines):
         values.update(change.values)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping
-from types import MappingProxyType
 from typing import Any, NoReturn
 
 #: How deep lists and objects may be in each other, and how long a number may be, in characters.
@@ -151,8 +150,7 @@ def json_text(message: object) -> str:
 
 
 def _plain(value: object) -> object:
-    # Most are of this type.
-    return dict(value) if type(value) is MappingProxyType or isinstance(value, Mapping) else str(value)
+    return dict(value) if isinstance(value, Mapping) else str(value)
 
 
 def _safe(value: Any) -> Any:

@@ -93,7 +93,6 @@ def _hash(text: str) -> str:
     return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"
 
 
-@cache
 def _styles() -> str:
     return _checked("\n".join(_style(PAGE / name) for name in _STYLES.findall(_index())), "</style")
 
@@ -102,7 +101,6 @@ def _style(file: Path) -> str:
     return _URL.sub(lambda match: f'url("{data_url(file.parent / match["file"])}")', file.read_text("utf-8"))
 
 
-@cache
 def _licences() -> str:
     """Return the licences of the libraries and fonts, which belong to every copy."""
     files = sorted((PAGE / "vendor").glob("*/LICENSE"))
