@@ -38,7 +38,7 @@ class ViewRequest:
     :param files: the logs; the first one is shown, the others are its branches
     :param robot: the robot that is shown instead: a team's number or an address; empty: the project's
     :param align: by what the others are aligned with the first one
-    :param offsets: what is added to the times of the others, in seconds; None: as they are aligned
+    :param offsets: what is added to the times of the others, in seconds; further ones are aligned
     :param page: where to write the log as a page, instead of serving it
     """
 

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import count
-from multiprocessing.connection import Listener
+from multiprocessing.connection import Client, Listener
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -303,8 +303,6 @@ class RobotProcesses:
         """Wait until every connection that was made before now has been accepted: they are, in their order."""
         name = os.urandom(8).hex()
         accepted = self._barriers[name] = threading.Event()
-        from multiprocessing.connection import Client
-
         # An error: the listener is closed.
         with suppress(Exception), Client(self._listener.address, authkey=self._key) as barrier:
             barrier.send(name)
@@ -329,8 +327,6 @@ class RobotProcesses:
             output.flush()
 
     def _wake_the_listener(self) -> None:
-        from multiprocessing.connection import Client
-
         with suppress(Exception):
             Client(self._listener.address, authkey=self._key).close()
 

@@ -366,7 +366,7 @@ class Simulation(Controls, SimulationSource):
 
     def _echo_failure(self, failure: Failure) -> None:
         details = f"{failure.details.rstrip()}\n" if failure.details else ""
-        self.echo(f"{details}failed at {failure.time:.2f} s: {failure.headline}\n")
+        self.echo(f"{details}{failure}\n")
 
     def _note(self, note: str) -> None:
         with self.reports:

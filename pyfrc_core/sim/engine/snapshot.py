@@ -105,6 +105,9 @@ class Failure:
     time: float
     exit_code: int = 1
 
+    def __str__(self) -> str:
+        return f"failed at {self.time:.2f} s: {self.headline}"
+
 
 @dataclass(frozen=True)
 class Status:

@@ -21,7 +21,7 @@ def moment_of(network: ValueHistory, align: Align) -> float | None:
     """
     if align == "start":
         return 0.0
-    enabled = [(time, mode) for time, mode in _modes(network) if not mode.startswith("disabled")]
+    enabled = [(time, mode) for time, mode in modes_of(network) if not mode.startswith("disabled")]
     if align == "match":
         found = [time for (time, mode), (_, after) in pairwise(enabled) if mode == "autonomous" and after == "teleop"]
         if found:
@@ -31,7 +31,7 @@ def moment_of(network: ValueHistory, align: Align) -> float | None:
 
 def enabled_moments(network: ValueHistory) -> list[float]:
     """Return the moments at which a robot that was disabled is enabled, in the run's seconds."""
-    modes = [(0.0, "disabled"), *_modes(network)]
+    modes = [(0.0, "disabled"), *modes_of(network)]
     return [
         time
         for (_, before), (time, mode) in pairwise(modes)
@@ -45,6 +45,7 @@ def offset_of(network: ValueHistory, beside: ValueHistory, align: Align) -> floa
     return None if own is None or other is None else round(other - own, 6)
 
 
-def _modes(network: ValueHistory) -> list[tuple[float, str]]:
+def modes_of(network: ValueHistory) -> list[tuple[float, str]]:
+    """Return when a run entered each of its modes."""
     times, values = network.changes(MODE)
     return [(time, str(value)) for time, value in zip(times, values, strict=True) if value is not MISSING]

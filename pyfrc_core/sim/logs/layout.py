@@ -7,6 +7,7 @@ that it has there: AdvantageKit and PyKit publish their values in a table that t
 
 from __future__ import annotations
 
+import math
 import re
 from array import array
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -271,7 +272,7 @@ def _is_place(value: Any) -> bool:
 
 
 def _in_radians(value: Any) -> tuple[Any, Any, Any]:
-    return (value[0], value[1], value[2] * 0.017453292519943295) if _is_place(value) else (MISSING,) * 3
+    return (value[0], value[1], math.radians(value[2])) if _is_place(value) else (MISSING,) * 3
 
 
 def _on_field(x: Any, y: Any, angle: Any, height: float) -> Any:

@@ -180,7 +180,7 @@ class WpilibWindow(FrontEnd):
         self._print(output)
         if failure is None:
             return 0
-        sys.stdout.write(f"failed at {failure.time:.2f} s: {failure.headline}\n")
+        sys.stdout.write(f"{failure}\n")
         return failure.exit_code
 
     @staticmethod

@@ -67,7 +67,7 @@ class Summary:
             found.append(f"loop overruns: {self.overruns}{longest}")
             found.append(f"packets that took this machine longer than 20 ms: {self.late_packets}")
         if self.failure is not None:
-            found.append(_text_of(self.failure))
+            found.append(str(self.failure))
         return found
 
 
@@ -86,10 +86,6 @@ def _refuse_opmodes_of_other_modes(simulation: Simulation, mode: ChosenMode) -> 
         f"--mode runs opmodes for {mode}, and {min(chosen.values())!r} is not for it",
         remedy=f"Choose one of those that the robot has published for it: {there}.",
     )
-
-
-def _text_of(failure: Failure) -> str:
-    return f"failed at {failure.time:.2f} s: {failure.headline}"
 
 
 class Headless(FrontEnd):
@@ -152,7 +148,7 @@ class Headless(FrontEnd):
             for line in self.summary.lines():
                 self._say_line(line)
         elif status.failure is not None:
-            self._say_line(_text_of(status.failure))
+            self._say_line(str(status.failure))
         if interrupted and status.failure is None and simulation.snapshot is None:
             self._say_line(
                 f"interrupted while {simulation.project.main_file.name} was still being imported and started"
@@ -251,6 +247,6 @@ class Headless(FrontEnd):
         if self._watching and status.failure is not None and status.failure is not self._reported:
             self._reported = status.failure
             if status.state == "failed":  # otherwise it is over, and the summary says so
-                self._say_line(_text_of(status.failure))
+                self._say_line(str(status.failure))
                 if not self._quiet:
                     self._say_line("waiting for the correction to be saved")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from ...engine.changes import Change, RunBegan
 from ...engine.messages import MODE
+from ...logs.align import modes_of
 from ..models.devices import DeviceRows, Panel
 from ..models.wording import clock
 from .console import Console
@@ -186,7 +187,7 @@ class Collector:
             for line in lines if is_mark else ():
                 if line.level in ("error", "warning"):
                     self.marks.add(at, line.level, line.text.strip())
-        for at, mode in self.runs.modes():
+        for at, mode in modes_of(recorded.histories["network"]):
             self.marks.add(at, "mode", mode)
 
     # -- events ---------------------------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from heapq import merge
 from operator import attrgetter
@@ -62,14 +62,10 @@ class Console:
         self._lines: dict[Level, deque[ConsoleLine]] = {
             level: deque(maxlen=MOST_LINES if level == "info" else MOST_IMPORTANT) for level in get_args(Level)
         }
-        self._count = 0
+        #: The number of all lines, also of those that are no longer kept.
+        self.count = 0
         self._open = ""
         self._in_traceback = False
-
-    @property
-    def count(self) -> int:
-        """The number of all lines, also of those that are no longer kept."""
-        return self._count
 
     def since(self, number: int) -> list[ConsoleLine]:
         """Return the kept lines after the one with this number."""
@@ -87,7 +83,7 @@ class Console:
         *whole, self._open = text.split("\n")
         if len(self._open) > _MOST_LENGTH:
             whole, self._open = [*whole, self._open], ""
-        self._count += skipped
+        self.count += skipped
         return [self._append(line.removeprefix(OWN), time, self._level_of(line)) for line in whole]
 
     def say(self, text: str, time: float, level: Level = "pyfrc") -> list[ConsoleLine]:
@@ -95,10 +91,10 @@ class Console:
         return [self._append(line, time, level) for line in plain_output(text).splitlines()]
 
     def _append(self, text: str, time: float, level: Level) -> ConsoleLine:
-        self._count += 1
+        self.count += 1
         file, line = self._place(text)
         shown = text if len(text) <= _MOST_LENGTH else f"{text[:_MOST_LENGTH]}…"
-        added = ConsoleLine(self._count, time, level, shown, file, line)
+        added = ConsoleLine(self.count, time, level, shown, file, line)
         self._lines[level].append(added)
         return added
 
@@ -122,8 +118,3 @@ class Console:
 
 def _places(text: str) -> Iterator[re.Match[str]]:
     return _PLACE.finditer(text[:_MOST_LENGTH]) if ".py" in text else iter(())
-
-
-def plain_lines(lines: Iterable[ConsoleLine]) -> list[dict[str, object]]:
-    """Return lines for a page."""
-    return [line.plain() for line in lines]

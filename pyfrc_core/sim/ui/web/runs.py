@@ -171,12 +171,6 @@ class Runs:
             self.branches = tuple(moved if each is found else each for each in self.branches)
         return True
 
-    def modes(self) -> list[tuple[float, str]]:
-        """Return when the present run entered each of its modes."""
-        with self._lock:
-            times, values = self._histories["network"].changes(MODE)
-        return [(time, str(value)) for time, value in zip(times, values, strict=True) if value is not MISSING]
-
     @property
     def known_from(self) -> float:
         """The moment from which on all values of the present run are known; 0 until the oldest are forgotten."""
@@ -297,7 +291,9 @@ class Runs:
         :param reach: in seconds before and after the moment
         """
         found = []
-        for history in self._all():
+        with self._lock:
+            histories = list(self._histories.values())
+        for history in histories:
             with self._lock:
                 paths = [path for path in history.paths() if not path.startswith(TYPE)]
             for path in paths:
@@ -311,10 +307,6 @@ class Runs:
                     found.append({"path": path, "t": first[0], "count": count, **values})
         found.sort(key=lambda change: (change["count"], change["t"]))
         return found[:_MOST_CHANGES]
-
-    def _all(self) -> list[ValueHistory]:
-        with self._lock:
-            return list(self._histories.values())
 
     def change_counts(self, paths: Iterable[str]) -> dict[str, int]:
         """Return how often each of some values has changed in the present run."""

@@ -18,7 +18,6 @@ from ...engine.value_history import MISSING
 from ..models.devices import SETTABLE, Panel
 from ..models.wording import STATIONS, mode_text, station_name
 from .collector import Collector, State
-from .console import plain_lines
 from .runs import Position
 
 #: The attributes of `Status` that pages get as they are, and those in seconds, which are rounded.
@@ -100,7 +99,7 @@ class UpdateBuilder:
         if before is None or state.panels is not before.panels:
             found["panels"] = [_panel(panel) for panel in state.panels]
         if before is None or state.field != before.field:
-            found["field"] = plain_field(state.field, self._image)
+            found["field"] = _field(state.field, self._image)
         if before is None or state.branches is not before.branches:
             found["branches"] = [branch.plain() for branch in state.branches]
         if before is None or state.status.former_trail is not before.status.former_trail:
@@ -181,7 +180,7 @@ class UpdateBuilder:
     def _add_lines(self, found: dict[str, Any]) -> None:
         console, marks = self._collector.console, self._collector.marks
         if lines := console.since(self._lines):
-            found["console"] = plain_lines(lines)
+            found["console"] = [line.plain() for line in lines]
             if dropped := lines[-1].n - self._lines - len(lines):
                 found["console_dropped"] = dropped
             self._lines = lines[-1].n
@@ -260,7 +259,7 @@ def _drawing(drawing: Line | Text) -> dict[str, Any]:
     return {"kind": "text", **texts, **style}
 
 
-def plain_field(field: Field, image: str) -> dict[str, Any]:
+def _field(field: Field, image: str) -> dict[str, Any]:
     """Return a field for a page.
 
     :param image: the address of its picture, if it has one
