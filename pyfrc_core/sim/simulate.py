@@ -18,9 +18,9 @@ from .engine.options import NT4_PORT, SimOptions
 from .engine.simulation import Simulation
 from .engine.watch import watching
 from .log_report import LogReport
-from .log_run import log_run
+from .log_run import LogRun, log_run
 from .page_file import PageFile, place_in
-from .ui.choose import FRONT_ENDS, SimRequest, default_name, make_front_end
+from .ui.choose import FRONT_ENDS, FrontEndKind, SimRequest, default_name, make_front_end
 from .ui.headless import Headless
 
 __all__ = ["OutputFiles", "SimRequest", "draw_script", "simulate"]
@@ -33,42 +33,11 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     """
     ui = _front_end_name(request, say)
     kind = FRONT_ENDS[ui]
-    if request.mode is not None and kind.interactive:
-        raise UsageError("--mode is for simulations without a window", remedy="Add --ui none.")
-    if request.opmodes and request.mode is None and not kind.interactive:
-        raise UsageError("without a window, --opmode needs --mode", remedy="Add --mode auto, --mode teleop, ...")
-    if not kind.is_served and request.is_for_page:
-        raise UsageError("--share, --port and --allow-host are for the simulator in a browser", remedy="Add --ui web.")
+    _check(request, kind)
     front_end = make_front_end(ui, request, say)
-    if request.log is None and (request.tolerance is not None or request.inputs):
-        raise UsageError("--tolerance and --input are for a log", remedy="Add --log FILE.")
-    if request.log is not None and any((request.mode, request.script, request.opmodes)):
-        raise UsageError("--log has the modes and all inputs", remedy="Leave out --mode, --opmode and --script.")
-    ends_by_itself = any(each is not None for each in (request.mode, request.seconds, request.script, request.log))
-    unattended = not kind.interactive and ends_by_itself
-    port = request.nt_port if request.nt_port is not None else 0 if unattended else NT4_PORT
-    if not kind.is_served and request.share is not None and not port:
-        raise UsageError(
-            "without a page, --share drive shares NetworkTables, and these are not served here",
-            remedy=f"Add --nt-port {NT4_PORT}.",
-        )
     share = None if request.tolerance is None else request.tolerance / 100
     log = None if request.log is None else log_run(project, request.log, share, request.inputs)
-    options = SimOptions(
-        speed=request.speed if request.speed is not None else 0.0 if unattended else 1.0,
-        paused=request.paused or not kind.interactive or _is_shown_whole(request),
-        script=log.script if log is not None else None if request.script is None else load_inputs(request.script),
-        start_at=log.end if log is not None and kind.interactive and _is_shown_whole(request) else request.start_at,
-        run_until=request.seconds,
-        recording=kind.interactive or request.watch or any((request.record, request.page, request.log)),
-        nt_port=port or None,
-        nt_shared=request.share == "drive",
-        wpilog=request.wpilog,
-        extensions=(*request.extensions, *kind.extensions),
-        start_position=request.start_position,
-        opmodes=request.opmodes,
-        network_values=kind.shows_network or request.page is not None or log is not None,
-    )
+    options = _options(request, kind, log)
     if log is not None and log.problem:
         say(f"{request.log}: {log.problem}.\n")
     simulation = Simulation(project, options, None if log is None else log.run)
@@ -98,6 +67,56 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         for file in () if request.quiet else written:
             say(f"wrote {file}\n")
     return code
+
+
+def _check(request: SimRequest, kind: FrontEndKind) -> None:
+    """:raises UsageError: when the options contradict each other"""
+    if request.mode is not None and kind.interactive:
+        raise UsageError("--mode is for simulations without a window", remedy="Add --ui none.")
+    if request.opmodes and request.mode is None and not kind.interactive:
+        raise UsageError("without a window, --opmode needs --mode", remedy="Add --mode auto, --mode teleop, ...")
+    if not kind.is_served and request.is_for_page:
+        raise UsageError("--share, --port and --allow-host are for the simulator in a browser", remedy="Add --ui web.")
+    if request.log is None and (request.tolerance is not None or request.inputs):
+        raise UsageError("--tolerance and --input are for a log", remedy="Add --log FILE.")
+    if request.log is not None and any((request.mode, request.script, request.opmodes)):
+        raise UsageError("--log has the modes and all inputs", remedy="Leave out --mode, --opmode and --script.")
+    if not kind.is_served and request.share is not None and not _network_port(request, kind):
+        raise UsageError(
+            "without a page, --share drive shares NetworkTables, and these are not served here",
+            remedy=f"Add --nt-port {NT4_PORT}.",
+        )
+
+
+def _is_unattended(request: SimRequest, kind: FrontEndKind) -> bool:
+    """Return whether the simulation ends by itself, and no one drives."""
+    ends_by_itself = any(each is not None for each in (request.mode, request.seconds, request.script, request.log))
+    return not kind.interactive and ends_by_itself
+
+
+def _network_port(request: SimRequest, kind: FrontEndKind) -> int:
+    """Return the port of NetworkTables; 0: they are not served."""
+    if request.nt_port is not None:
+        return request.nt_port
+    return 0 if _is_unattended(request, kind) else NT4_PORT
+
+
+def _options(request: SimRequest, kind: FrontEndKind, log: LogRun | None) -> SimOptions:
+    return SimOptions(
+        speed=request.speed if request.speed is not None else 0.0 if _is_unattended(request, kind) else 1.0,
+        paused=request.paused or not kind.interactive or _is_shown_whole(request),
+        script=log.script if log is not None else None if request.script is None else load_inputs(request.script),
+        start_at=log.end if log is not None and kind.interactive and _is_shown_whole(request) else request.start_at,
+        run_until=request.seconds,
+        recording=kind.interactive or request.watch or any((request.record, request.page, request.log)),
+        nt_port=_network_port(request, kind) or None,
+        nt_shared=request.share == "drive",
+        wpilog=request.wpilog,
+        extensions=(*request.extensions, *kind.extensions),
+        start_position=request.start_position,
+        opmodes=request.opmodes,
+        network_values=kind.shows_network or request.page is not None or log is not None,
+    )
 
 
 def _is_shown_whole(request: SimRequest) -> bool:
