@@ -1,7 +1,7 @@
 // Units of measurement, and how one becomes another of its kind. Nothing here knows the page.
 
 const TURN = 2 * Math.PI;
-const FOOT = 0.3048;
+export const FOOT = 0.3048; // metres
 
 // For each kind, its units: how many of the first one each is, and where its zero lies.
 const KINDS = [

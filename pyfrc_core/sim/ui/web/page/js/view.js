@@ -48,8 +48,8 @@ export class Bound extends Component {
     this.follow();
   }
 
-  componentDidUpdate(before) {
-    if (before.path !== this.props.path) this.follow();
+  componentDidUpdate() {
+    if (this.boundPath !== this.followed) this.follow();
   }
 
   componentWillUnmount() {
@@ -58,14 +58,15 @@ export class Bound extends Component {
 
   follow() {
     this.unbind?.();
-    this.unbind = model.bind(this.boundPath, () => this.paint());
+    this.followed = this.boundPath;
+    this.unbind = model.bind(this.followed, (value) => this.paint(value));
   }
 
   get boundPath() {
     return this.props.path;
   }
 
-  paint() {
+  paint(_value) {
     this.setState({});
   }
 }

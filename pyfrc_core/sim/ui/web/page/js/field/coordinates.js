@@ -1,7 +1,8 @@
 // How places on the field are written. The page, like `hal_data` and physics, computes in feet with y downwards and
 // clockwise radians; robot code has metres from a corner, with y upwards and counterclockwise angles.
 
-const FOOT = 0.3048;
+import { FOOT } from "#js/units.js";
+
 const DEGREES = 180 / Math.PI;
 
 // The values of `field.coordinates` in sim/config.json.

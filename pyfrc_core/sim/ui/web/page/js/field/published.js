@@ -1,8 +1,9 @@
 // What robot code publishes over NetworkTables for a field: Field2d objects and swerve states.
 import { plain } from "#js/format.js";
 import { model } from "#js/model.js";
+import { tablesOf } from "#js/tables.js";
+import { FOOT } from "#js/units.js";
 
-const FOOT = 0.3048; // metres
 const FEWEST = 7; // poses of a trajectory
 const STEP = 2.5; // feet between its poses, at most
 
@@ -59,15 +60,6 @@ function physicsRobot(values) {
   const { robot } = model.hello.options.dashboard;
   const other = robot.replace("/Field/", "/Field (physics)/");
   return values.has(other) ? other : robot;
-}
-
-// The tables of a type.
-function tablesOf(values, type) {
-  const found = [];
-  for (const [path, value] of values) {
-    if (value === type && path.startsWith("nt:/") && path.endsWith("/.type")) found.push(path.slice(0, -"/.type".length));
-  }
-  return found;
 }
 
 // The folders of every Field2d, each with a slash at its end.

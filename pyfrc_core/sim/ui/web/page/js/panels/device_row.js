@@ -105,15 +105,19 @@ class Relay extends Painted {
   }
 }
 
+// Call a function with each item of a list, and the style of its element.
+function paintEach(element, value, paint) {
+  const list = Array.isArray(value) ? value : [];
+  while (element.children.length < list.length) element.append(document.createElement("i"));
+  while (element.children.length > list.length) element.lastChild.remove();
+  list.forEach((each, index) => paint(each, element.children[index].style));
+}
+
 class Bars extends Painted {
   paint(value) {
     const { high } = this.props.row;
-    const element = this.element.current;
-    const list = Array.isArray(value) ? value : [];
-    while (element.children.length < list.length) element.append(document.createElement("i"));
-    while (element.children.length > list.length) element.lastChild.remove();
-    list.forEach((each, index) => {
-      element.children[index].style.height = `${Math.min(Math.max(each / high, 0), 1) * 100}%`;
+    paintEach(this.element.current, value, (each, style) => {
+      style.height = `${Math.min(Math.max(each / high, 0), 1) * 100}%`;
     });
   }
 
@@ -124,13 +128,9 @@ class Bars extends Painted {
 
 class Leds extends Painted {
   paint(value) {
-    const element = this.element.current;
-    const list = Array.isArray(value) ? value : [];
-    while (element.children.length < list.length) element.append(document.createElement("i"));
-    while (element.children.length > list.length) element.lastChild.remove();
-    list.forEach((each, index) => {
+    paintEach(this.element.current, value, (each, style) => {
       const { r = 0, g = 0, b = 0 } = Array.isArray(each) ? { r: each[0], g: each[1], b: each[2] } : (each ?? {});
-      element.children[index].style.background = `rgb(${Number(r)}, ${Number(g)}, ${Number(b)})`;
+      style.background = `rgb(${Number(r)}, ${Number(g)}, ${Number(b)})`;
     });
   }
 

@@ -4,7 +4,7 @@ import { numberText, plain } from "#js/format.js";
 import { assignedTo, gamepads, labelOf, nameOf } from "#js/input/gamepads.js";
 import { model } from "#js/model.js";
 import { settings } from "#js/settings.js";
-import { Component, Live, classes, createRef, html } from "#js/view.js";
+import { Bound, Live, classes, createRef, html } from "#js/view.js";
 import { StickPad, axisTarget } from "#js/panels/stick_pad.js";
 
 const BUTTONS = 12;
@@ -60,21 +60,18 @@ function GamepadChoice({ stick, plugged }) {
     </select></div>`;
 }
 
-class Axis extends Component {
+class Axis extends Bound {
   element = createRef();
 
-  componentDidMount() {
-    const { stick, axis } = this.props;
-    this.unbind = model.bind(`joysticks[${stick}].axes`, (axes) => {
-      const value = plain(axes?.[axis]) ?? 0;
-      const [slider, text] = this.element.current.children[1].children;
-      if (document.activeElement !== slider) slider.value = String(value);
-      text.textContent = numberText(value, 2);
-    });
+  get boundPath() {
+    return `joysticks[${this.props.stick}].axes`;
   }
 
-  componentWillUnmount() {
-    this.unbind();
+  paint(axes) {
+    const value = plain(axes?.[this.props.axis]) ?? 0;
+    const [slider, text] = this.element.current.children[1].children;
+    if (document.activeElement !== slider) slider.value = String(value);
+    text.textContent = numberText(value, 2);
   }
 
   render({ stick, axis, label }) {
@@ -86,20 +83,21 @@ class Axis extends Component {
   }
 }
 
-export class Button extends Component {
+export class Button extends Bound {
   element = createRef();
 
-  componentDidMount() {
-    const { stick, button } = this.props;
-    this.unbind = model.bind(`joysticks[${stick}].buttons`, (buttons) => {
-      this.pressed = Boolean(buttons?.[button]);
-      this.element.current.classList.toggle("pressed", this.pressed);
-      this.element.current.setAttribute("aria-pressed", String(this.pressed));
-    });
+  get boundPath() {
+    return `joysticks[${this.props.stick}].buttons`;
+  }
+
+  paint(buttons) {
+    this.pressed = Boolean(buttons?.[this.props.button]);
+    this.element.current.classList.toggle("pressed", this.pressed);
+    this.element.current.setAttribute("aria-pressed", String(this.pressed));
   }
 
   componentWillUnmount() {
-    this.unbind();
+    super.componentWillUnmount();
     if (this.holding) this.press(false);
   }
 
@@ -147,19 +145,20 @@ export class Button extends Component {
   };
 }
 
-class Pov extends Component {
+class Pov extends Bound {
   element = createRef();
 
-  componentDidMount() {
-    this.unbind = model.bind(`joysticks[${this.props.stick}].povs`, (povs) => {
-      const angle = povs?.[0] ?? -1;
-      this.angle = angle;
-      [...this.element.current.children].forEach((button, index) => button.classList.toggle("pressed", angle !== -1 && POVS[index] === angle));
-    });
+  get boundPath() {
+    return `joysticks[${this.props.stick}].povs`;
+  }
+
+  paint(povs) {
+    this.angle = povs?.[0] ?? -1;
+    [...this.element.current.children].forEach((button, index) => button.classList.toggle("pressed", this.angle !== -1 && POVS[index] === this.angle));
   }
 
   componentWillUnmount() {
-    this.unbind();
+    super.componentWillUnmount();
     this.letGo();
   }
 

@@ -4,6 +4,7 @@ import { Drawn } from "#js/drawn.js";
 import { plain } from "#js/format.js";
 import { model } from "#js/model.js";
 import { color } from "#js/settings.js";
+import { tablesOf } from "#js/tables.js";
 import { html } from "#js/view.js";
 
 export class MechanismPanel extends Drawn {
@@ -43,12 +44,7 @@ export class MechanismPanel extends Drawn {
 
 // Every Mechanism2d as a tree of its folder: { folder, name, tree }.
 export function mechanisms(values) {
-  const found = [];
-  for (const [path, type] of values) {
-    if (type !== "Mechanism2d" || !path.startsWith("nt:/") || !path.endsWith("/.type")) continue;
-    const folder = path.slice(0, -"/.type".length);
-    found.push({ folder, name: lastParts(folder, 1), tree: treeOf(values, folder) });
-  }
+  const found = tablesOf(values, "Mechanism2d").map((folder) => ({ folder, name: lastParts(folder, 1), tree: treeOf(values, folder) }));
   const names = found.map(({ name }) => name);
   const isOne = (name) => names.indexOf(name) === names.lastIndexOf(name);
   return found.map((each) => (isOne(each.name) ? each : { ...each, name: lastParts(each.folder, 2) }));

@@ -6,7 +6,7 @@ import { model } from "#js/model.js";
 import { elementsOf } from "#js/parts.js";
 import { addToPlot, carryPath, carryTable } from "#js/plotting.js";
 import { ValueBox } from "#js/value_box.js";
-import { Component, Icon, Live, classes, createRef, html } from "#js/view.js";
+import { Bound, Icon, Live, classes, createRef, html } from "#js/view.js";
 
 const START = "nt:/";
 
@@ -77,7 +77,7 @@ function Folder({ node, depth, open, toggle }) {
     ${typeof type === "string" && html`<span class="chip">${type}</span>`}</div>`;
 }
 
-class Leaf extends Component {
+class Leaf extends Bound {
   element = createRef();
 
   shouldComponentUpdate(next, state) {
@@ -85,22 +85,18 @@ class Leaf extends Component {
     return next.locked !== this.props.locked || next.path !== path || next.depth !== depth || next.open !== open || !next.toggle !== !toggle || state !== this.state;
   }
 
-  componentDidMount() {
-    this.unbind = model.bind(this.props.list ?? this.props.path, () => this.paint(this.value));
-  }
-
-  componentWillUnmount() {
-    this.unbind();
+  get boundPath() {
+    return this.props.list ?? this.props.path;
   }
 
   get value() {
-    const { path, list, index } = this.props;
-    const value = model.shown.values.get(list ?? path);
-    return plain(list === undefined ? value : value?.[index]);
+    const value = model.shown.values.get(this.boundPath);
+    return plain(this.props.list === undefined ? value : value?.[this.props.index]);
   }
 
   // A value whose kind has changed needs another control; otherwise only its text changes.
-  paint(value) {
+  paint() {
+    const { value } = this;
     const kind = this.controlOf(value);
     if (Array.isArray(value) && value.length !== this.length) {
       if (this.length !== undefined) this.props.resized?.();
@@ -117,7 +113,8 @@ class Leaf extends Component {
   }
 
   componentDidUpdate() {
-    this.paint(this.value);
+    super.componentDidUpdate();
+    this.paint();
   }
 
   // Only topics can be written to: elements of lists and parts of structs have no type.

@@ -2,37 +2,30 @@
 import { write } from "#js/connection.js";
 import { plain } from "#js/format.js";
 import { model } from "#js/model.js";
-import { Component, createRef, html } from "#js/view.js";
+import { Bound, createRef, html } from "#js/view.js";
 
 export function axisTarget(stick, axis) {
   return `joysticks[${stick}].axes[${axis}]`;
 }
 
-export class StickPad extends Component {
+export class StickPad extends Bound {
   element = createRef();
 
-  componentDidMount() {
-    this.follow();
+  get boundPath() {
+    return `joysticks[${this.props.stick}].axes`;
   }
 
-  componentDidUpdate(before) {
-    if (before.stick !== this.props.stick) this.follow();
-  }
-
-  follow() {
-    this.unbind?.();
-    this.unbind = model.bind(`joysticks[${this.props.stick}].axes`, (axes) => {
-      const { x, y } = this.props;
-      if (!this.dragging) this.paint(plain(axes?.[x]) ?? 0, plain(axes?.[y]) ?? 0);
-    });
+  paint(axes) {
+    const { x, y } = this.props;
+    if (!this.dragging) this.moveKnob(plain(axes?.[x]) ?? 0, plain(axes?.[y]) ?? 0);
   }
 
   componentWillUnmount() {
-    this.unbind();
+    super.componentWillUnmount();
     if (this.dragging || this.pushed) this.move(0, 0);
   }
 
-  paint(x, y) {
+  moveKnob(x, y) {
     const knob = this.element.current.querySelector(".knob");
     knob.style.left = `${50 + x * 50}%`;
     knob.style.top = `${50 + y * 50}%`;
@@ -46,7 +39,7 @@ export class StickPad extends Component {
 
   move(x, y) {
     const { stick, x: axisX, y: axisY } = this.props;
-    this.paint(x, y);
+    this.moveKnob(x, y);
     write({ [axisTarget(stick, axisX)]: x, [axisTarget(stick, axisY)]: y });
   }
 

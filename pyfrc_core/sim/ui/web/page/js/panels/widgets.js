@@ -3,6 +3,7 @@ import { write } from "#js/connection.js";
 import { plain, valueText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { addToPlot } from "#js/plotting.js";
+import { typedTables } from "#js/tables.js";
 import { ValueBox } from "#js/value_box.js";
 import { Icon, Live, html } from "#js/view.js";
 import { Chooser } from "#js/panels/match.js";
@@ -36,11 +37,9 @@ export class WidgetsPanel extends Live {
 // Folders with a ".type": { path, name, type }.
 export function sendables(values) {
   const found = [];
-  for (const [path, type] of values) {
-    if (!path.startsWith("nt:/") || !path.endsWith("/.type") || typeof type !== "string") continue;
-    const folder = path.slice(0, -"/.type".length);
-    const parents = found.filter((each) => folder.startsWith(`${each.path}/`));
-    if (parents.length === 0) found.push({ path: folder, name: folder.split("/").pop(), type });
+  for (const [path, type] of typedTables(values)) {
+    const isInOne = found.some((each) => path.startsWith(`${each.path}/`));
+    if (!isInOne) found.push({ path, name: path.split("/").pop(), type });
   }
   return found;
 }
