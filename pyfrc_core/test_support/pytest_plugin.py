@@ -43,13 +43,13 @@ from ..runtime.threads.cooperative import line_of_thread
 from ..runtime.threads.robot_threads import RobotThread
 from ..wording import from_here
 from ..wpi import robots
-from . import controller, opmodes
+from . import opmodes
 from .controller import TestController
 from .device_misuse import warning_of_misuse
 from .fake_time import FakeTime
 from .hangs import ROBOT_FIXTURES, WatchedTests
 from .options import READY_MADE_TESTS, TestOptions
-from .reporting import BUG, UNREPEATABLE, bug_of, put_first
+from .reporting import BUG, NEVER_RUN, UNREPEATABLE, bug_of, never_ran_the_robot, put_first, seed_section
 
 if TYPE_CHECKING:
     from ..physics.core import PhysicsInterface
@@ -332,7 +332,7 @@ class PyFrcPlugin(WatchedTests):
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
         short = not item.config.option.fulltrace
         # Checked before pyfrc's own frames are removed from the traceback.
-        never_run = call.excinfo is not None and call.when == "call" and _never_ran_the_robot(item, call.excinfo)
+        never_run = call.excinfo is not None and call.when == "call" and never_ran_the_robot(item, call.excinfo)
         files = self.project.files
         text, only, explained = None, False, call.excinfo is not None
         if call.excinfo is not None:
@@ -362,30 +362,11 @@ class PyFrcPlugin(WatchedTests):
                 known = nearest(error.argname, sorted(ROBOT_FIXTURES))
                 report.longrepr = f"{file}:{(line or 0) + 1}: there is no fixture {error.argname!r}\n  {known}"
             if never_run:
-                report.sections.append(_NEVER_RUN)
+                report.sections.append(NEVER_RUN)
             elif isinstance(error, AssertionError) and not hasattr(report, BUG):
                 report.sections += opmodes.hint_without_opmode(item)
             report.sections.append(seed_section(self.options))
         return report
-
-
-_NEVER_RUN = (
-    "pyfrc",
-    "The robot was never run in this test: call control.run_test(...), or step inside `with control.run_robot():`.",
-)
-
-
-def _never_ran_the_robot(item: pytest.Item, failure: pytest.ExceptionInfo[BaseException]) -> bool:
-    """Return whether a test with a robot failed before it ran the robot, for no other reason that is known."""
-    run = (getattr(item, "funcargs", None) or {}).get("_robot_run")
-    if not isinstance(run, RobotRun) or run.started:
-        return False
-    error = failure.value
-    if isinstance(error, PyfrcError) or isinstance(getattr(error, "obj", None), controller.TestController):
-        return False  # a wrong key of `hal_data`, a misspelled method of `control`
-    if getattr(getattr(item, "function", None), "__module__", "").startswith(READY_MADE_TESTS):
-        return False  # that of docstrings looks at the robot's code only
-    return all(str(entry.path) != controller.__file__ for entry in failure.traceback)
 
 
 def _file_name(nodeid: str) -> str:
@@ -395,11 +376,6 @@ def _file_name(nodeid: str) -> str:
     plain = _NOT_IN_FILE_NAMES.sub("_", test)
     unique = "" if plain == test else "-" + sha256(test.encode()).hexdigest()[:8]
     return f"{file.replace('/', '_')}.{plain}{unique}.jsonl"
-
-
-def seed_section(options: TestOptions) -> tuple[str, str]:
-    """Return the section of a failure's report that shows the random seed."""
-    return "pyfrc", f"random seed: {options.seed} (--seed {options.seed} repeats it)"
 
 
 def _forget(run: RobotRun, item: pytest.Item) -> None:

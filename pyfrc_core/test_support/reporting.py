@@ -1,4 +1,4 @@
-"""Show the user's own file and line before everything else that pytest shows of a failure."""
+"""What pytest shows of a failure: the user's own file and line first, and pyfrc's own sections."""
 
 from __future__ import annotations
 
@@ -6,6 +6,10 @@ import re
 from typing import TYPE_CHECKING
 
 from ..compat import pytest_private
+from ..errors import PyfrcError
+from ..runtime.robot import RobotRun
+from . import controller
+from .options import READY_MADE_TESTS, TestOptions
 
 if TYPE_CHECKING:
     import pytest
@@ -16,6 +20,12 @@ BUG = "pyfrc_bug"
 
 #: The attribute of a report with the devices of the robot that do not repeat.
 UNREPEATABLE = "pyfrc_unrepeatable"
+
+#: The section of a report for a failure of a test that never ran the robot.
+NEVER_RUN = (
+    "pyfrc",
+    "The robot was never run in this test: call control.run_test(...), or step inside `with control.run_robot():`.",
+)
 
 #: Numbers in a message, such as times and addresses, differ from test to test.
 _NUMBER = re.compile(r"0x[0-9a-f]+|\d+(\.\d+)?(e-?\d+)?")
@@ -39,3 +49,21 @@ def bug_of(headline: str | None) -> str | None:
     if headline is None or (found := re.match(r"[^\n]*?\.py:\d+: ", headline)) is None:
         return None
     return found[0] + _NUMBER.sub("#", headline[found.end() :].partition("\n")[0])
+
+
+def never_ran_the_robot(item: pytest.Item, failure: pytest.ExceptionInfo[BaseException]) -> bool:
+    """Return whether a test with a robot failed before it ran the robot, for no other reason that is known."""
+    run = (getattr(item, "funcargs", None) or {}).get("_robot_run")
+    if not isinstance(run, RobotRun) or run.started:
+        return False
+    error = failure.value
+    if isinstance(error, PyfrcError) or isinstance(getattr(error, "obj", None), controller.TestController):
+        return False  # a wrong key of `hal_data`, a misspelled method of `control`
+    if getattr(getattr(item, "function", None), "__module__", "").startswith(READY_MADE_TESTS):
+        return False  # that of docstrings looks at the robot's code only
+    return all(str(entry.path) != controller.__file__ for entry in failure.traceback)
+
+
+def seed_section(options: TestOptions) -> tuple[str, str]:
+    """Return the section of a failure's report that shows the random seed."""
+    return "pyfrc", f"random seed: {options.seed} (--seed {options.seed} repeats it)"

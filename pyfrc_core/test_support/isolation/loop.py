@@ -36,9 +36,9 @@ from ...runtime.threads.fork_obstacles import reasons_not_to_fork
 from ...runtime.turns import taking_turns
 from ..hangs import ROBOT_FIXTURES
 from ..options import Jobs
-from ..pytest_plugin import PyFrcPlugin, seed_section
+from ..pytest_plugin import PyFrcPlugin
 from ..remembered_passes import PASSES
-from ..reporting import BUG, bug_of
+from ..reporting import BUG, bug_of, seed_section
 from .durations import Durations, longest_first
 from .interpreters import start_interpreters
 from .messages import replay
