@@ -7,8 +7,7 @@ as `json` does, though not always in the same form: 0.00001 is 1e-05 with `json`
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Mapping
-from functools import cache
+from collections.abc import Collection, Mapping
 from typing import Any
 
 #: The key of a line's values that do not repeat.
@@ -55,15 +54,10 @@ def repeatable_part(change: dict[str, object]) -> dict[str, Any] | None:
     return change if change["set"] or "gone" in change else None
 
 
-@cache
-def _writer() -> Callable[..., bytes]:
+def _to_json(content: Mapping[str, object]) -> str:
     from pydantic_core import to_json  # only here: most commands trace nothing
 
-    return to_json
-
-
-def _to_json(content: Mapping[str, object]) -> str:
     try:
-        return _writer()(content, inf_nan_mode="constants").decode()
+        return to_json(content, inf_nan_mode="constants").decode()
     except ValueError:  # half of a surrogate pair, which UTF-8 lacks
         return json.dumps(content, separators=(",", ":"))

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 #: The largest message that a page may send, in bytes.
 _MOST_MESSAGE = 1 << 20
-#: How often pages are asked whether they are there, and how long they may take to answer, in seconds: the browser
-#: answers by itself, however busy its page is.
+#: How often pages are asked whether they are there, and how long they may take to respond, in seconds: the browser
+#: responds by itself, however busy its page is.
 _PING_SECONDS, _GONE_SECONDS = 1.0, 3.0
 #: How long each step of the end may take, in seconds; longer than the app waits for a page.
 _CLOSING_SECONDS = 3.0

@@ -126,7 +126,7 @@ export function ask(type, fields = {}) {
   });
 }
 
-// What moves the robot. While the panels show the past, nobody would see it: it is refused, except that it lets go.
+// What moves the robot. While the panels show the past, no one would see it: it is refused, except that it lets go.
 const MOVES = new Set(["enable", "practice", "write", "button", "pov", "plug", "place", "reset_position"]);
 
 export function refusedInPast() {

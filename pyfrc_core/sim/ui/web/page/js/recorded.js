@@ -1,4 +1,4 @@
-// A run that is part of this file, as `--page` writes it: it answers what the server answers about the past.
+// A run that is part of this file, as `--page` writes it: it replies as the server does about the past.
 // `value_history.py` says how its values are stored.
 import { elementIn } from "#js/parts.js";
 import { indexAfter } from "#js/times.js";

@@ -9,7 +9,7 @@ const FIRST_POINTS = 8000; // more than the packets of a match, of the history, 
 const MOST_POINTS = 40000;
 const NEWEST_POINTS = 20000;
 
-const LATEST = 1e9; // seconds: whatever the newest moment is when the server answers
+const LATEST = 1e9; // seconds: whatever the newest moment is when the server replies
 
 const series = new Map(); // path: { kind, t: [], v: [], users, isLoaded, exactFrom: since when each change is there }
 
