@@ -19,6 +19,7 @@ from ..models.wording import MODES, NO_OPMODE, STATIONS
 from .dashboards import Dashboards
 
 if TYPE_CHECKING:
+    from ....project import Project
     from ...engine.source import Source
 
 _BATTERY = re.compile(r"battery_?voltage$", re.IGNORECASE)
@@ -34,7 +35,6 @@ def greeting(source: Source, client: int, read_only: bool, watching: bool = Fals
     :param watching: whether saved files bring new code
     """
     project, abilities = source.project, source.abilities
-    config, dashboards = project.sim_config, CURRENT.dashboards
     return {
         "type": "hello",
         "protocol": PROTOCOL,
@@ -47,54 +47,54 @@ def greeting(source: Source, client: int, read_only: bool, watching: bool = Fals
             "main": project.main_file.name,
         },
         "source": {
-            "kind": abilities.kind,
             "title": source.title,
             "when": None if source.when is None else source.when.isoformat(timespec="minutes"),
-            "drives": abilities.drives,
-            "rewinds": abilities.rewinds,
-            "writes": abilities.writes,
-            "over": abilities.over,
-            "replays": abilities.replays,
+            **asdict(abilities),
         },
-        "options": {
-            "watch": watching,
-            "alliances": STATIONS,
-            "game_messages": list(project.game_specific_messages),
-            "modes": MODES,
-            "no_opmode": NO_OPMODE,
-            "dashboard": {
-                "tables": [f"nt:{table}" for table in dashboards.tables],
-                "robot": re.sub(r"^nt:.*:/", "nt:/", dashboards.robot_on_field),
-                "choice": dashboards.choice,
-                "publishing": dashboards.publishing,
-            },
-            "speeds": {"slowest": SLOWEST, "fastest": FASTEST},
-            "joysticks": [
-                {"axes": axis_labels(config, stick), "buttons": button_labels(config, stick)}
-                for stick in range(JOYSTICKS)
-            ],
-            "buttons": {"first": FIRST_BUTTON, "most": MOST_BUTTONS},
-            "gamepad": asdict(CURRENT.gamepad),
-            "keyboard": {
-                "layouts": [
-                    {
-                        "name": layout.name,
-                        "help": layout.help,
-                        "axes": {
-                            key: [(*control, by) for control, by in moves.items()] for key, moves in layout.axes.items()
-                        },
-                    }
-                    for layout in LAYOUTS
-                ],
-                "chosen": layout_for(config).name,
-                "gentle": GENTLE,
-                "button_keys": BUTTON_KEYS,
-                "button_keys_text": BUTTON_KEYS_TEXT,
-                "enable_chord": sorted(ENABLE_CHORD),
-            },
-        },
+        "options": _options(project, watching),
         "layout": load_layout(project.root) if abilities.drives else _looking(source, load_layout(project.root)),
         "dashboards": Dashboards(project.root).found(),
+    }
+
+
+def _options(project: Project, watching: bool) -> dict[str, Any]:
+    """Return what a page offers: it depends on the project and the season."""
+    config, dashboards = project.sim_config, CURRENT.dashboards
+    return {
+        "watch": watching,
+        "alliances": STATIONS,
+        "game_messages": list(project.game_specific_messages),
+        "modes": MODES,
+        "no_opmode": NO_OPMODE,
+        "dashboard": {
+            "tables": [f"nt:{table}" for table in dashboards.tables],
+            "robot": re.sub(r"^nt:.*:/", "nt:/", dashboards.robot_on_field),
+            "choice": dashboards.choice,
+            "publishing": dashboards.publishing,
+        },
+        "speeds": {"slowest": SLOWEST, "fastest": FASTEST},
+        "joysticks": [
+            {"axes": axis_labels(config, stick), "buttons": button_labels(config, stick)} for stick in range(JOYSTICKS)
+        ],
+        "buttons": {"first": FIRST_BUTTON, "most": MOST_BUTTONS},
+        "gamepad": asdict(CURRENT.gamepad),
+        "keyboard": {
+            "layouts": [
+                {
+                    "name": layout.name,
+                    "help": layout.help,
+                    "axes": {
+                        key: [(*control, by) for control, by in moves.items()] for key, moves in layout.axes.items()
+                    },
+                }
+                for layout in LAYOUTS
+            ],
+            "chosen": layout_for(config).name,
+            "gentle": GENTLE,
+            "button_keys": BUTTON_KEYS,
+            "button_keys_text": BUTTON_KEYS_TEXT,
+            "enable_chord": sorted(ENABLE_CHORD),
+        },
     }
 
 

@@ -7,13 +7,14 @@ import re
 import sys
 import sysconfig
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ....config.pictures import field_picture
 from ...engine.snapshot import Failure
+from ...engine.source import Abilities
 from .collector import Collector
 from .greeting import greeting, load_layout
 from .messages import json_text
@@ -88,11 +89,7 @@ def _hello(source: Source, collector: Collector, title: RunTitle) -> dict[str, A
     found["source"] |= {
         "title": title.what,
         "when": when.isoformat(timespec="minutes"),
-        "drives": False,
-        "rewinds": False,
-        "writes": False,
-        "over": True,
-        "replays": False,
+        **asdict(Abilities(source.abilities.kind, over=True)),
     }
     if source.abilities.drives:
         found["layout"] = _layout(load_layout(source.project.root), collector)
