@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from functools import partial
 from itertools import count
@@ -54,7 +54,7 @@ class Interpreter:
 
     :param prepare: None: it does one piece of work
     :param keeps_output: whether what it prints is in files, and not where these say:
-    :param stdout, stderr, environment, ends_with_owner: see `spawn.Start`
+    :param stdout, stderr: see `spawn.Start`
     """
 
     def __init__(
@@ -64,8 +64,6 @@ class Interpreter:
         keeps_output: bool = False,
         stdout: int | IO[bytes] | None = subprocess.DEVNULL,
         stderr: int | IO[bytes] | None = subprocess.DEVNULL,
-        environment: Mapping[str, str] | None = None,
-        ends_with_owner: bool = True,
     ) -> None:
         self._temporary = tempfile.TemporaryDirectory(prefix="pyfrc-process-", ignore_cleanup_errors=True)
         self._directory = Path(self._temporary.name)
@@ -75,8 +73,7 @@ class Interpreter:
             if keeps_output:
                 stdout, stderr = (files.enter_context(file.open("ab")) for file in _output_in(self._directory))
             call = partial(_serve, prepare, self._directory)
-            start = spawn.Start(call, stdout, stderr, environment, ends_with_owner=ends_with_owner)
-            self._process = spawn.open_interpreter(start)
+            self._process = spawn.open_interpreter(spawn.Start(call, stdout, stderr))
 
     def begin(self, work: Work, owned: bool = False) -> SpawnedWorker:
         """Begin a piece of work; the one before must be over.
@@ -233,14 +230,12 @@ def spawn_worker(
     work: Work,
     stdout: int | IO[bytes] | None = subprocess.DEVNULL,
     stderr: int | IO[bytes] | None = subprocess.DEVNULL,
-    environment: Mapping[str, str] | None = None,
 ) -> SpawnedWorker:
     """Do a piece of work in an interpreter of its own.
 
-    :param stdout, stderr, environment: see `spawn.Start`
+    :param stdout, stderr: see `spawn.Start`
     """
-    interpreter = Interpreter(stdout=stdout, stderr=stderr, environment=environment)
-    return interpreter.begin(work, owned=True)
+    return Interpreter(stdout=stdout, stderr=stderr).begin(work, owned=True)
 
 
 def _output_in(directory: Path) -> list[Path]:

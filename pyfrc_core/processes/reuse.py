@@ -7,7 +7,7 @@ An interpreter that crashes, or is ended because it hangs, is replaced in the sa
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -22,18 +22,10 @@ class Interpreters:
     :param prepare: called in each before its first work; None: each does one piece of work
     :param ahead: how many to start now, for the first work
     :param keeps_output: whether their workers return what was printed
-    :param environment: variables that differ from this process's
     """
 
-    def __init__(
-        self,
-        prepare: Prepare | None,
-        ahead: int = 0,
-        *,
-        keeps_output: bool = False,
-        environment: Mapping[str, str] | None = None,
-    ) -> None:
-        self._prepare, self._keeps_output, self._environment = prepare, keeps_output, environment
+    def __init__(self, prepare: Prepare | None, ahead: int = 0, *, keeps_output: bool = False) -> None:
+        self._prepare, self._keeps_output = prepare, keeps_output
         #: What the first piece of work has left after which an interpreter was not used again, as far as it is known.
         self.reason = ""
         #: Those that were started ahead, and those that have done their work, which may have left something.
@@ -119,4 +111,4 @@ class Interpreters:
             self._unused.append(self._start())
 
     def _start(self) -> Interpreter:
-        return Interpreter(self._prepare, keeps_output=self._keeps_output, environment=self._environment)
+        return Interpreter(self._prepare, keeps_output=self._keeps_output)

@@ -91,15 +91,14 @@ def parse_message(kind: bytes, body: bytes) -> Message:
 
 
 class LaptopPipe(RawIOBase):
-    """A pipe to the laptop. A laptop that reads nothing for some time counts as disconnected.
+    """A pipe to the laptop. A laptop that reads nothing for `SILENCE_SECONDS` counts as disconnected.
 
     :param descriptor: the pipe's file descriptor
-    :param limit: the time in seconds
     """
 
-    def __init__(self, descriptor: int, limit: float = SILENCE_SECONDS) -> None:
+    def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
-        self._limit = limit
+        self._limit = SILENCE_SECONDS
 
     def write(self, data: Any, /) -> int:
         """Write all data.
