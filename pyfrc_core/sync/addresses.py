@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from urllib.parse import urlsplit
+from urllib.parse import unquote, urlsplit
 
 from ..season import Season
 
@@ -28,6 +28,11 @@ def replaced_python_url() -> str | None:
     if not named or urlsplit(named).scheme in ("http", "https", "file"):
         return named or None
     return Path(named).absolute().as_uri()
+
+
+def file_name_in(url: str) -> str:
+    """Return the name of the file at an address."""
+    return unquote(urlsplit(url).path.rpartition("/")[2])
 
 
 def link_directories(find_links: Sequence[str]) -> list[Path]:

@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import PyfrcError
-from ..file_hash import hash_file
 from ..file_lock import lock
 from ..season import Season
 from .lock import PYTHON, LockedFile
@@ -38,11 +37,7 @@ class Cache:
 
     def has(self, locked: LockedFile) -> bool:
         """Return whether a file is there, with the locked size and hash."""
-        path = self.path_of(locked)
-        try:
-            return path.stat().st_size == locked.size and hash_file(path) == (locked.sha256, locked.size)
-        except OSError:
-            return False
+        return locked.is_at(self.path_of(locked))
 
     @contextmanager
     def changed_alone(self, waiting: Callable[[], None]) -> Iterator[None]:

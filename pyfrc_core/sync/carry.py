@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
 from pathlib import Path
 
 from ..errors import PyfrcError, UsageError
@@ -26,7 +25,7 @@ def carry(lock: Lock, season: Season, to: Path) -> int:
         to.mkdir(parents=True, exist_ok=True)
     except FileExistsError:
         raise UsageError(f"--to {to} is a file", remedy="Name a directory.") from None
-    cache, missing = cache_of(season), [each for each in lock.files if find_in([to], each) is None]
+    cache, missing = cache_of(season), [each for each in lock.files if not each.is_at(to / each.file)]
     needed, free = sum(each.size for each in missing), shutil.disk_usage(to).free
     if needed > free:
         text = f"{to} has {size_text(free)} free, and {size_text(needed)} are needed"
@@ -51,18 +50,6 @@ def lock_in(source: Path, season: Season) -> Lock:
             remedy="Fill the directory on a computer with internet, in this project: pyfrc sync --to DIRECTORY",
         )
     return lock
-
-
-def find_in(directories: Sequence[Path], locked: LockedFile) -> Path | None:
-    """Return the first of these directories that has a file with the locked content."""
-    for directory in directories:
-        file = directory / locked.file
-        try:
-            if file.stat().st_size == locked.size and hash_file(file)[0] == locked.sha256:
-                return directory
-        except OSError:
-            continue
-    return None
 
 
 def take(locked: LockedFile, source: Path, to: Path) -> None:

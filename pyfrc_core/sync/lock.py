@@ -11,6 +11,7 @@ from typing import Any
 
 from ..config.toml_file import TomlFile
 from ..errors import SettingsError
+from ..file_hash import hash_file
 from ..project import Project
 from ..season import Season
 from ..text_files import write_whole
@@ -53,6 +54,13 @@ class LockedFile:
 
     def __str__(self) -> str:
         return f"{'Python' if self.name == PYTHON else self.name} {self.version}"
+
+    def is_at(self, path: Path) -> bool:
+        """Return whether the file at a path has this size and hash."""
+        try:
+            return path.stat().st_size == self.size and hash_file(path) == (self.sha256, self.size)
+        except OSError:
+            return False
 
 
 @dataclass(frozen=True)

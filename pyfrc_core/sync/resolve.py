@@ -15,12 +15,12 @@ from importlib import metadata
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
-from urllib.parse import unquote, urlsplit, urlunsplit
+from urllib.parse import urlsplit, urlunsplit
 
 from ..compat.pip_private import pip_command
 from ..errors import PyfrcError
 from ..season import Season
-from .addresses import index_of
+from .addresses import file_name_in, index_of
 from .pip_errors import explain
 from .wanted import robot_environment
 
@@ -50,7 +50,7 @@ class Found:
     @property
     def file(self) -> str:
         """The file's name."""
-        return unquote(urlsplit(self.url).path.rpartition("/")[2])
+        return file_name_in(self.url)
 
 
 def find_packages(

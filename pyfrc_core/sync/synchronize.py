@@ -7,16 +7,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
-from urllib.parse import unquote, urlsplit
 
 from ..errors import PyfrcError, SettingsError, UsageError
 from ..file_hash import hash_file
 from ..project import Project
 from ..season import Season
 from ..wording import size_text
-from .addresses import PYTHON_VARIABLE, link_directories, replaced_python_url
+from .addresses import PYTHON_VARIABLE, file_name_in, link_directories, replaced_python_url
 from .cache import Cache, cache_of
-from .carry import find_in, lock_in, take
+from .carry import lock_in, take
 from .download import Download, Downloader, DownloadError
 from .lock import PYTHON, Lock, LockedFile, is_file_name, load_lock, lock_file_of, save_lock
 from .pip_errors import NothingFitsError
@@ -160,7 +159,7 @@ class _Work:
     def take_all(self, lock: Lock, source: Path) -> None:
         """Copy the locked files that the cache lacks from a directory."""
         missing = self._missing(lock)
-        lacking = [each for each in missing if find_in([source], each) is None]
+        lacking = [each for each in missing if not each.is_at(source / each.file)]
         if lacking:
             named = ", ".join(each.file for each in lacking[:3])
             more = f" and {len(lacking) - 3} more" if len(lacking) > 3 else ""
@@ -218,7 +217,7 @@ class _Work:
                 self._get(locked)
             return locked
         url = replaced_python_url() or self._season.downloads.python_url
-        file = unquote(urlsplit(url).path.rpartition("/")[2])
+        file = file_name_in(url)
         if not is_file_name(file):
             text = f"{PYTHON_VARIABLE} is {url}, whose last part cannot be the name of a file in the lock"
             raise UsageError(text, remedy="Use letters, digits and ._+-! in its name, such as python.tar.gz.")
@@ -268,7 +267,7 @@ class _Work:
         return whole
 
     def _directory_with(self, locked: LockedFile) -> Path | None:
-        return next((each for each in self._directories if find_in([each], locked) is not None), None)
+        return next((each for each in self._directories if locked.is_at(each / locked.file)), None)
 
     def _copy(self, locked: LockedFile, source: Path) -> None:
         take(locked, source, self._cache.path_of(locked))
