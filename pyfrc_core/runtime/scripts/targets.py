@@ -57,17 +57,17 @@ class Countdown:
 
     def __init__(self) -> None:
         #: When it ends; None before it was started.
-        self.ends_us: int | None = None
+        self._ends_us: int | None = None
 
     def start(self, left: float, now_us: int) -> None:
-        self.ends_us = now_us + to_us(left)
+        self._ends_us = now_us + to_us(left)
 
     def stop(self) -> None:
-        self.ends_us = None
+        self._ends_us = None
 
     def left(self, now_us: int) -> float | None:
         """The seconds left; None before it was started."""
-        return None if self.ends_us is None else max(0, self.ends_us - now_us) / 1_000_000
+        return None if self._ends_us is None else max(0, self._ends_us - now_us) / 1_000_000
 
 
 class Targets:
@@ -164,8 +164,8 @@ class Targets:
 
     def count_down(self, now_us: int) -> None:
         """Called at each packet: the match's time goes on."""
-        if (ends_us := self._countdown.ends_us) is not None:
-            station.set_match_time(max(0, ends_us - now_us) / 1_000_000)  # as `Countdown.left`
+        if (left := self._countdown.left(now_us)) is not None:
+            station.set_match_time(left)
 
     @staticmethod
     def _is_path(target: str) -> bool:
