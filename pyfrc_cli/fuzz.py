@@ -151,7 +151,7 @@ def command(
         from pyfrc_core.fuzz.campaign.results import CampaignOptions
         from pyfrc_core.fuzz.campaign.stream import Shard
         from pyfrc_core.processors import usable_processors
-        from pyfrc_core.runtime.scripts.inputs_file import load_inputs
+        from pyfrc_core.runtime.scripts.inputs_file import load_inputs, remarks
     if merge:
         _merge(project, directories)
         return
@@ -160,6 +160,8 @@ def command(
         seconds = _DEFAULT_SECONDS
     printer = _ProgressPrinter(verbosity().quiet, project)
     scripts = tuple(load_inputs(file) for file in recorded)
+    for remark in (each for script in scripts for each in remarks(script)):
+        click.echo(remark)
     jobs = jobs or usable_processors()
     options = CampaignOptions(seed or 0, runs, seconds, jobs, scripts, Shard(*shard), resume)
     if revision is not None:

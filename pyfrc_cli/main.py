@@ -87,7 +87,10 @@ class Commands(click.Group):
             if args[0].endswith(".py"):
                 hint = " pyfrc finds the robot's file by itself, for example: pyfrc sim"
             raise click.UsageError(f"There is no command {args[0]!r}.{hint}", ctx)
-        return super().resolve_command(ctx, args)
+        name, command, rest = super().resolve_command(ctx, args)
+        if command is not None and not ctx.resilient_parsing:
+            refuse_repeated_options(command, name, rest, ctx)
+        return name, command, rest
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         from click.shell_completion import CompletionItem
@@ -98,6 +101,21 @@ class Commands(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
             formatter.write_dl([(name, text) for name, (_, text) in COMMANDS.items()])
+
+
+def refuse_repeated_options(command: click.Command, name: str | None, words: list[str], parent: click.Context) -> None:
+    """Refuse an option with one value that is given twice, of which click would take the last one silently.
+
+    :param words: those after the command's name
+    :raises UsageError: naming it
+    """
+    context = click.Context(command, parent, name, **command.context_settings)
+    _, _, given = command.make_parser(context).parse_args(list(words))
+    options = (each for each in given if isinstance(each, click.Option))
+    once = [each for each in options if not (each.multiple or each.is_flag or each.count)]
+    for number, option in enumerate(once):
+        if option in once[:number]:
+            raise click.UsageError(f"{max(option.opts, key=len)} is given twice: give it once.", context)
 
 
 def loaded(name: str) -> click.Command:

@@ -14,5 +14,5 @@ allow_host_option = click.option(
     "--allow-host",
     multiple=True,
     metavar="HOST",
-    help="Also serve the page under this host name, to which a port of this computer is forwarded.",
+    help="Also serve the page under this host name, to which a port of this computer is forwarded; may be repeated.",
 )

@@ -62,7 +62,7 @@ def command(
 
         draw_script(project, file, picture, until)
         hint(f"wrote {picture}")
-    result = replay(project, file, until=until, trace=trace)
+    result = replay(project, file, until=until, trace=trace, say=click.echo)
     if page is not None:
         from pyfrc_core.sim.page_file import write_replay_page
 

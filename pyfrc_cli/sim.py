@@ -104,7 +104,7 @@ from .verbosity import verbosity
     "extensions",
     multiple=True,
     metavar="NAME",
-    help="Load one of WPILib's simulation extensions: ds-socket, ws-server, ws-client.",
+    help="Load one of WPILib's simulation extensions: ds-socket, ws-server, ws-client; may be repeated.",
 )
 @click.option(
     "--share",

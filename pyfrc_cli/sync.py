@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     "--to", metavar="DIR", type=WrittenDirectory(), help="Copy everything to this directory, such as a USB stick."
 )
 @click.option("--from", "source", metavar="DIR", type=ReadPath(), help="Take everything from such a directory.")
-@click.option("--find-links", metavar="PLACE", multiple=True, help="Let pip look for packages there, too.")
+@click.option(
+    "--find-links", metavar="PLACE", multiple=True, help="Let pip look for packages there, too; may be repeated."
+)
 @click.option("--use-certifi", is_flag=True, help="Trust the certificates of certifi instead of the system's.")
 def command(
     directory: Path | None,

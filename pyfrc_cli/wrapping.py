@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .main import COMMANDS, loaded
+from .main import COMMANDS, loaded, refuse_repeated_options
 from .project_options import chosen_project
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ def wrapped_command(context: click.Context, words: Sequence[str], wrappable: Seq
         raise click.UsageError(
             f"{name!r} is not a command that can be measured. These can: {', '.join(known)}.", context
         )
+    refuse_repeated_options(loaded(name), name, arguments, context)
     inner = loaded(name).make_context(name, arguments, parent=context)
     options = inner.params
     with inner.scope(cleanup=False):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -28,7 +28,7 @@ from .runtime.real_time_pace import RealTimePace
 from .runtime.robot import RobotRun
 from .runtime.scripts.boots import boots_of
 from .runtime.scripts.files import traced
-from .runtime.scripts.inputs_file import load_inputs
+from .runtime.scripts.inputs_file import load_inputs, remarks
 from .runtime.scripts.player import Player
 from .runtime.scripts.script import InputScript, trace_beside
 from .runtime.scripts.trace_difference import Difference, first_difference
@@ -57,16 +57,26 @@ class ReplayResult:
     starts: int = 1
 
 
-def replay(project: Project, file: Path, *, until: float | None = None, trace: Path | None = None) -> ReplayResult:
+def replay(
+    project: Project,
+    file: Path,
+    *,
+    until: float | None = None,
+    trace: Path | None = None,
+    say: Callable[[str], object] = lambda text: None,
+) -> ReplayResult:
     """Run the robot with the inputs of the script in `file`.
 
     :param until: an earlier end, in seconds of robot time; then the trace is compared up to there only
     :param trace: where to write the trace
+    :param say: prints what users should know about the file
     :raises ScriptError: when the script is not valid, or does not fit the robot
     :raises InvariantError: when a rule cannot be called
     :raises RobotCodeError: when the robot's code, or a file with rules, cannot be imported
     """
     script = load_inputs(file)
+    for remark in remarks(script):
+        say(remark)
     if len(boots_of(script)) > 1:
         return _replay_boots(project, script, until, trace)
     if script.story and (ended := _process_failure(project, script)) is not None:

@@ -219,7 +219,7 @@ def test_a_very_long_log_is_shown_as_far_as_memory_allows(tmp_path: Path) -> Non
     file = a_match().save(tmp_path / "long.wpilog")
     found = read_wpilog(file, most=100)
     assert sum(len(column.moments) for column in found.columns.values()) == 100
-    assert "its first 100 records are shown" in found.problem
+    assert "its first 100 records are read" in found.problem
 
 
 def _whole(kind: str) -> bytes:
@@ -370,4 +370,4 @@ def test_recordings_and_traces(tmp_path: Path) -> None:
     assert list(run.histories["hal"].changes("pwm[0].value", 0, 1.2)[1]) == [0.0, 0.5]
     assert "pwm[0].value" not in run.histories["hal"].now
     trace.write_text("".join(json.dumps(each) + "\n" for each in lines[:3]) + '{"t": 1.2, "se')
-    assert open_log(trace, HEIGHT).problem == "drive.trace.jsonl: line 4 is cut."
+    assert open_log(trace, HEIGHT).problem == "line 4 is cut"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,9 +16,11 @@ from sim_robots import PATIENCE
 from web_pages import Served, served_source
 from wpiutil import DataLogWriter
 from wpiutil.log import BooleanLogEntry, DoubleArrayLogEntry, DoubleLogEntry, StringLogEntry
+from written_logs import a_match
 
 from pyfrc_core.project import find_project
 from pyfrc_core.runtime.scripts.inputs_file import load_inputs
+from pyfrc_core.season import CURRENT
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine.past_run import Comparison
 from pyfrc_core.sim.engine.value_history import ValueHistory
@@ -193,9 +196,43 @@ def test_a_log_is_not_overwritten_by_what_is_written(recorded: RobotProject) -> 
 
 
 def test_a_log_that_is_cut_says_so(recorded: RobotProject) -> None:
-    log = recorded.path / "match.wpilog"
+    log, trace = recorded.path / "match.wpilog", recorded.path / "match.trace.jsonl"
     log.write_bytes(log.read_bytes()[:-2])
-    assert "match.wpilog: it is cut at byte" in log_of(recorded, "match.wpilog")
+    for command in ((*SIM, "--log"), (*SIM, "--script"), ("replay",), ("fuzz", "--runs", "1", "--from")):
+        result = recorded.run(*command, "match.wpilog")
+        assert result.code == 0, result.output
+        assert result.stdout.count("match.wpilog: it is cut at byte") == 1, command
+    trace.write_bytes(trace.read_bytes()[:-70])  # within its last change: the hash has a line of its own
+    assert re.search(r"^match.jsonl: line \d+ is cut\.$", log_of(recorded, "match.jsonl"), re.MULTILINE)
+    result = recorded.run("replay", "match.jsonl")
+    assert result.code == 2
+    assert re.match(r"match.trace.jsonl:\d+: this trace is cut or damaged", result.first_error)
+
+
+REPLAYING = """
+    from pathlib import Path
+
+    def test_the_match(control, robot):
+        control.replay(Path(__file__).with_name("match.wpilog"))
+"""
+
+
+def test_a_log_of_another_year_says_so(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": PUBLISHING, "tests/replay_test.py": REPLAYING})
+    year = CURRENT.year - 1
+    log = a_match()
+    log.values("systemTime", "int64", "q", (5, round(datetime(year, 3, 7, tzinfo=timezone.utc).timestamp() * 1e6)))
+    log.save(project.path / "match.wpilog")
+    log.save(project.path / "tests" / "match.wpilog")
+    sentence = f"match.wpilog is of {year}, and WPILib {CURRENT.year} is installed here: the field, devices and"
+    assert log_of(project, "match.wpilog").startswith(sentence)
+    assert project.run("replay", "match.wpilog").stdout.startswith(sentence)
+    tested = project.run("test")
+    assert tested.code == 0, tested.output
+    assert sentence in tested.stdout.replace("\n", " ")
+    script = DRIVEN.replace('"end": 4.0', f'"end": 4.0, "packages": {{"wpilib": "{year}.3.1"}}')
+    (project.path / "drive.jsonl").write_text(script, encoding="utf-8")
+    assert project.run("replay", "drive.jsonl").stdout.startswith(f"drive.jsonl is of {year}, and")
 
 
 def test_a_trace_stands_for_the_script_beside_it(recorded: RobotProject) -> None:
@@ -275,7 +312,13 @@ def test_the_log_of_a_robot_is_shown_on_the_times_of_the_simulation(played: Robo
     said = log_of(played, "match.wpilog")
     # At 0.85, since 5 % of the range are 0.05.
     assert "differs first at 0:06.84, in Elevator/setpoint: 0.854 in match.wpilog, 0.8 here" in said
-    assert "no difference: 2 values" in log_of(played, "match.wpilog", "--tolerance", "25")
+    assert "differs slightly" not in said
+    said = log_of(played, "match.wpilog", "--tolerance", "25")
+    assert "no difference: 2 values" in said
+    slightly = r"^differs slightly, at most by this share of its range: Elevator/setpoint \((\d+) %\)$"
+    found = re.search(slightly, said, re.MULTILINE)
+    assert found is not None
+    assert 15 <= int(found[1]) <= 20  # 0.994 in the log, 0.8 here, in which there are 0.004 of noise
 
 
 def test_what_a_person_has_set_on_a_dashboard_is_named(played: RobotProject) -> None:
@@ -395,6 +438,20 @@ def test_a_value_of_a_log_may_be_late_and_noisy(here: list, log: list, differs: 
     assert found.compared == 1
 
 
+@pytest.mark.parametrize(
+    ("here", "log", "slight"),
+    [
+        (STEPS, [(time, value + 0.4) for time, value in STEPS], 0.4 / 9.4),
+        (STEPS, [(time + 0.04, value) for time, value in STEPS], None),
+        ([(0.0, (1.0, 2.0))], [(0.0, (1.0, 2.02))], 0.02 / 1.02),
+    ],
+)
+def test_how_much_a_value_differs_that_does_not_count(here: list, log: list, slight: float | None) -> None:
+    found = FirstDifference(0.0, 4.0, Comparison(True, 0.05, 0.06))
+    found.compare(history(*here), history(*log), "nt:/x")
+    assert found.sorted_slight() == ([] if slight is None else [("nt:/x", pytest.approx(slight))])
+
+
 def test_the_times_of_a_log_are_those_of_another_clock() -> None:
     found = FirstDifference(0.0, 4.0, Comparison(True), offset=-10.0)
     log = [(time + 10.0, value) for time, value in STEPS]
@@ -499,7 +556,7 @@ CHANCE = """
     import random
 
     import ntcore
-    from wpimath.geometry import Pose2d
+    from wpimath.geometry import Pose2d, Rotation3d
 
     class PhysicsEngine:
         def __init__(self, physics_controller):
@@ -507,6 +564,7 @@ CHANCE = """
             tables = ntcore.NetworkTableInstance.getDefault()
             table = tables.getTable("limelight")
             self.seen_at = tables.getStructTopic("/photonvision/front/pose", Pose2d).publish()
+            self.tilt = tables.getStructTopic("/photonvision/front/tilt", Rotation3d).publish()  # no schema
             self.table, self.angle = table, table.getEntry("tx")
             self.poses = table.getDoubleArrayTopic("botpose").publish()
             self.tag = table.getIntegerTopic("tid").publish()
@@ -515,6 +573,7 @@ CHANCE = """
             noise = [self.chance.uniform(-0.5, 0.5) for _ in range(3)]
             self.poses.set(noise, round(now * 1e6) - 3_000)  # when the picture was taken
             self.seen_at.set(Pose2d(noise[1], 0.0, 0.0))
+            self.tilt.set(Rotation3d(noise[2], 0.0, 0.0))
             self.tag.set(self.chance.randint(1, 30))
             if now < 1.0:
                 self.angle.setDouble(noise[0])
@@ -533,6 +592,7 @@ def test_cameras_measure_what_they_measured_in_the_log(log: str, make_project: M
     said = log_of(project, log, "--tolerance", "0", "--record", "again.jsonl")
     assert "no difference: " in said
     assert "sensors from the log, whatever today's code does: limelight, photonvision/front" in said
+    assert " only: " not in said
     result = project.run("replay", "again.jsonl")  # the recording of this run has them, too
     assert result.code == 0, result.output
     change(project, "robot.py", "GAIN = 1.0", "GAIN = 0.5")

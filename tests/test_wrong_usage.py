@@ -82,6 +82,21 @@ def test_a_project_without_tests_is_told_where_they_are_looked_for(make_project:
     assert "4 passed" in builtin.stdout
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        "sim --log a.wpilog --log b.wpilog",
+        "profile sim --log a.wpilog --log=b.wpilog",
+        "view a.wpilog --page a --page b",
+    ],
+)
+def test_an_option_that_is_given_twice_is_refused(words: str, make_project: MakeProject) -> None:
+    result = make_project({"robot.py": ROBOT}).run(*words.split())
+    assert result.code == 2
+    option = "--page" if "--page" in words else "--log"
+    assert f"Error: {option} is given twice: give it once." in result.stderr
+
+
 def test_a_mistyped_command_is_told_the_nearest(make_project: MakeProject) -> None:
     result = make_project({"robot.py": ROBOT}).run("tset")
     assert result.code == 2

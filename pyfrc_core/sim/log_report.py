@@ -69,6 +69,7 @@ class LogReport:
             return
         if not differing:
             yield f"no difference: {counted(found.compared, 'value')} that {log.name} has, too, {how} the same"
+            yield from self._slight(found)
             return
         (path, time), *others = differing
         there, here = differing_texts(*found.values[path])
@@ -77,6 +78,13 @@ class LogReport:
             yield f"then in {self._listed(map(_with_time, others))}"
         for moment in enabled_moments(log.histories["network"])[1:]:
             yield from self._after(moment + log.offset, time, branch)
+        yield from self._slight(found)
+
+    def _slight(self, found: FirstDifference) -> Iterator[str]:
+        """Say what differs by less than what counts as a difference: a changed constant may do no more."""
+        if slight := found.sorted_slight():
+            listed = self._listed(f"{name_of(path)} ({share * 100:.2g} %)" for path, share in slight)
+            yield f"differs slightly, at most by this share of its range: {listed}"
 
     def _after(self, enabled: float, first: float, branch: int) -> Iterator[str]:
         """Say what differs from a later enabling on, of what was equal before it."""

@@ -46,12 +46,10 @@ class LogRun:
 
     :param script: the inputs that it has
     :param run: what it shows, as a branch
-    :param problem: how the file is damaged; empty: it is whole
     """
 
     script: InputScript
     run: PastRun
-    problem: str
 
     @property
     def end(self) -> float:
@@ -89,7 +87,8 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
     logged = () if is_own else (path.removeprefix(VALUE) for path in run.histories["network"].paths())
     replayed = tuple(sorted(kit_names.subsystems(logged)))
     compared = Comparison(True, share, late, frozenset(written | sensors), replayed)
-    return LogRun(script, replace(run, offset=offset, compared=compared), opened.problem)
+    script = replace(script, problem=opened.problem)  # that of a trace, too
+    return LogRun(script, replace(run, offset=offset, compared=compared))
 
 
 def _script_of(file: Path) -> Path:

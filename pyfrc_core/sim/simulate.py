@@ -11,7 +11,7 @@ from ..disk_space import check_disk_space
 from ..errors import UsageError
 from ..interruption import ending_like_ctrl_c
 from ..project import Project
-from ..runtime.scripts.inputs_file import load_inputs
+from ..runtime.scripts.inputs_file import load_inputs, remarks
 from ..runtime.scripts.script import trace_beside
 from ..shell import quoted
 from .engine.options import NT4_PORT, SimOptions
@@ -38,8 +38,8 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     share = None if request.tolerance is None else request.tolerance / 100
     log = None if request.log is None else log_run(project, request.log, share, request.inputs)
     options = _options(request, kind, log)
-    if log is not None and log.problem:
-        say(f"{request.log}: {log.problem}.\n")
+    for remark in () if options.script is None else remarks(options.script):
+        say(f"{remark}\n")
     simulation = Simulation(project, options, None if log is None else log.run)
     page = None if request.page is None else PageFile(request.page, _what(project, request))
     files = OutputFiles(request.record, request.wpilog, request.picture, page)

@@ -15,7 +15,7 @@ from ..runtime.clock import to_us
 from ..runtime.exceptions import TestEnded
 from ..runtime.match import MatchPeriods
 from ..runtime.scripts.boots import boots_of
-from ..runtime.scripts.inputs_file import load_inputs
+from ..runtime.scripts.inputs_file import load_inputs, remarks
 from ..runtime.scripts.player import Player
 from ..runtime.seeds import seed_generators
 from ..wpi import station
@@ -209,6 +209,8 @@ class TestController:
         __tracebackhide__ = True
         self._begin("replay")
         script = load_inputs(Path(path))
+        for remark in remarks(script):
+            warnings.warn(remark, stacklevel=2)
         if self.project is not None and len(boots_of(script)) > 1:
             from ..fuzz.match.replay_in_subprocess import replay_in_subprocess
 

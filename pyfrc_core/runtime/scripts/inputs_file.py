@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
+from ...season import CURRENT
 from ...wording import from_here
 from .file_kinds import FOREIGN_LOGS, described, is_ds_log, is_wpilog, read_head
 from .script import InputScript, ScriptError, load_script, script_beside
@@ -55,3 +56,14 @@ def load_inputs(file: Path, given: Collection[str] = ()) -> InputScript:
     if not head:
         raise ScriptError("this file is empty", where=where, remedy=_KINDS)
     raise ScriptError(f"this is {what}, neither an input script nor a data log", where=where, remedy=remedy or _KINDS)
+
+
+def remarks(script: InputScript) -> Iterator[str]:
+    """Yield what users should know about the file of a script: that it is damaged, or of another season."""
+    if script.problem:
+        yield f"{script.file}: {script.problem}."
+    if script.year not in (None, CURRENT.year):
+        yield (
+            f"{script.file} is of {script.year}, and WPILib {CURRENT.year} is installed here: the field, devices and "
+            "the numbers of buttons may differ."
+        )

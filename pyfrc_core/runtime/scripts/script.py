@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import UsageError
+from ...season import year_of
 from ...text_files import write_whole
 from ...wording import from_here
 from ..robot_time import to_us
@@ -75,6 +76,8 @@ class InputScript:
     :param repeats: False if fuzzing has saved it although the robot did not fail again with it
     :param found: in scripts that fuzzing has saved: in which match of which campaign it was found, and its failure
     :param file: where it was read from, for errors
+    :param problem: how that file is damaged, as a sentence; empty: it is whole
+    :param year: the year of the WPILib with which it was recorded, if that is known
     """
 
     steps: tuple[Step, ...]
@@ -88,6 +91,8 @@ class InputScript:
     repeats: bool = True
     found: Mapping[str, Any] = field(default_factory=dict)
     file: str = field(default="script", compare=False)
+    problem: str = field(default="", compare=False)
+    year: int | None = field(default=None, compare=False)
 
     def lines(self) -> Iterator[str]:
         """The text, line by line."""
@@ -157,6 +162,7 @@ def parse_script(lines: Iterable[str], name: str = "script") -> InputScript:
     start, end = header.time("start", 0.0), header.time("end")
     if end < start:
         raise ScriptError('"end" comes before "start"', where=header.where)
+    packages = header.of_type("packages", dict, "an object of versions", {})
     steps = []
     before = 0
     for number, text in numbered:
@@ -178,12 +184,13 @@ def parse_script(lines: Iterable[str], name: str = "script") -> InputScript:
         start,
         header.of_type("robot", str, "text", ""),
         header.of_type("seed", int, "a whole number", 0),
-        header.of_type("packages", dict, "an object of versions", {}),
+        packages,
         header.of_type("trace", str, "text", ""),
         header.texts("story"),
         header.flag("repeats", True),
         header.of_type("found", dict, "an object", {}),
         name,
+        year=year_of(str(packages.get("wpilib", ""))),
     )
 
 

@@ -10,7 +10,9 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
+from ...wording import from_here
 from ..robot_time import to_us
+from .script import ScriptError
 from .trace_lines import repeatable_part
 
 #: Outputs that robot code sets, and what it asks a motor controller for.
@@ -39,6 +41,7 @@ def first_difference(recorded: Path, replayed: Path, run_us: int | None = None) 
     """Return the first difference between two traces; None if there is none.
 
     :param run_us: differences from this time on do not count
+    :raises ScriptError: when a trace is damaged
     """
     equal: dict[str, Any] = {}  # the values of both until then
     for old, new in zip_longest(_changes(recorded), _changes(replayed)):
@@ -65,8 +68,15 @@ def rank(path: str) -> tuple[bool, bool, str]:
 
 
 def _changes(trace: Path) -> Iterator[dict[str, Any]]:
-    with trace.open(encoding="utf-8") as lines:
-        for line in lines:
-            change = json.loads(line)
+    with trace.open(encoding="utf-8", errors="replace") as lines:
+        for number, line in enumerate(lines, 1):
+            try:
+                change = json.loads(line)
+            except ValueError:
+                raise ScriptError(
+                    "this trace is cut or damaged, so the run cannot be compared with it",
+                    where=f"{from_here(trace)}:{number}",
+                    remedy="Remove it, and the script is replayed without a comparison.",
+                ) from None
             if "t" in change and (repeats := repeatable_part(change)) is not None:
                 yield repeats

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from datetime import datetime, timedelta, timezone
 from typing import Any
 
+from ...log_records import CLOCKS, SIMULATED_BOOT, TIMES
 from ...physics.pose import METRES_PER_FOOT
 from ...runtime.robot_time import PACKET_US
 from ...runtime.scripts import kit_names
@@ -27,12 +28,7 @@ from .columns import Column, LogHistory, ReadLog
 _HAL, _STATION = "/hal_data/", "DS:"
 #: The entries with the output of a robot.
 _OUTPUT = re.compile(r"(NT:)?/?((Real|Replay)Outputs/)?(messages|console|DSEvents)", re.IGNORECASE)
-#: The entries with the time of day, in microseconds since 1970; and the times that can be: a robot that does not know
-#: it begins in 1970.
-_CLOCKS, _TIMES = ("systemTime", "/SystemStats/EpochTimeMicros"), range(1_500_000_000_000_000, 4_000_000_000_000_000)
 _EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
-#: At a multiple of this, in microseconds, the time of a simulation begins on the HAL's clock: at 0 until 2026.
-_SIMULATED_BOOT = 10**12
 #: The entries of the mode, in the order in which they are looked for: enabled, autonomous, test, emergency stop.
 _MODES = (
     ("DS:enabled", "DS:autonomous", "DS:test", "DS:estop"),
@@ -105,7 +101,7 @@ def _begin(log: ReadLog) -> int:
     firsts = [column.moments[0] for column in columns if len(column.moments) > 1]
     firsts = sorted(firsts or [column.moments[0] for column in columns if column.moments])
     first = min([*firsts[len(firsts) // 20 :][:1], *(round(each.time * 1e6) for each in log.happened[:1])], default=0)
-    since_boot = first % _SIMULATED_BOOT
+    since_boot = first % SIMULATED_BOOT
     return first - since_boot if since_boot <= PACKET_US else first // PACKET_US * PACKET_US
 
 
@@ -229,10 +225,10 @@ def _place(columns: Mapping[str, Column], height: float) -> Column | None:
 
 def when_of(log: ReadLog) -> datetime | None:
     """Return when the moment was that is shown as 0, if the log says so."""
-    for name in _CLOCKS:
+    for name in CLOCKS:
         if (column := log.columns.get(name)) is not None and column.moments:
             moment, time = column.moments[-1], column.decode(len(column.moments) - 1, len(column.moments))[0]
-            if isinstance(time, int) and time in _TIMES:
+            if isinstance(time, int) and time in TIMES:
                 return _EPOCH + timedelta(microseconds=time - moment + _begin(log))
     return log.when
 

@@ -49,8 +49,8 @@ def open_log(file: Path, height: float, name: str = "") -> OpenedLog:
     if not head:
         raise LogError("this file is empty", where=name)
     if kind := recordings.format_of(head):
-        run = recordings.read_recording(file, name, kind)
-        return OpenedLog(run, _changed(file), _problem_of(run))
+        run, problem = recordings.read_recording(file, name, kind)
+        return OpenedLog(run, _changed(file), problem)
     read: ReadLog
     if is_wpilog(head):
         read = read_wpilog(file)
@@ -72,10 +72,6 @@ def _read_station(file: Path, is_events: bool) -> ReadLog:
     if events.is_file():
         read.happened += read_ds_events(events).happened
     return read
-
-
-def _problem_of(run: PastRun) -> str:
-    return run.happened[-1].text if run.happened and run.happened[-1].is_mark else ""
 
 
 def _changed(file: Path) -> datetime:

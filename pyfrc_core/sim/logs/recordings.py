@@ -35,8 +35,8 @@ def format_of(head: bytes) -> str:
     return named if named in (SCRIPT, TRACE) else ""
 
 
-def read_recording(file: Path, name: str, kind: str) -> PastRun:
-    """Return the run of an input script or of a trace.
+def read_recording(file: Path, name: str, kind: str) -> tuple[PastRun, str]:
+    """Return the run of an input script or of a trace, and what is wrong with the file; empty: nothing.
 
     :param name: for people
     :param kind: what `format_of` says
@@ -68,7 +68,7 @@ def read_recording(file: Path, name: str, kind: str) -> PastRun:
                 break
     if problem:
         happened.append(Happened(end, "warning", f"{name}: {problem}.", is_mark=True))
-    return PastRun(name, end, {"hal": hal, "network": network}, tuple(happened))
+    return PastRun(name, end, {"hal": hal, "network": network}, tuple(happened)), problem
 
 
 def _lines(opened: IO[bytes]) -> Iterator[tuple[float, dict[str, Any], tuple[str, ...]] | str]:

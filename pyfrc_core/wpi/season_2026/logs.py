@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import ntcore
 from wpimath.geometry import Pose2d
@@ -13,8 +13,6 @@ from wpiutil.log import (
     BooleanArrayLogEntry,
     BooleanLogEntry,
     DataLog,
-    DataLogReader,
-    DataLogRecord,
     DoubleArrayLogEntry,
     DoubleLogEntry,
     IntegerArrayLogEntry,
@@ -22,44 +20,23 @@ from wpiutil.log import (
     StringLogEntry,
 )
 
+from ...log_records import Record
+
 __all__ = [
     "HOW_TO_LOG_STATION",
-    "MALFORMED",
     "DataLog",
     "IntegerLogEntry",
     "Kind",
     "LogWriter",
     "RealWriter",
-    "Record",
     "StringLogEntry",
+    "as_in_2026",
     "log_network",
     "povs",
-    "records",
 ]
 
 #: WPILib's own writer, whose name is replaced for robot code.
 RealWriter = DataLogWriter
-
-_READ: dict[str, Callable[[DataLogRecord], Any]] = {
-    "boolean": DataLogRecord.getBoolean,
-    "double": DataLogRecord.getDouble,
-    "float": DataLogRecord.getFloat,
-    "int64": DataLogRecord.getInteger,
-    "string": DataLogRecord.getString,
-    "string[]": DataLogRecord.getStringArray,
-    "boolean[]": DataLogRecord.getBooleanArray,
-    "double[]": DataLogRecord.getDoubleArray,
-    "float[]": DataLogRecord.getFloatArray,
-    "int64[]": DataLogRecord.getIntegerArray,
-}
-
-
-def _data(record: DataLogRecord) -> bytes:
-    return bytes(record.getRaw())
-
-
-#: What `records` raises if a log is malformed.
-MALFORMED = (RuntimeError, ValueError, TypeError, IndexError, OSError)
 
 Kind = Literal["boolean", "number", "text", "booleans", "numbers", "whole numbers"]
 
@@ -82,41 +59,9 @@ def povs(angles: list[int]) -> list[int]:
     return angles
 
 
-class Record(NamedTuple):
-    """A value in a log.
-
-    :param at_us: when it was logged, in microseconds of the robot's clock
-    :param type_name: the name of its type in the log, such as ``int64``
-    """
-
-    at_us: int
-    name: str
-    type_name: str
-    value: Any
-
-
-def records(file: Path, beginnings: tuple[str, ...], of_data: tuple[str, ...] = ()) -> Iterator[Record] | None:
-    """Return the plain values in a log, in the order of the file; None if this is no data log.
-
-    :param beginnings: of the names whose values are wanted
-    :param of_data: of those of which other values are wanted, too, as bytes
-    :raises MALFORMED: when iterated over
-    """
-    reader = DataLogReader(str(file))
-    return _records(reader, beginnings, of_data) if reader.isValid() else None
-
-
-def _records(reader: DataLogReader, beginnings: tuple[str, ...], of_data: tuple[str, ...]) -> Iterator[Record]:
-    entries: dict[int, tuple[str, str]] = {}
-    for record in reader:
-        if record.isStart():
-            start = record.getStartData()
-            if start.name.startswith(beginnings if start.type in _READ else of_data):
-                entries[start.entry] = start.name, start.type
-        elif not record.isControl() and record.getEntry() in entries:
-            name, type_name = entries[record.getEntry()]
-            read: Callable[[DataLogRecord], Any] = _READ.get(type_name, _data)
-            yield Record(record.getTimestamp(), name, type_name, read(record))
+def as_in_2026(record: Record) -> Iterable[Record]:
+    """Return what a record is in logs of 2026."""
+    return (record,)
 
 
 #: Logs that could not be written, kept alive: WPILib aborts the process when it closes such a log.

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import hal
 import ntcore
@@ -13,8 +13,6 @@ from wpilog import (
     BooleanArrayLogEntry,
     BooleanLogEntry,
     DataLog,
-    DataLogReader,
-    DataLogRecord,
     DataLogWriter,
     DoubleArrayLogEntry,
     DoubleLogEntry,
@@ -25,42 +23,25 @@ from wpilog import (
 from wpimath import Pose2d
 from wpiutil import wpistruct
 
+from ...log_records import Record
 from . import timing
 from .station import angle_of, pov_of
 
 __all__ = [
     "HOW_TO_LOG_STATION",
-    "MALFORMED",
     "DataLog",
     "IntegerLogEntry",
     "Kind",
     "LogWriter",
     "RealWriter",
-    "Record",
     "StringLogEntry",
+    "as_in_2026",
     "log_network",
     "povs",
-    "records",
 ]
 
 #: WPILib's own writer, whose name is replaced for robot code.
 RealWriter = DataLogWriter
-
-_CONTROL_WORD = "struct:ControlWord"
-
-_READ: dict[str, Callable[[DataLogRecord], Any]] = {
-    "boolean": DataLogRecord.get_boolean,
-    "double": DataLogRecord.get_double,
-    "float": DataLogRecord.get_float,
-    "int64": DataLogRecord.get_integer,
-    "string": DataLogRecord.get_string,
-    "string[]": DataLogRecord.get_string_array,
-    "boolean[]": DataLogRecord.get_boolean_array,
-    "double[]": DataLogRecord.get_double_array,
-    "float[]": DataLogRecord.get_float_array,
-    "int64[]": DataLogRecord.get_integer_array,
-    _CONTROL_WORD: lambda record: wpistruct.unpack(hal.ControlWord, bytes(record.get_raw())),
-}
 
 #: What the word of the driver station is in a log of 2026, which has no such word, and in one of ours.
 _OF_CONTROL_WORD: dict[str, Callable[[hal.ControlWord], bool]] = {
@@ -89,13 +70,6 @@ HOW_TO_LOG_STATION = (
 )
 
 
-def _data(record: DataLogRecord) -> bytes:
-    return bytes(record.get_raw())
-
-
-#: What `records` raises if a log is malformed.
-MALFORMED = (RuntimeError, ValueError, TypeError, IndexError, OSError)
-
 Kind = Literal["boolean", "number", "text", "booleans", "numbers", "whole numbers"]
 
 _ENTRIES: dict[Kind, Any] = {
@@ -113,45 +87,13 @@ def povs(angles: list[int]) -> list[int]:
     return [int(pov_of(angle)) for angle in angles]
 
 
-class Record(NamedTuple):
-    """A value in a log.
-
-    :param at_us: when it was logged, in microseconds of the robot's clock; in a simulation, of robot time
-    :param type_name: the name of its type in the log, such as ``int64``
-    """
-
-    at_us: int
-    name: str
-    type_name: str
-    value: Any
-
-
-def records(file: Path, beginnings: tuple[str, ...], of_data: tuple[str, ...] = ()) -> Iterator[Record] | None:
-    """Return the plain values in a log, in the order of the file; None if this is no data log.
-
-    :param beginnings: of the names whose values are wanted
-    :param of_data: of those of which other values are wanted, too, as bytes
-    :raises MALFORMED: when iterated over
-    """
-    reader = DataLogReader(str(file))
-    return _records(reader, beginnings, of_data) if reader.is_valid() else None
-
-
-def _records(reader: DataLogReader, beginnings: tuple[str, ...], of_data: tuple[str, ...]) -> Iterator[Record]:
-    entries: dict[int, tuple[str, str]] = {}
-    for record in reader:
-        if record.is_start():
-            start = record.get_start_data()
-            if start.name.startswith(beginnings if start.type in _READ else of_data):
-                entries[start.entry] = _AS_IN_2026.get(start.name, start.name), start.type
-        elif not record.is_control() and record.get_entry() in entries:
-            name, type_name = entries[record.get_entry()]
-            read: Callable[[DataLogRecord], Any] = _READ.get(type_name, _data)
-            at_us, value = record.get_timestamp() % timing.ROUND // 1_000, read(record)
-            if name == "DS:controlWord":
-                yield from (Record(at_us, part, "boolean", get(value)) for part, get in _OF_CONTROL_WORD.items())
-            else:
-                yield Record(at_us, name, type_name, list(map(angle_of, value)) if _POVS.fullmatch(name) else value)
+def as_in_2026(record: Record) -> Iterable[Record]:
+    """Return what a record is in logs of 2026, or in one of ours."""
+    record = record._replace(name=_AS_IN_2026.get(record.name, record.name))
+    if record.name == "DS:controlWord":
+        word = wpistruct.unpack(hal.ControlWord, record.value)
+        return (Record(record.at_us, name, "boolean", get(word)) for name, get in _OF_CONTROL_WORD.items())
+    return (record._replace(value=[*map(angle_of, record.value)]) if _POVS.fullmatch(record.name) else record,)
 
 
 #: Logs that could not be written, kept alive: WPILib aborts the process when it closes such a log.

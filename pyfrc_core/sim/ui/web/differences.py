@@ -12,7 +12,7 @@ import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from ....compat.unrepeatable import in_real_time
 from ....runtime.scripts import kit_names
@@ -63,6 +63,8 @@ class FirstDifference:
     found: dict[str, float] = field(default_factory=dict)
     #: The values then: of the other run, and of this one.
     values: dict[str, tuple[Any, Any]] = field(default_factory=dict)
+    #: Of the values that differ by less than what counts, by how much at most: a share of the value's range.
+    slight: dict[str, float] = field(default_factory=dict)
     #: How many values were compared.
     compared: int = 0
 
@@ -80,6 +82,10 @@ class FirstDifference:
         """Return all values that differ, the earliest first."""
         return sorted(self.found.items(), key=lambda each: (each[1], not each[0].startswith(VALUE), rank(each[0])))
 
+    def sorted_slight(self) -> list[tuple[str, float]]:
+        """Return all values that differ slightly, those that differ most first."""
+        return sorted(self.slight.items(), key=lambda each: (-each[1], rank(each[0])))
+
     def plain(self, clean: Callable[[str], str]) -> dict[str, Any]:
         """Return it for a page: of a log, with all values that differ.
 
@@ -91,6 +97,7 @@ class FirstDifference:
             for path, time in self.sorted()[:_MOST_OTHERS]:
                 both = (value if _is_number(value) else clean(str(value)) for value in self.values[path])
                 others.append((path, time, *differing_texts(*both)))
+            answer["slight"] = self.sorted_slight()[:_MOST_OTHERS]
         return answer
 
     def compare(self, one: ValueHistory, other: ValueHistory, path: str) -> None:
@@ -102,8 +109,13 @@ class FirstDifference:
         left = list(_changes(one, path, self.begin, end))
         shifted = _changes(other, path, self.begin - self.offset, end - self.offset)
         right = [(time + self.offset, value) for time, value in shifted]
-        difference = self._difference(left, right, end)
+        if left == right:  # as most are
+            return
+        limits = self._limits(left, right)
+        difference, largest = self._difference(left, right, end, limits.most)
         if difference is None:
+            if largest > limits.rounding:
+                self.slight[path] = largest / limits.range
             return
         time, there, here = difference
         if self.by.is_log or self.time is None or time <= self.time:
@@ -111,12 +123,16 @@ class FirstDifference:
                 self.found.clear()  # later ones do not matter
             self.found[path], self.values[path] = time, (there, here)
 
-    def _difference(self, left: list[Held], right: list[Held], end: float) -> tuple[float, Any, Any] | None:
-        """Return the first moment, and the values of the other run and of this one."""
-        if left == right:  # as most are
-            return None
-        late = self.by.late
-        close = self._close(left, right)
+    def _difference(
+        self, left: list[Held], right: list[Held], end: float, most: float
+    ) -> tuple[tuple[float, Any, Any] | None, float]:
+        """Return the first moment at which the runs differ, with the values of the other run and of this one.
+
+        Then, if there is none, how far they are apart at most.
+
+        :param most: how far values may be apart
+        """
+        late, largest = self.by.late, 0.0
         moments = sorted({time for time, _ in (*left, *right)})
         if late:  # a value that was there just before does not count for longer
             moments = sorted({*moments, *(time + late + _ROUNDING for time in moments)})
@@ -126,49 +142,63 @@ class FirstDifference:
             here, there = _at(left, lefts, time), _at(right, rights, time)
             if here is MISSING or there is MISSING:
                 if here is not there and not self.by.is_log:
-                    return time, there, here
-            elif not close(here, there) and not (
-                late
-                and _comes_close(here, _between(right, rights, time, late), close)
-                and _comes_close(there, _between(left, lefts, time, late), close)
-            ):
-                return time, there, here
-        return None
+                    return (time, there, here), largest
+                continue
+            apart = _apart(here, there, self.by.is_log)
+            if late and apart > largest:
+                apart = max(
+                    _apart_from(here, _between(right, rights, time, late)),
+                    _apart_from(there, _between(left, lefts, time, late)),
+                )
+            if apart > most:
+                return (time, there, here), largest
+            largest = max(largest, apart)
+        return None, largest
 
-    def _close(self, left: list[Held], right: list[Held]) -> _Close:
-        if not self.by.is_log:
-            return _Close(0.0)
+    def _limits(self, left: list[Held], right: list[Held]) -> _Limits:
+        if not self.by.is_log or not self.by.share:
+            return _Limits()
         whole = (value if isinstance(value, tuple) else (value,) for _, value in (*left, *right))
         numbers = [each for value in whole for each in value if _is_number(each) and math.isfinite(each)]
         if not numbers:
-            return _Close(0.0, is_log=True)
+            return _Limits()
         low, high = min(numbers), max(numbers)
         rounding = max(abs(low), abs(high), 1.0) * _SMALLEST
-        return _Close(max(self.by.share * (high - low), rounding if self.by.share else 0.0), is_log=True)
+        return _Limits(max(self.by.share * (high - low), rounding), rounding, high - low)
 
 
-@dataclass(frozen=True)
-class _Close:
-    """Whether two values are close to each other."""
+class _Limits(NamedTuple):
+    """How far the values of two runs may be apart.
 
-    most: float
-    is_log: bool = False
+    :param most: what does not count
+    :param rounding: what is not even mentioned
+    :param range: the largest number in both runs less the smallest one
+    """
 
-    def __call__(self, one: Any, other: Any) -> bool:
-        if same(one, other):
-            return True
-        if not self.is_log or one is MISSING or other is MISSING:
-            return False
-        if _is_number(one) and _is_number(other):
-            return bool(abs(one - other) <= self.most)
-        if isinstance(one, tuple) and isinstance(other, tuple):
-            return len(one) == len(other) and all(map(self, one, other))
-        return isinstance(one, str) != isinstance(other, str)  # data logs have lists as texts
+    most: float = 0.0
+    rounding: float = 0.0
+    range: float = 0.0
+
+
+def _apart(one: Any, other: Any, is_log: bool = True) -> float:
+    """Return how far two values are apart; infinite: they differ, and are no numbers."""
+    if same(one, other):
+        return 0.0
+    if not is_log or one is MISSING or other is MISSING:
+        return math.inf
+    if _is_number(one) and _is_number(other):
+        apart = float(abs(one - other))
+        return math.inf if math.isnan(apart) else apart
+    if isinstance(one, tuple) and isinstance(other, tuple):
+        return max(map(_apart, one, other), default=0.0) if len(one) == len(other) else math.inf
+    return 0.0 if isinstance(one, str) != isinstance(other, str) else math.inf  # data logs have lists as texts
 
 
 def is_published(path: str) -> bool:
     """Return whether a path is of a value in NetworkTables that robot code sets, and none that describes others."""
-    return path.startswith(VALUE) and not _OF_LOGS.match(path) and not _is_from_outside(path)
+    if not path.startswith(VALUE) or camera_of(path.removeprefix(VALUE)) is not None:
+        return False
+    return not _OF_LOGS.match(path) and not _is_from_outside(path)
 
 
 def _is_from_outside(path: str) -> bool:
@@ -197,13 +227,11 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def _comes_close(value: Any, others: list[Any], close: _Close) -> bool:
-    """Return whether a value is close to one of others, or between them."""
-    if any(close(value, other) for other in others):
-        return True
-    if not _is_number(value) or not all(map(_is_number, others)):
-        return False
-    return bool(min(others) <= value <= max(others))
+def _apart_from(value: Any, others: list[Any]) -> float:
+    """Return how far a value is from the nearest of others; 0 for a number between them."""
+    if _is_number(value) and others and all(map(_is_number, others)) and min(others) <= value <= max(others):
+        return 0.0
+    return min((_apart(value, other) for other in others), default=math.inf)
 
 
 def _at(values: list[Held], times: list[float], time: float) -> Any:
