@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import shutil
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, get_args
 
 import pytest
+from skips import require
 
 from pyfrc_core.config.dashboards import DASHBOARDS, Kind, Widget, load_dashboards, save_dashboard
 from pyfrc_core.errors import SettingsError
@@ -20,10 +27,13 @@ GAUGE = {"kind": "gauge", "topic": "/SmartDashboard/speed", "x": 2, "y": 0, "w":
 
 
 @pytest.fixture(name="root")
-def project_root(tmp_path: Path) -> Path:
-    save_dashboard(tmp_path, "Drive", {"columns": 12, "rows": 8, "widgets": [WIDGET, GAUGE]})
-    save_dashboard(tmp_path, "Pit", {"widgets": []})
-    return tmp_path
+def project_root() -> Iterator[Path]:
+    with TemporaryDirectory() as name:  # not pytest's, which other users cannot enter
+        root = Path(name)
+        root.chmod(0o755)
+        save_dashboard(root, "Drive", {"columns": 12, "rows": 8, "widgets": [WIDGET, GAUGE]})
+        save_dashboard(root, "Pit", {"widgets": []})
+        yield root
 
 
 def test_a_line_for_each_widget(root: Path) -> None:
@@ -123,9 +133,13 @@ def test_a_page_gets_them_when_they_have_changed(root: Path) -> None:
         ({"dashboard": " ", "content": {}}, "A dashboard needs a name."),
         ({"dashboard": "n" * 61, "content": {}}, "at most 60 characters"),
         (
-            {"dashboard": "Drive", "content": None, "stamp": "old"},
-            "sim/dashboards.json has just been changed. Nothing was saved",
+            {"dashboard": "Drive", "content": None, "seen": {"Drive": {"widgets": [WIDGET]}}},
+            "The dashboard was not saved: “Drive” has just been changed in sim/dashboards.json by another page",
         ),
+        ({"dashboard": "New", "content": {}, "seen": {"New": {}}}, "“New” has just been changed"),
+        ({"dashboard": "Drive", "content": {}, "seen": {"Drive": None}}, "“Drive” has just been changed"),
+        ({"dashboard": "Drive", "content": {}, "seen": {"Drive": {"rows": 0}}}, "dashboards.Drive.rows = 0"),
+        ({"dashboard": "Drive", "content": {}, "seen": 3}, "seen: an object with a dashboard for each name is needed"),
         ({"dashboard": "Drive", "content": "no"}, "dashboards.Drive = 'no': input should be an object"),
         ({"dashboard": "Drive", "content": {"columns": 1e9}}, "dashboards.Drive.columns = 1000000000.0"),
         ({"dashboard": "Drive", "content": {"widgets": [{}] * 1001}}, "at most 1000 of them, not 1001"),
@@ -137,3 +151,52 @@ def test_whatever_a_page_sends_has_an_answer(root: Path, message: dict[str, Any]
         Dashboards(root).save(Message(message))
     assert problem in str(error.value)
     assert (root / DASHBOARDS).read_text("utf-8") == before
+
+
+def test_the_second_of_two_pages_replaces_only_what_it_has_seen(root: Path) -> None:
+    dashboards = Dashboards(root)
+    seen = dashboards.found()["dashboards"]
+
+    def save(name: str, *widgets: dict[str, Any]) -> None:
+        message = {"dashboard": name, "content": {"widgets": widgets}, "seen": {name: seen[name]}}
+        dashboards.save(Message(json.loads(json.dumps(message))))
+
+    save("Drive", GAUGE)
+    with pytest.raises(CommandError, match="“Drive” has just been changed"):
+        save("Drive", WIDGET)
+    save("Pit", WIDGET)  # which the first has not touched
+    assert [len(each.widgets) for each in load_dashboards(root).values()] == [1, 1]
+    assert load_dashboards(root)["Drive"].widgets[0].kind == "gauge"
+
+
+def test_a_file_that_cannot_be_read_or_written_is_a_sentence(root: Path) -> None:
+    dashboards, file = Dashboards(root), root / DASHBOARDS
+    before = file.read_text("utf-8")
+    with read_only(file.parent), pytest.raises(CommandError) as error:
+        dashboards.save(Message({"dashboard": "Pit", "content": {}}))
+    assert "The dashboard was not saved: sim/dashboards.json cannot be written: Permission denied. Make" in str(error.value)
+    assert file.read_text("utf-8") == before
+    file.unlink()
+    file.mkdir()
+    first = dashboards.found()
+    assert first["problem"] == "sim/dashboards.json: this is a directory, where a file is expected"
+    assert dashboards.found(first["stamp"]) == {"stamp": first["stamp"]}
+    shutil.rmtree(file.parent)
+    file.parent.write_text("no directory", "utf-8")
+    assert dashboards.found()["problem"].startswith("sim/dashboards.json: the file cannot be read: ")
+
+
+@contextmanager
+def read_only(directory: Path) -> Iterator[None]:
+    """Have a directory that this process cannot write: as root, as another user."""
+    require("directories that cannot be written", ["POSIX"] if sys.platform == "win32" else [])
+    directory.chmod(0o555)
+    is_root = os.geteuid() == 0
+    if is_root:
+        os.seteuid(65534)
+    try:
+        yield
+    finally:
+        if is_root:
+            os.seteuid(0)
+        directory.chmod(0o755)

@@ -164,6 +164,15 @@ def test_what_others_write_meanwhile_is_not_lost(file: Path, person: Seen) -> No
     assert arranged(person) == ["Drive", theirs]
     person.button("Undo").click()
     assert arranged(person) == ["Drive", mine]
+    # A file that was cut: what is arranged stays, and is saved when the file is whole again.
+    whole = file.read_text("utf-8")
+    file.write_text(whole[:32], "utf-8")
+    cut = page.get_by_role("alert").filter(has_text="sim/dashboards.json:3: not valid JSON: the file ends too early")
+    cut.filter(has_text="What you have arranged stays here").wait_for()
+    person.button("Save").and_(page.locator(":disabled")).wait_for()
+    assert arranged(person) == ["Drive", mine]
+    file.write_text(whole, "utf-8")
+    cut.wait_for(state="detached")
     # Another change, which is replaced on purpose: it can be had again.
     with_widgets(file, {**GAUGE, "x": 5})
     alert.wait_for()
@@ -174,6 +183,10 @@ def test_what_others_write_meanwhile_is_not_lost(file: Path, person: Seen) -> No
     person.button("Undo").click()
     shown(person, "gauge").wait_for()
     assert places(file) == ["gauge 5 1 2 2"]
+    # Who looks at a dashboard goes on seeing it.
+    file.write_text("[]", "utf-8")
+    page.get_by_role("alert").get_by_text("The dashboard is the last one that could be read.").wait_for()
+    shown(person, "gauge").wait_for()
 
 
 @pytest.mark.parametrize(("width", "height"), sampled([(1180, 820), (820, 1180)], (820, 1180)))
@@ -214,3 +227,10 @@ def test_fingers_arrange(width: int, height: int, browser: Any, server: Any, fil
         for _ in range(5):
             tablet.button("Undo").tap()
         assert arranged(tablet) == ["Drive", "lamp 8 5 1 1", "gauge 2 1 2 2", "number 0 0 1 1"]
+        # A value and a table from NetworkTables, also when nothing is arranged yet.
+        tablet.button("Cancel").tap()
+        tablet.button("Put doubled on the dashboard").tap()
+        tablet.button("Put Turn on the dashboard").tap()
+        assert arranged(tablet)[4:] == ["number 1 0 2 1", "pid 4 0 3 3"]
+        shown(tablet, "pid").locator(".widget-tools:visible").wait_for()
+        assert page.evaluate(LOOK) == {"hidden": [], "small": []}

@@ -209,6 +209,31 @@ def test_a_chart_keeps_a_height_below_many_curves_and_above_many_states(person: 
     page.locator(f"{PLOT} .plot-bands").scroll_into_view_if_needed()
 
 
+def test_the_wheel_scrolls_a_low_panel_and_zooms_with_ctrl(person: Seen) -> None:
+    page = person.page
+    person.choose("Layout", "Tuning")
+    page.evaluate(ADD, ["sim.pose[0]"])
+    follow, chart = person.button("Follow again"), page.locator(f"{PLOT} .u-over")
+    chart.hover()
+    page.mouse.wheel(0, -200)  # nothing scrolls
+    follow.click()
+    page.evaluate(ADD, ["sim.mode", "dio[3].value", "alliance_station"])
+    page.set_viewport_size({"width": 1366, "height": 700})
+    page.locator(f"{PLOT} .plot-bands").hover()
+    page.mouse.wheel(0, 400)
+    scrolled = f"document.querySelector({PLOT + ' .plot'!r}).scrollTop"
+    page.wait_for_function(f"{scrolled} > 0")
+    chart.hover()
+    page.mouse.wheel(0, -400)
+    page.locator(".wheel-hint", has_text="Ctrl and the wheel").wait_for()
+    page.wait_for_function(f"{scrolled} === 0")
+    assert follow.count() == 0
+    page.keyboard.down("Control")
+    page.mouse.wheel(0, -4)  # a pinch on a trackpad
+    follow.wait_for()
+    page.keyboard.up("Control")
+
+
 def test_what_the_robot_publishes_and_outputs_is_offered_first(person: Seen) -> None:
     page = person.page
     person.tab("Plot 1").click()

@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from ..errors import PyfrcError
 from ..text_files import write_whole
 from .findings import Path, dotted, finding_at, mistakes, settings_error
 from .json_text import JsonText
@@ -109,8 +110,12 @@ def load_dashboards(root: File) -> dict[str, Dashboard]:
     :raises SettingsError: with each mistake's line, key and value
     """
     file = root / DASHBOARDS
-    if not (file.exists() or file.is_symlink()):
+    try:
+        file.lstat()
+    except FileNotFoundError:
         return {}
+    except OSError:
+        pass  # the same is said below
     text = JsonText(file, DASHBOARDS.as_posix())
     repeated = [  # one of them would be lost when the file is written again
         finding_at(text, path, f"{dotted(path)} stands here again, after line {line}", "Merge the two, or rename one.")
@@ -121,16 +126,34 @@ def load_dashboards(root: File) -> dict[str, Dashboard]:
     return _validated(text.value, text)
 
 
-def save_dashboard(root: File, name: str, dashboard: Mapping[str, Any] | None, former_name: str | None = None) -> None:
+class ChangedMeanwhileError(PyfrcError):
+    """A dashboard in the file is not the one that was seen before it was arranged."""
+
+
+def save_dashboard(
+    root: File,
+    name: str,
+    dashboard: Mapping[str, Any] | None,
+    former_name: str | None = None,
+    seen: Mapping[str, Mapping[str, Any] | None] | None = None,
+) -> None:
     """Add, change, rename or remove a dashboard. What else the file has stays.
 
     :param dashboard: its content, as in the file; None removes it
     :param former_name: the name under which the file has it until now
+    :param seen: what the file is supposed to have under these names, None for nothing
     :raises SettingsError: when the file or the dashboard has a mistake; the file stays as it is
+    :raises ChangedMeanwhileError: when the file has something else there than what was seen; it stays as it is
     :raises OSError: when it cannot be written
     """
     given = {} if dashboard is None else _validated({"dashboards": {name: dashboard}}, _Given())
     before, after = load_dashboards(root), dict[str, Dashboard]()
+    for each, content in (seen or {}).items():
+        expected = {} if content is None else _validated({"dashboards": {each: content}}, _Given())
+        if before.get(each) != expected.get(each):
+            raise ChangedMeanwhileError(
+                f"“{each}” has just been changed in {DASHBOARDS.as_posix()} by another page, an editor or Git."
+            )
     for each, content in before.items():
         if each in (former_name, name):
             after.update({key: value for key, value in given.items() if key not in after})

@@ -210,9 +210,10 @@ class HangDetector:
         if self.raised is not None:
             self._give_up(str(self.raised))
         self.raised = TestFroze(self._explain(stood, ident, place))
-        if self._running is not None:
-            self._running.threads.fail(self.raised)  # whatever code catches it
-        if self.outside is not None and self._running is None:
+        running = self._running
+        if running is not None:
+            running.threads.fail(self.raised)  # whatever code catches it
+        if self.outside is not None and running is None:
             raise_in_thread(ident, SystemExit)  # ends it without a word
         else:
             self._interruption.interrupt(ident, str(self.raised))
@@ -233,7 +234,8 @@ class HangDetector:
         return None if running is None else id(running), None if run is None else run.clock.now_us, self._steps
 
     def _whose_turn(self) -> tuple[int, ThreadTimes]:
-        return self._watched if self._running is None else self._running.threads.whose_turn()
+        running = self._running  # asked once: the code may stop running meanwhile
+        return self._watched if running is None else running.threads.whose_turn()
 
     def _place(self, ident: int) -> tuple[int, str, bool]:
         """Return the thread that stands, the user's line, and whether that imports a library."""

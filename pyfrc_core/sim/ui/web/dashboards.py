@@ -37,27 +37,33 @@ class Dashboards:
     def save(self, message: Message) -> dict[str, Any]:
         """Save what a page has arranged, and return the dashboards.
 
-        A page sends the stamp of what it has seen, so that it does not replace what it has not.
+        A page sends what it has seen in the place that it writes, so that it does not replace what it has not.
 
         :raises CommandError: when that is not possible
         """
         name, content = message.text("dashboard").strip(), message.raw("content")
         former = message.text("former_name") if "former_name" in message else None
-        if "stamp" in message and message.text("stamp") != self._stamp():
-            raise CommandError(f"{DASHBOARDS.as_posix()} has just been changed. Nothing was saved: try again.")
+        seen = message.raw("seen") if "seen" in message else {}
         if not name:
             raise CommandError("A dashboard needs a name.")
+        if not isinstance(seen, dict):
+            raise CommandError("seen: an object with a dashboard for each name is needed")
         try:
-            save_dashboard(self._root, name, content, former)
+            save_dashboard(self._root, name, content, former, seen)
         except PyfrcError as wrong:
             raise CommandError(f"The dashboard was not saved: {wrong}") from None
         except OSError as wrong:
-            raise CommandError(f"The dashboard was not saved: {wrong.filename}: {wrong.strerror}") from None
+            raise CommandError(
+                f"The dashboard was not saved: {DASHBOARDS.as_posix()} cannot be written: {wrong.strerror}. "
+                "Make the file and its directory writable, and save again: the page keeps what you have arranged."
+            ) from None
         return self.found()
 
     def _stamp(self) -> str:
         try:
             status = (self._root / DASHBOARDS).stat()
-        except OSError:
+        except FileNotFoundError:
             return "none"
+        except OSError as wrong:
+            return f"error {wrong.errno}"
         return f"{status.st_mtime_ns} {status.st_size} {status.st_ino}"

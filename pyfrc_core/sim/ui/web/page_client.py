@@ -135,7 +135,9 @@ class PageClient:
     def _save_layout(self, layout: Any) -> dict[str, Any]:
         try:
             save_layout(self._collector.root, layout)
-        except (OSError, ValueError) as wrong:
+        except OSError as wrong:
+            raise CommandError(f"The layout was not saved: .pyfrc cannot be written: {wrong.strerror}") from None
+        except ValueError as wrong:
             raise CommandError(f"The layout was not saved: {wrong}") from None
         return {}
 

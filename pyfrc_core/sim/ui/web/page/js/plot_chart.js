@@ -4,6 +4,7 @@ import { font } from "#js/canvas.js";
 import { dashOf, strokeOf } from "#js/curves.js";
 import { clockTick, shownNumber } from "#js/format.js";
 import { color } from "#js/settings.js";
+import { onWheel } from "#js/wheel.js";
 
 const sync = uPlot.sync("time"); // the cursor is at the same moment in every plot
 const TIME_STEPS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 1200, 1800, 3600, 7200, 18000];
@@ -67,13 +68,12 @@ function holdAxes(plot, isXY, setRange) {
     const limits = () => [plot.scales[key].min, plot.scales[key].max];
     element.classList.add("axis-handle");
     element.title = "The wheel zooms this axis, dragging moves it, a double click makes it automatic";
-    element.addEventListener("wheel", (event) => {
-      event.preventDefault();
+    const zoom = (factor, event) => {
       const box = plot.over.getBoundingClientRect();
       const at = plot.posToVal(key === "x" ? event.clientX - box.left : event.clientY - box.top, key);
-      const factor = Math.exp(event.deltaY * 0.0015);
       setRange(key, limits().map((limit) => at + (limit - at) * factor));
-    }, { passive: false });
+    };
+    onWheel(element, { zoom });
     element.addEventListener("pointerdown", (down) => {
       const before = limits();
       const start = key === "x" ? down.clientX : down.clientY;

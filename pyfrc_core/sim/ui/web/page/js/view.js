@@ -79,6 +79,7 @@ export function classes(conditions) {
 // The drawings of the icons, on a square of 16.
 const ICONS = {
   layout: "M2 2h12v12H2zM3.5 3.5v9h3v-9zM8 3.5v4h4.5v-4zM8 9v3.5h4.5V9z",
+  board: "M2 2h5v5H2zm7 0h5v5H9zM2 9h5v5H2zm8.3 0h2.4v1.3H14v2.4h-1.3V14h-2.4v-1.3H9v-2.4h1.3z",
   panels: "M2 3.5h12v1.7H2zM2 7.2h12v1.7H2zM2 10.8h12v1.7H2z",
   play: "M4.5 2.8v10.4l9-5.2z",
   pause: "M4 2.5h3v11H4zM9 2.5h3v11H9z",

@@ -18,6 +18,7 @@ class Dashboards {
   saved = {}; // by name
   problem = ""; // what is wrong with the file
   draft = null; // { name, columns, rows, widgets, base } while one is arranged; base: what the file had; null for a new one
+  chosen = -1; // the widget of the draft that was touched last
   steps = new Steps(); // what this page has changed since it was opened
   #stepsBefore = this.steps; // when arranging began
   #stamp = "";
@@ -65,6 +66,7 @@ class Dashboards {
 
   // Arrange the one that is shown, or a new one that has this name.
   arrange(name = "", content = EMPTY) {
+    this.chosen = -1;
     const dashboard = name ? fitted({ ...content, name }) : this.shown;
     this.#stepsBefore = this.steps;
     this.draft = structuredClone({ ...dashboard, base: name ? null : dashboard });
@@ -99,9 +101,10 @@ class Dashboards {
     await this.look();
     const { draft } = this;
     if (!draft) return; // a second click
+    const seen = this.#seen(draft.base, draft); // before the question: meanwhile, there may be a third one
     const found = this.inFile(draft.name) ?? this.inFile(draft.base?.name);
     if (this.isOvertaken && !(await askWhether(overtakenText(draft.base?.name ?? draft.name, found), found ? "Replace it" : "Save"))) return;
-    if (!(await this.#write(draft.base, draft))) return;
+    if (!(await this.#write(draft.base, draft, seen))) return;
     if (found && !same(found, draft.base)) this.#record(found, draft); // undone, it brings the other one back
     this.draft = null;
     this.choose(draft.name);
@@ -112,12 +115,15 @@ class Dashboards {
 
   async rename(name) {
     const dashboard = this.shown;
-    await this.#write(dashboard, { ...dashboard, name }, true);
+    const renamed = { ...dashboard, name };
+    if (!(await this.#write(dashboard, renamed))) return;
+    this.#record(dashboard, renamed);
     this.choose(name);
   }
 
   async remove() {
-    await this.#write(this.shown, null, true);
+    const dashboard = this.shown;
+    if (await this.#write(dashboard, null)) this.#record(dashboard, null);
   }
 
   // -- steps
@@ -161,21 +167,27 @@ class Dashboards {
 
   // -- writing
 
-  // Have the file contain another dashboard in the place of one; null: none. Nothing is written if the file is not as this page knows it.
-  async #write(from, to, isStep = false) {
+  // What the file has in the places of two dashboards, as far as this page knows.
+  #seen(from, to) {
+    return Object.fromEntries([from, to].filter(Boolean).map(({ name }) => [name, this.saved[name] ?? null]));
+  }
+
+  // Have the file contain another dashboard in the place of one; null: none. Nothing is written if the file has something
+  // else there than what was seen.
+  async #write(from, to, seen = this.#seen(from, to)) {
     const { name } = to ?? from;
     const written = to && { columns: to.columns, rows: to.rows, widgets: to.widgets };
     this.#isWriting = true;
     try {
-      this.#take(await ask("save_dashboard", { dashboard: name, content: written, former_name: from?.name ?? null, stamp: this.#stamp }));
+      this.#take(await ask("save_dashboard", { dashboard: name, content: written, former_name: from?.name ?? null, seen }));
+      return true;
     } catch (error) {
       model.set("problem", error.message);
+      this.look(); // what was changed meanwhile
       return false;
     } finally {
       this.#isWriting = false;
     }
-    if (isStep) this.#record(from, to);
-    return true;
   }
 
   #keep() {
@@ -212,7 +224,7 @@ class Dashboards {
 
   #take({ stamp, dashboards, problem }) {
     this.#stamp = stamp;
-    this.saved = dashboards;
+    if (!problem) this.saved = dashboards; // otherwise the last that were read: drivers may be looking at one
     this.problem = problem;
     model.announce("dashboards");
   }

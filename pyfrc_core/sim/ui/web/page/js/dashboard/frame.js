@@ -48,6 +48,20 @@ export class WidgetFrame extends Component {
     </section>`;
   }
 
+  // The one that was added last may be beyond what the grid shows.
+  componentDidUpdate(before) {
+    const { board, index } = this.props;
+    if (board.chosen === index && before.board.chosen !== index) this.show();
+  }
+
+  componentDidMount() {
+    if (this.props.board.chosen === this.props.index) this.show();
+  }
+
+  show() {
+    this.element.current.scrollIntoView({ block: "nearest" });
+  }
+
   content(widget, index, title) {
     const kind = KINDS[widget.kind];
     if (!kind) return html`<p class="missing"><span>This page cannot show “${widget.kind}”.</span></p>`;

@@ -1,11 +1,11 @@
 // A dashboard that the team has made: widgets on a grid, arranged here, and full screen for the drivers.
 import { dashboards } from "#js/dashboard/dashboards.js";
+import { addTopic, addWidget, askName, createDashboard } from "#js/dashboard/adding.js";
 import { WidgetFrame, titleOf } from "#js/dashboard/frame.js";
-import { firstFree, nearestFree } from "#js/dashboard/grid.js";
-import { KINDS, otherTables, firstSettings, kindsFor } from "#js/dashboard/kinds.js";
+import { KINDS, otherTables, kindsFor } from "#js/dashboard/kinds.js";
 import { stepText } from "#js/dashboard/steps.js";
 import { topicOf } from "#js/dashboard/topics.js";
-import { askText, askWhether } from "#js/dialog.js";
+import { askWhether } from "#js/dialog.js";
 import { Dropdown } from "#js/dropdown.js";
 import { link } from "#js/link.js";
 import { Menu } from "#js/menu.js";
@@ -20,7 +20,7 @@ const MOST_CELLS = 48; // columns or rows, as in config/dashboards.py
 
 export class DashboardPanel extends Live {
   parts = ["dashboards", "settings", "hello", "paths", "types", "shown"];
-  state = { full: false, chosen: -1 }; // chosen: the widget that was touched last while it is arranged
+  state = { full: false };
   element = createRef();
   grid = createRef();
 
@@ -50,7 +50,7 @@ export class DashboardPanel extends Live {
     return html`<div class=${classes({ dashboard: true, full })} ref=${this.element}>
       ${full ? html`<button class="leave-full quiet" title="Leave the full screen: Escape" aria-label="Leave the full screen" onClick=${this.leaveFull}><${Icon} name="close" /></button>` : this.tools(shown)}
       ${full && html`<${NotPresent} />`}
-      ${problem && html`<p class="dashboard-problem" role="alert"><${Icon} name="warning" /><span>${problem}</span></p>`}
+      ${problem && html`<p class="dashboard-problem" role="alert"><${Icon} name="warning" /><span>${problem}\n${this.remedy(shown)}</span></p>`}
       ${this.arranging && dashboards.isOvertaken && this.overtaken()}
       ${shown ? this.board(shown) : !problem && this.nothing()}
     </div>`;
@@ -64,7 +64,7 @@ export class DashboardPanel extends Live {
       <div class="spacer"></div>
       ${arranging
         ? html`${this.step(true)}${this.step(false)}
-          <${PlotPicker} label="Add widget" more=${this.offered()} add=${this.add} />
+          <${PlotPicker} label="Add widget" more=${this.offered()} add=${(path) => addTopic(path)} />
           <${Dropdown} label="Grid" title="Columns and rows of the grid" content=${() => this.gridSettings(shown)} />
           <button class="quiet" onClick=${this.discard}>${dashboards.isChanged ? "Discard" : "Cancel"}</button>
           <button class="primary" title="Write it into sim/dashboards.json" disabled=${Boolean(dashboards.problem)} onClick=${() => dashboards.save()}>Save</button>`
@@ -81,6 +81,12 @@ export class DashboardPanel extends Live {
     const [name, keys] = isUndo ? ["Undo", "Ctrl+Z"] : ["Redo", "Ctrl+Shift+Z"];
     const title = way ? `${name} “${stepText(way.step, titleOf)}”: ${keys}` : `Nothing to ${name.toLowerCase()}: ${keys}`;
     return html`<button class="quiet" title=${title} aria-label=${name} disabled=${!way} onClick=${() => dashboards.go(isUndo)}><${Icon} name=${name.toLowerCase()} /></button>`;
+  }
+
+  // What to do about a file with a mistake.
+  remedy(shown) {
+    const kept = this.arranging ? " What you have arranged stays here, and can be saved then." : shown ? " The dashboard is the last one that could be read." : "";
+    return `Correct the file, or take an earlier one from Git: nothing is written into it before.${kept}`;
   }
 
   // The file has something else in the place of what is arranged.
@@ -100,15 +106,15 @@ export class DashboardPanel extends Live {
     /** @type {any[]} */
     const items = names.map((each) => ({ text: each, checked: each === name, act: () => dashboards.choose(each) }));
     if (items.length) items.push({ separator: true });
-    items.push({ text: "New dashboard…", act: create, disabled });
+    items.push({ text: "New dashboard…", act: createDashboard, disabled });
     if (!name) return items;
     const copy = async () => {
-      const given = await newName(`A copy of “${name}” is called`, `${name} 2`);
+      const given = await askName(`A copy of “${name}” is called`, `${name} 2`);
       if (!given) return;
       dashboards.arrange(given, dashboards.shown);
     };
     const rename = async () => {
-      const given = await newName(`The new name of “${name}”`, name);
+      const given = await askName(`The new name of “${name}”`, name);
       if (given) await dashboards.rename(given);
     };
     const remove = async () => (await askWhether(`Remove the dashboard “${name}” from sim/dashboards.json?`, "Remove")) && dashboards.remove();
@@ -118,12 +124,12 @@ export class DashboardPanel extends Live {
   nothing() {
     if (model.readonly) return html`<p class="empty">This project has no dashboards. Who can drive the robot can make one.</p>`;
     return html`<div class="empty"><p>A dashboard has widgets, arranged as your team wants them. It is kept in <code>sim/dashboards.json</code>, beside the code.</p>
-      <p><button class="primary" onClick=${create}>New dashboard…</button></p></div>`;
+      <p><button class="primary" onClick=${createDashboard}>New dashboard…</button></p></div>`;
   }
 
   board(shown) {
     const { arranging } = this;
-    const board = { arranging, chosen: this.state.chosen, choose: this.choose, cell: this.cell, change: this.change, remove: this.remove };
+    const board = { arranging, chosen: dashboards.chosen, choose: this.choose, cell: this.cell, change: this.change, remove: this.remove };
     const style = { "--columns": shown.columns, "--rows": shown.rows };
     return html`<div class=${classes({ grid: true, arranging })} ref=${this.grid} style=${style} onPointerDown=${this.leaveWidgets} onDragOver=${this.over} onDrop=${this.drop}>
       ${shown.widgets.map((widget, index) => html`<${WidgetFrame} key=${index} widget=${widget} index=${index} board=${board} />`)}
@@ -145,22 +151,9 @@ export class DashboardPanel extends Live {
     const tables = [...sendables(model.values), ...otherTables()].filter(({ path }) => KINDS[kindsFor(path)[0]]);
     const alone = Object.entries(KINDS).filter(([, kind]) => kind.alone);
     return [
-      ...tables.map(({ path, name, type }) => ({ key: path, name, note: type, add: () => this.add(path) })),
-      ...alone.map(([kind, { title }]) => ({ key: `kind ${kind}`, name: title, note: "", add: () => this.addKind(kind, "") })),
+      ...tables.map(({ path, name, type }) => ({ key: path, name, note: type, add: () => addTopic(path) })),
+      ...alone.map(([kind, { title }]) => ({ key: `kind ${kind}`, name: title, note: "", add: () => addWidget(kind, "") })),
     ];
-  }
-
-  add = (path, cell = null) => {
-    const kind = kindsFor(path)[0];
-    this.addKind(kind, topicOf(path), firstSettings(kind, path), cell);
-  };
-
-  addKind(kind, topic, settings = {}, cell = null) {
-    const { draft } = dashboards;
-    const [w, h] = KINDS[kind].size;
-    const place = cell ? nearestFree(draft, { w, h }, cell) : firstFree(draft, { w, h });
-    if (!place) return model.set("problem", "The grid is full. Remove a widget or make one smaller, or choose more columns and rows under “Grid”.");
-    dashboards.change({ widgets: [...draft.widgets, { kind, topic, ...place, ...settings }] });
   }
 
   change = (index, changes) => {
@@ -173,7 +166,11 @@ export class DashboardPanel extends Live {
     dashboards.change({ widgets: dashboards.draft.widgets.filter((_, other) => other !== index) });
   };
 
-  choose = (index) => index !== this.state.chosen && this.setState({ chosen: index });
+  choose = (index) => {
+    if (index === dashboards.chosen) return;
+    dashboards.chosen = index;
+    this.setState({});
+  };
 
   leaveWidgets = (event) => event.target === event.currentTarget && this.choose(-1);
 
@@ -205,7 +202,7 @@ export class DashboardPanel extends Live {
     if (graph) return this.change(index, graph.topic ? { more: [...new Set([...(graph.more ?? []), topicOf(path)])] } : { topic: topicOf(path) });
     const box = this.grid.current.getBoundingClientRect();
     const [width, height] = this.cell();
-    this.add(path, { x: Math.floor((event.clientX - box.left + this.grid.current.scrollLeft) / width), y: Math.floor((event.clientY - box.top + this.grid.current.scrollTop) / height) });
+    addTopic(path, { x: Math.floor((event.clientX - box.left + this.grid.current.scrollLeft) / width), y: Math.floor((event.clientY - box.top + this.grid.current.scrollTop) / height) });
   };
 
   // Boxes for text have an undo of their own.
@@ -247,18 +244,4 @@ class NotPresent extends Live {
     const why = model.past && !model.isOver ? "This is the past." : kind === "live" || model.isOver ? "" : `${text}. These are the last values.`;
     return why && html`<p class="dashboard-problem" role="alert"><${Icon} name="warning" /><span>${why}</span></p>`;
   }
-}
-
-async function newName(question, text) {
-  const name = (await askText(question, text))?.slice(0, 60);
-  if (name && dashboards.names.includes(name)) {
-    model.set("problem", `There is a dashboard “${name}” already.`);
-    return null;
-  }
-  return name;
-}
-
-async function create() {
-  const name = await newName("The name of the new dashboard", dashboards.names.includes("Drive") ? "" : "Drive");
-  if (name) dashboards.arrange(name);
 }

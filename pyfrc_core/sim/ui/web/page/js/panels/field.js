@@ -14,6 +14,7 @@ import { model } from "#js/model.js";
 import { compared } from "#js/compare.js";
 import { color, settings } from "#js/settings.js";
 import { Icon, html } from "#js/view.js";
+import { onWheel } from "#js/wheel.js";
 
 const LAYERS = [
   ["trail", "Path of the robot"],
@@ -38,7 +39,7 @@ export class FieldPanel extends Drawn {
   componentDidMount() {
     super.componentDidMount();
     this.view = new Viewport(model.hello.field);
-    this.canvas.current.addEventListener("wheel", this.wheel, { passive: false });
+    onWheel(this.canvas.current, { zoom: this.zoomBy });
     this.loadImage();
   }
 
@@ -229,9 +230,8 @@ export class FieldPanel extends Drawn {
     event.currentTarget.blur();
   };
 
-  wheel = (event) => {
-    event.preventDefault();
-    this.view.zoomAt(Math.exp(-event.deltaY * 0.0015), ...this.place(event));
+  zoomBy = (factor, event) => {
+    this.view.zoomAt(1 / factor, ...this.place(event));
     this.draw();
   };
 

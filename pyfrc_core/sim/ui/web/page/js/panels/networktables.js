@@ -1,6 +1,7 @@
 // NetworkTables as a tree. Numbers, texts, switches and lists can be edited; any value can be plotted. Structs come as
 // their parts, which only robot code changes; the elements of a list are below it.
 import { write } from "#js/connection.js";
+import { putOnDashboard, takesTopics } from "#js/dashboard/adding.js";
 import { plain, valueText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { elementsOf } from "#js/parts.js";
@@ -11,7 +12,7 @@ import { Bound, Icon, Live, classes, createRef, html } from "#js/view.js";
 const START = "nt:/";
 
 export class NetworkTablesPanel extends Live {
-  parts = ["paths", "types", "hello", "shown"];
+  parts = ["paths", "types", "hello", "shown", "settings"];
   state = { search: "", open: Object.fromEntries(model.hello.options.dashboard.tables.map((table) => [table, true])) };
 
   render(_, { search, open }) {
@@ -20,10 +21,11 @@ export class NetworkTablesPanel extends Live {
     const paths = [...known].filter((path) => path.startsWith(START) && words.every((word) => path.toLowerCase().includes(word)));
     const tree = treeOf(paths);
     const rows = [];
+    this.boards = takesTopics();
     const visit = (node, depth) => {
       for (const child of [...node.children.values()].sort(byName)) {
         const isOpen = words.length > 0 || (open[child.path] ?? (depth === 0 && tree.children.size === 1));
-        if (child.children.size) rows.push(html`<${Folder} key=${`folder ${child.path}`} node=${child} depth=${depth} open=${isOpen} toggle=${() => this.toggle(child.path, isOpen)} />`);
+        if (child.children.size) rows.push(html`<${Folder} key=${`folder ${child.path}`} boards=${this.boards} node=${child} depth=${depth} open=${isOpen} toggle=${() => this.toggle(child.path, isOpen)} />`);
         if (child.leaf) this.addLeaf(rows, child, depth, open);
         if (child.children.size && isOpen) visit(child, depth + 1);
       }
@@ -39,10 +41,10 @@ export class NetworkTablesPanel extends Live {
   addLeaf(rows, { path, name }, depth, open) {
     const elements = elementsOf(path, model.shown.values.get(path));
     const toggle = elements.length ? () => this.toggle(path) : null;
-    rows.push(html`<${Leaf} key=${path} locked=${!model.mayWrite} path=${path} name=${name} depth=${depth} open=${Boolean(open[path])} toggle=${toggle} resized=${() => this.setState({})} />`);
+    rows.push(html`<${Leaf} key=${path} boards=${this.boards} locked=${!model.mayWrite} path=${path} name=${name} depth=${depth} open=${Boolean(open[path])} toggle=${toggle} resized=${() => this.setState({})} />`);
     if (!open[path]) return;
     elements.forEach((element, index) => {
-      rows.push(html`<${Leaf} key=${element} locked=${!model.mayWrite} path=${element} name=${`[${index}]`} list=${path} index=${index} depth=${depth + 1} />`);
+      rows.push(html`<${Leaf} key=${element} boards=${this.boards} locked=${!model.mayWrite} path=${element} name=${`[${index}]`} list=${path} index=${index} depth=${depth + 1} />`);
     });
   }
 
@@ -70,19 +72,26 @@ function treeOf(paths) {
   return root;
 }
 
-function Folder({ node, depth, open, toggle }) {
+// For who cannot drag a value there, as with a finger.
+function ToDashboard({ path, name }) {
+  const title = `Put ${name} on the dashboard`;
+  return html`<button class="tool to-dashboard" title=${title} aria-label=${title} onClick=${() => putOnDashboard(path)}><${Icon} name="board" /></button>`;
+}
+
+function Folder({ boards, node, depth, open, toggle }) {
   const type = model.shown.values.get(`${node.path}/.type`) ?? model.types[node.path]?.replace("struct:", "");
   return html`<div class="nt-row folder" role="treeitem" aria-expanded=${open} draggable="true" onDragStart=${(event) => carryTable(event, node.path)} style=${{ paddingLeft: `${depth * 14}px` }}>
     <button class=${classes({ fold: true, closed: !open })} onClick=${toggle}><${Icon} name="chevron" /><span>${node.name}</span></button>
-    ${typeof type === "string" && html`<span class="chip">${type}</span>`}</div>`;
+    ${typeof type === "string" && html`<span class="chip">${type}</span>`}
+    ${boards && html`<span class="row-tools"><${ToDashboard} path=${node.path} name=${node.name} /></span>`}</div>`;
 }
 
 class Leaf extends Bound {
   element = createRef();
 
   shouldComponentUpdate(next, state) {
-    const { path, depth, open, toggle } = this.props;
-    return next.locked !== this.props.locked || next.path !== path || next.depth !== depth || next.open !== open || !next.toggle !== !toggle || state !== this.state;
+    const { path, depth, open, toggle, boards } = this.props;
+    return next.locked !== this.props.locked || next.boards !== boards || next.path !== path || next.depth !== depth || next.open !== open || !next.toggle !== !toggle || state !== this.state;
   }
 
   get boundPath() {
@@ -122,7 +131,7 @@ class Leaf extends Bound {
     return this.props.path in model.types ? controlOf(value) : "none";
   }
 
-  render({ path, name, depth, open, toggle }) {
+  render({ path, name, depth, open, toggle, boards }) {
     const kind = this.controlOf(this.value);
     this.kind = kind;
     return html`<div class="nt-row" role="treeitem" ref=${this.element} aria-expanded=${toggle ? open : undefined} style=${{ paddingLeft: `${depth * 14 + (toggle ? 0 : 18)}px` }}
@@ -136,7 +145,8 @@ class Leaf extends Bound {
         : kind === "none"
           ? html`<span class="nt-value faint"></span>`
           : html`<${ValueBox} class=${`nt-value ${kind}`} path=${path} label=${name} />`}
-      <span class="row-tools"><button class="tool" title="Plot this value" aria-label=${`Plot ${name}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button></span>
+      <span class="row-tools"><button class="tool to-plot" title="Plot this value" aria-label=${`Plot ${name}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button>
+        ${boards && html`<${ToDashboard} path=${path} name=${name} />`}</span>
     </div>`;
   }
 }

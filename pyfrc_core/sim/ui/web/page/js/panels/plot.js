@@ -1,5 +1,5 @@
-// Values over time, or over another value. Curves are added by "+" or by dragging a value here; dragging in the plot
-// zooms, a double click follows again. In a log, a click goes to that moment; while a robot is driven, Alt and a click.
+// Values over time, or over another value. Curves are added by "+" or by dragging a value here; dragging in the plot or
+// the wheel zooms, a double click follows again. In a log, a click goes to that moment; while a robot is driven, Alt and a click.
 import { ElementSize } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
 import { ask } from "#js/connection.js";
@@ -17,6 +17,7 @@ import { drawBands } from "#js/plot_bands.js";
 import { addCurve, addToPlot, carriedPath, changePlot, hasPath, plotOf } from "#js/plotting.js";
 import { unwatch, watch } from "#js/series.js";
 import { Icon, Live, classes, createRef, html } from "#js/view.js";
+import { onWheel } from "#js/wheel.js";
 import { AbsentCurves, isAbsent } from "#js/panels/absent_curves.js";
 import { PlotAxes } from "#js/panels/plot_axes.js";
 import { PlotLegend } from "#js/panels/plot_legend.js";
@@ -264,7 +265,7 @@ export class PlotPanel extends Live {
       this.columns(width),
     );
     if (xCurve) return;
-    this.plot.over.addEventListener("wheel", this.wheel, { passive: false });
+    onWheel(this.plot.over, { zoom: this.zoomBy, move: this.moveBy });
     // While a robot is driven, a slip of the hand must not lead to the past.
     const isMeant = (event) => event.detail === 1 && (event.altKey || !model.isDriven);
     this.plot.over.addEventListener("click", (event) => isMeant(event) && goTo(this.plot.posToVal(event.offsetX, "x")));
@@ -292,12 +293,18 @@ export class PlotPanel extends Live {
     if (at !== this.state.at) this.setState({ at });
   }
 
-  wheel = (event) => {
-    event.preventDefault();
+  zoomBy = (factor, event) => {
     const [from, to] = this.range();
     const at = this.plot.posToVal(event.offsetX, "x");
-    const factor = Math.exp(event.deltaY * 0.0015);
     this.zoomTo(at - (at - from) * factor, at + (to - at) * factor);
+  };
+
+  // By as many pixels, as far as there is something.
+  moveBy = (pixels) => {
+    const [from, to] = this.range();
+    const by = (pixels / this.plot.over.clientWidth) * (to - from);
+    const inside = Math.max(-from, Math.min(by, Math.max(this.end - to, 0)));
+    if (inside) this.zoomTo(from + inside, to + inside);
   };
 
   zoomTo(from, to) {
