@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import signal
 import sys
+import threading
+from types import SimpleNamespace
 
 import pytest
 from conftest import MakeProject, Result, RobotProject
+
+from pyfrc_core.runtime.checks.hang_detector import HangDetector
+from pyfrc_core.runtime.patches.active_run import active_run
+from pyfrc_core.runtime.threads.thread_cpu import ThreadTimes
 
 QUICK = """
     [tool.pyfrc.test]
@@ -336,3 +343,27 @@ def test_a_simulation_says_where_the_robot_stands(make_project: MakeProject) -> 
     place = project.place("robot.py", "# a child process")
     assert f"{place}: no progress for" in result.output
     assert f"{place}: the robot code is blocked here" in result.output
+
+
+def test_code_that_stops_running_while_it_is_looked_at_stays_watched(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As between two packets of a simulation: the watch must not end, since the process would be ended as if it hung."""
+    enough, mistakes = threading.Event(), list[object]()
+
+    class Run:
+        looks = itertools.count()
+        clock = SimpleNamespace(now_us=0, now=0.0)
+        threads = SimpleNamespace(whose_turn=lambda: (threading.main_thread().ident, ThreadTimes()))
+
+        @property
+        def in_motion(self) -> bool:
+            look = next(self.looks)
+            self.clock.now_us = look  # there is progress
+            if look > 40:
+                enough.set()
+            return look % 2 == 0
+
+    monkeypatch.setattr(active_run, "run", Run())
+    monkeypatch.setattr(sys, "unraisablehook", lambda mistake: (mistakes.append(mistake.exc_value), enough.set()))
+    with HangDetector(None, 0.1).watching():
+        assert enough.wait(60)
+    assert not mistakes
