@@ -7,9 +7,8 @@ const PINCH = 10; // a pinch comes in steps of a few pixels
 const MOST = 150; // pixels of one step with Ctrl, so that a real wheel does not zoom ten times as fast
 const HINT_TIME = 1800; // milliseconds
 
-// What the person does to an element with the wheel: zoom(factor, event) with a factor below 1 to see less; and, if it
-// can move sideways, move(pixels).
-export function onWheel(element, { zoom, move }) {
+// What the wheel does over an element: zoom(factor, event), with a factor below 1 to see less; and move(pixels) sideways.
+export function onWheel(element, { zoom, move = null }) {
   element.addEventListener("wheel", (event) => {
     const { deltaX, deltaY } = event;
     const withKey = event.ctrlKey || event.metaKey;

@@ -1,6 +1,6 @@
 // Values over time, or over another value. Curves are added by "+" or by dragging a value here; dragging in the plot or
 // the wheel zooms, a double click follows again. In a log, a click goes to that moment; while a robot is driven, Alt and a click.
-import { ElementSize } from "#js/canvas.js";
+import { ElementSize, Picture } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
 import { ask } from "#js/connection.js";
 import { Computed, curveValue, isComputed, keyOf, numberIn, pathsOf, titleOf, unitOf } from "#js/curves.js";
@@ -25,6 +25,7 @@ import { PlotLegend } from "#js/panels/plot_legend.js";
 const SPANS = [[5, "5 s"], [20, "20 s"], [60, "1 min"], [0, "All"]];
 const BAND = 20; // pixels of height for each boolean or text
 const TABLE_INTERVAL = 150; // milliseconds between two tables of statistics
+const LONG = 60; // seconds, of which a packet is less than a pixel
 const DETAIL = 8000; // points of a curve while a plot is zoomed
 
 export class PlotPanel extends Live {
@@ -37,6 +38,8 @@ export class PlotPanel extends Live {
   detail = new Map(); // path: series of the zoomed part, in detail
   others = new Map(); // path: series of the compared branch
   computed = new Computed();
+  picture = new Picture();
+  moment = new Picture();
 
   componentDidMount() {
     super.componentDidMount();
@@ -178,13 +181,33 @@ export class PlotPanel extends Live {
       this.build();
     }
     if (!this.plot) return this.drawBands();
+    const isOther = this.picture.changes(...this.drawn());
+    const isMoved = this.moment.changes(model.past?.t);
+    if (isOther || this.xCurve) this.drawCurves();
+    else if (isMoved) this.plot.redraw(false);
+    else return;
+    this.drawBands();
+  }
+
+  // What the curves are drawn of: while only the moment that is shown moves, they stay as they are. A long time is drawn
+  // again when it has moved by about a pixel, a short one with each change.
+  drawn() {
+    const [from, to] = this.range();
+    const { width, height } = this.plot;
+    const step = 2 ** Math.floor(Math.log2((to - from) / width));
+    const moments = [from, to, length()].map((t) => Math.floor(t / step));
+    const series = [...this.watched.values(), this.modes];
+    const lengths = to - from < LONG ? series.map(({ t }) => t.length) : [];
+    return [this.plot, width, height, JSON.stringify(this.ranges), this.detail, this.others, model.run, ...moments, ...series.map(({ t }) => t), ...lengths];
+  }
+
+  drawCurves() {
     const [from, to] = this.range();
     this.plot.batch(() => {
       this.plot.setData(this.columns(this.plot.width), false);
       if (!this.xCurve) this.plot.setScale("x", { min: from, max: to });
       else for (const axis of ["x", ...this.axes()]) this.plot.setScale(axis, { min: null, max: null });
     });
-    this.drawBands();
   }
 
   // The data for uPlot: the curves until now, and those of the branch until its end.
