@@ -59,6 +59,10 @@ def test_a_person_looks_at_a_robot(browser: Any, tmp_path: Path) -> None:
         page.locator(".timeline").press("Home")
         person.state("Teleoperated disabled")
         page.get_by_role("button", name="Live").click()
+        # A curve of the simulation, in the same arrangement: a robot publishes no devices.
+        page.evaluate("module('js/plotting.js').then(({ addToPlot }) => addToPlot('pwm[0].value'))")
+        page.get_by_text("1 not from this robot").wait_for()
+        page.locator(".plot .empty").wait_for()
         # The pictures of a camera, and where none comes.
         with camera() as host, refusing_port() as silent:
             robot.set(CAMERA, "string[]", [f"mjpg:http://{host}/?action=stream"])

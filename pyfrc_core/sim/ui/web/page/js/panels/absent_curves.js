@@ -1,5 +1,5 @@
-// The curves of a plot whose values this log does not have: they are those of another log, which is arranged in the same
-// place. They are not drawn, and kept for that log, unless a person removes them.
+// The curves of a plot whose values this log or robot does not have: they are those of another log or of the simulation,
+// arranged in the same place. They are not drawn, and kept for what has them, unless a person removes them.
 import { keyOf, titleOf } from "#js/curves.js";
 import { Dropdown } from "#js/dropdown.js";
 import { model } from "#js/model.js";
@@ -7,13 +7,16 @@ import { Icon, html } from "#js/view.js";
 
 // Whether there is nothing to draw of a path, and never will be. `one` is its series, `other` that of the compared branch.
 export function isAbsent(one, other) {
-  return model.isOver && Boolean(one?.isLoaded) && !one.t.length && !other?.t.length;
+  // A robot publishes its values sooner or later; it has no devices and no place of a simulation.
+  const isNever = model.isOver || (model.hello.source?.kind === "robot" && one && !one.path.startsWith("nt:"));
+  return isNever && Boolean(one?.isLoaded) && !one.t.length && !other?.t.length;
 }
 
 export function AbsentCurves({ curves, remove }) {
   if (!curves.length) return null;
-  return html`<${Dropdown} label=${html`<${Icon} name="warning" />${curves.length}<span> not in this log</span>`} name=${`${curves.length} not in this log`} title="Curves whose values this log does not have" className="quiet absent"
+  const [where, what] = model.isOver ? ["in this log", "log"] : ["from this robot", "robot"];
+  return html`<${Dropdown} label=${html`<${Icon} name="warning" />${curves.length}<span> not ${where}</span>`} name=${`${curves.length} not ${where}`} title=${`Curves whose values this ${what} does not have`} className="quiet absent"
     content=${(close) => html`<div class="form"><ul class="absent-list">${curves.map((curve) => html`<li key=${keyOf(curve)} title=${curve.path}>${titleOf(curve)}</li>`)}</ul>
-      <p class="faint">They are kept for logs that have them.</p>
+      <p class="faint">They are kept for ${model.isOver ? "logs that have them" : "the simulation, or a log"}.</p>
       <button onClick=${() => { close(); remove(); }}>Remove ${curves.length === 1 ? "it" : "them"}</button></div>`} />`;
 }
