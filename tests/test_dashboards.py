@@ -174,7 +174,7 @@ def test_a_file_that_cannot_be_read_or_written_is_a_sentence(root: Path) -> None
     before = file.read_text("utf-8")
     with read_only(file.parent), pytest.raises(CommandError) as error:
         dashboards.save(Message({"dashboard": "Pit", "content": {}}))
-    assert "The dashboard was not saved: sim/dashboards.json cannot be written: Permission denied. Make" in str(error.value)
+    assert "not saved: sim/dashboards.json cannot be written: Permission denied. Make the file" in str(error.value)
     assert file.read_text("utf-8") == before
     file.unlink()
     file.mkdir()

@@ -346,7 +346,7 @@ def test_a_simulation_says_where_the_robot_stands(make_project: MakeProject) -> 
 
 
 def test_code_that_stops_running_while_it_is_looked_at_stays_watched(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As between two packets of a simulation: the watch must not end, since the process would be ended as if it hung."""
+    """As between two packets of a simulation: without the watch, the process would be ended as if it hung."""
     enough, mistakes = threading.Event(), list[object]()
 
     class Run:

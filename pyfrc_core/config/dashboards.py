@@ -148,8 +148,8 @@ def save_dashboard(
     """
     given = {} if dashboard is None else _validated({"dashboards": {name: dashboard}}, _Given())
     before, after = load_dashboards(root), dict[str, Dashboard]()
-    for each, content in (seen or {}).items():
-        expected = {} if content is None else _validated({"dashboards": {each: content}}, _Given())
+    for each, supposed in (seen or {}).items():
+        expected = {} if supposed is None else _validated({"dashboards": {each: supposed}}, _Given())
         if before.get(each) != expected.get(each):
             raise ChangedMeanwhileError(
                 f"“{each}” has just been changed in {DASHBOARDS.as_posix()} by another page, an editor or Git."
