@@ -58,7 +58,7 @@ def choose_layout(page: Page, name: str) -> None:
 def plot(page: Page, panel: str, *paths: str) -> None:
     """Plot values, as dragging them to the plot does."""
     page.evaluate(
-        "([panel, paths]) => import('/static/page.js').then(({ modules: { 'js/plotting.js': { addToPlot } } }) => "
+        "([panel, paths]) => import('#js/plotting.js').then(({ addToPlot }) => "
         "paths.forEach((path) => addToPlot(path, panel)))",
         [panel, list(paths)],
     )

@@ -190,14 +190,14 @@ export class PlotPanel extends Live {
   }
 
   // What the curves are drawn of: while only the moment that is shown moves, they stay as they are. A long time is drawn
-  // again when it has moved by about a pixel, a short one with each change.
+  // again when it has moved by about a pixel, a short one with each change; what comes after it changes nothing.
   drawn() {
     const [from, to] = this.range();
     const { width, height } = this.plot;
     const step = 2 ** Math.floor(Math.log2((to - from) / width));
-    const moments = [from, to, length()].map((t) => Math.floor(t / step));
+    const moments = [from, to, Math.min(length(), to)].map((t) => Math.floor(t / step));
     const series = [...this.watched.values(), this.modes];
-    const lengths = to - from < LONG ? series.map(({ t }) => t.length) : [];
+    const lengths = to - from < LONG && to >= length() ? series.map(({ t }) => t.length) : [];
     return [this.plot, width, height, JSON.stringify(this.ranges), this.detail, this.others, model.run, ...moments, ...series.map(({ t }) => t), ...lengths];
   }
 
