@@ -83,7 +83,9 @@ class LogReport:
     def _slight(self, found: FirstDifference) -> Iterator[str]:
         """Say what differs by less than what counts as a difference: a changed constant may do no more."""
         if slight := found.sorted_slight():
-            listed = self._listed(f"{name_of(path)} ({share * 100:.2g} %)" for path, share in slight)
+            listed = self._listed(
+                f"{name_of(path)} ({share * 100:.2g} % at {clock(time)})" for path, share, time in slight
+            )
             yield f"differs slightly, at most by this share of its range: {listed}"
 
     def _after(self, enabled: float, first: float, branch: int) -> Iterator[str]:

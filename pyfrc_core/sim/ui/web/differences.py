@@ -42,6 +42,9 @@ _GIVEN = re.compile(
 #: Entries that logs add to what the robot publishes, and those that describe a table or a value.
 _OF_LOGS = re.compile(rf"{VALUE}/(console$|messages$|systemTime$|pose/|(.*/)?\.[^/]+)")
 
+#: The parts of structs that are angles in radians: -pi and pi are the same direction.
+_ANGLE = re.compile(r"/(rotation|angle)/value$")
+
 #: A value from a moment on.
 Held = tuple[float, Any]
 
@@ -63,8 +66,8 @@ class FirstDifference:
     found: dict[str, float] = field(default_factory=dict)
     #: The values then: of the other run, and of this one.
     values: dict[str, tuple[Any, Any]] = field(default_factory=dict)
-    #: Of the values that differ by less than what counts, by how much at most: a share of the value's range.
-    slight: dict[str, float] = field(default_factory=dict)
+    #: Of the values that differ by less than what counts, by how much at most, as a share of their range, and when.
+    slight: dict[str, tuple[float, float]] = field(default_factory=dict)
     #: How many values were compared.
     compared: int = 0
 
@@ -82,9 +85,10 @@ class FirstDifference:
         """Return all values that differ, the earliest first."""
         return sorted(self.found.items(), key=lambda each: (each[1], not each[0].startswith(VALUE), rank(each[0])))
 
-    def sorted_slight(self) -> list[tuple[str, float]]:
-        """Return all values that differ slightly, those that differ most first."""
-        return sorted(self.slight.items(), key=lambda each: (-each[1], rank(each[0])))
+    def sorted_slight(self) -> list[tuple[str, float, float]]:
+        """Return all values that differ slightly, with by how much and when, those that differ most first."""
+        slight = sorted(self.slight.items(), key=lambda each: (-each[1][0], rank(each[0])))
+        return [(path, share, time) for path, (share, time) in slight]
 
     def plain(self, clean: Callable[[str], str]) -> dict[str, Any]:
         """Return it for a page: of a log, with all values that differ.
@@ -112,10 +116,11 @@ class FirstDifference:
         if left == right:  # as most are
             return
         limits = self._limits(left, right)
-        difference, largest = self._difference(left, right, end, limits.most)
+        apart = _between_angles if self.by.share and _ANGLE.search(path) else _apart
+        difference, (largest, moment) = self._difference(left, right, end, limits.most, apart)
         if difference is None:
             if largest > limits.rounding:
-                self.slight[path] = largest / limits.range
+                self.slight[path] = largest / limits.range, moment
             return
         time, there, here = difference
         if self.by.is_log or self.time is None or time <= self.time:
@@ -124,15 +129,16 @@ class FirstDifference:
             self.found[path], self.values[path] = time, (there, here)
 
     def _difference(
-        self, left: list[Held], right: list[Held], end: float, most: float
-    ) -> tuple[tuple[float, Any, Any] | None, float]:
+        self, left: list[Held], right: list[Held], end: float, most: float, apart_of: Callable[..., float]
+    ) -> tuple[tuple[float, Any, Any] | None, tuple[float, float]]:
         """Return the first moment at which the runs differ, with the values of the other run and of this one.
 
-        Then, if there is none, how far they are apart at most.
+        Then, if there is none, how far they are apart at most, and when.
 
         :param most: how far values may be apart
+        :param apart_of: returns how far two values are apart
         """
-        late, largest = self.by.late, 0.0
+        late, largest = self.by.late, (0.0, 0.0)
         moments = sorted({time for time, _ in (*left, *right)})
         if late:  # a value that was there just before does not count for longer
             moments = sorted({*moments, *(time + late + _ROUNDING for time in moments)})
@@ -144,15 +150,16 @@ class FirstDifference:
                 if here is not there and not self.by.is_log:
                     return (time, there, here), largest
                 continue
-            apart = _apart(here, there, self.by.is_log)
-            if late and apart > largest:
+            apart = apart_of(here, there, self.by.is_log)
+            if late and apart > largest[0]:
                 apart = max(
-                    _apart_from(here, _between(right, rights, time, late)),
-                    _apart_from(there, _between(left, lefts, time, late)),
+                    _apart_from(here, _between(right, rights, time, late), apart_of),
+                    _apart_from(there, _between(left, lefts, time, late), apart_of),
                 )
             if apart > most:
                 return (time, there, here), largest
-            largest = max(largest, apart)
+            if apart > largest[0]:
+                largest = apart, time
         return None, largest
 
     def _limits(self, left: list[Held], right: list[Held]) -> _Limits:
@@ -227,11 +234,17 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def _apart_from(value: Any, others: list[Any]) -> float:
+def _between_angles(one: Any, other: Any, is_log: bool = True) -> float:
+    """Return the same of two angles in radians."""
+    apart = _apart(one, other, is_log)
+    return abs(math.remainder(apart, math.tau)) if math.isfinite(apart) else apart
+
+
+def _apart_from(value: Any, others: list[Any], apart_of: Callable[..., float]) -> float:
     """Return how far a value is from the nearest of others; 0 for a number between them."""
     if _is_number(value) and others and all(map(_is_number, others)) and min(others) <= value <= max(others):
         return 0.0
-    return min((_apart(value, other) for other in others), default=math.inf)
+    return min((apart_of(value, other) for other in others), default=math.inf)
 
 
 def _at(values: list[Held], times: list[float], time: float) -> Any:

@@ -44,8 +44,9 @@ export function showComparison() {
       ${found.others.length > 0 && html`<table><thead><tr><th>Differs first at</th><th>Value</th><th>In the log</th><th>Here</th></tr></thead>
         <tbody>${found.others.map(([path, t, there, here]) => html`<tr key=${path}>
           <td><button type="button" class="quiet" onClick=${closeAt(t)}>${clock(t)}</button></td><td>${nameOf(path)}</td><td>${there}</td><td>${here}</td></tr>`)}</tbody></table>`}
-      ${found.slight.length > 0 && html`<table><thead><tr><th>Differs slightly</th><th>At most, of its range</th></tr></thead>
-        <tbody>${found.slight.map(([path, share]) => html`<tr key=${path}><td>${nameOf(path)}</td><td>${Number((share * 100).toPrecision(2))} %</td></tr>`)}</tbody></table>`}
+      ${found.slight.length > 0 && html`<table><thead><tr><th>Differs most at</th><th>Differs slightly</th><th>At most, of its range</th></tr></thead>
+        <tbody>${found.slight.map(([path, share, t]) => html`<tr key=${path}>
+          <td><button type="button" class="quiet" onClick=${closeAt(t)}>${clock(t)}</button></td><td>${nameOf(path)}</td><td>${Number((share * 100).toPrecision(2))} %</td></tr>`)}</tbody></table>`}
       <table><thead><tr><th>Sensors</th><th>Value</th></tr></thead>
         <tbody>${SOURCES.flatMap(([source, text]) => found.sensors[source].map((path) => html`<tr key=${path}><td>${text}</td><td>${path}</td></tr>`))}</tbody></table>
       <div class="dialog-buttons"><button class="primary" value="ok">Close</button></div>
