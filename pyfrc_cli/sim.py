@@ -61,6 +61,13 @@ from .verbosity import verbosity
     help="With --log: a person has set this value on a dashboard, such as SmartDashboard/kP; may be repeated.",
 )
 @click.option(
+    "--ignore",
+    "ignored",
+    multiple=True,
+    metavar="NAME",
+    help="With --log: do not compare this value, such as led_time; * stands for any text; may be repeated.",
+)
+@click.option(
     "--from",
     "start_at",
     type=click.FloatRange(min=0),

@@ -313,6 +313,7 @@ def test_entries_have_the_type_that_the_target_names() -> None:
         ("nt:struct:Pose2d:/typed/at", [1.0, 2.0, 0.5], "struct:Pose2d"),
         ("nt:double[]:/typed/unknown", ["nan", 1.0], "double[]"),
         ("nt:/typed/plain", 3, "double"),
+        ("nt:typed/plain", 3, "double"),
         ("nt:struct:Rotation2d:typed_without_slash", [0.5], "struct:Rotation2d"),
         ("nt:double[]:typed/without slash", (1.0,), "double[]"),
     ):

@@ -165,7 +165,7 @@ def test_what_differs_is_named_anew_after_each_enabling_and_shortly(make_project
     said = log_of(project, "match.wpilog")
     assert re.search(r"in name \d+: \.\.\..{,20} before in match.wpilog, \.\.\..{,20} after here", said)
     assert "and 4 more (-v names all)" in said
-    assert "in match.wpilog only: Elevator/setpoint\nhere only: Elevator/goal\n" in said
+    assert "in match.wpilog only: Elevator/setpoint (0:01.00)\nhere only: Elevator/goal (0:01.00)\n" in said
     assert "name 11 (" in project.run("-v", *SIM, "--log", "match.wpilog").stdout
 
 
@@ -370,6 +370,68 @@ def test_the_log_of_a_simulation_says_what_a_person_has_set(make_project: MakePr
     assert "differs first at 0:00.50, in pwm[0].value: 0.5 in match.wpilog, 0.7 here" in rounded(said)
 
 
+TOPICS = """
+    import ntcore
+    import wpilib
+    from wpimath.controller import PIDController
+    from wpimath.geometry import Pose2d
+    from wpimath.kinematics import ChassisSpeeds
+
+    GAIN = 1.0
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            wpilib.DataLogManager.start()
+            wpilib.DriverStation.startDataLog(wpilib.DataLogManager.getLog())
+            tables = ntcore.NetworkTableInstance.getDefault()
+            self.speed = tables.getStructTopic("Speed", ChassisSpeeds).publish()
+            self.plain = tables.getDoubleTopic("plain").publish()
+            self.seen = tables.getStructArrayTopic("/Seen", Pose2d).publish()
+            self.limit = tables.getDoubleTopic("Arm/limit").getEntry(1.0)
+            self.limit.set(1.0)
+            self.turn = PIDController(1, 0, 0)
+            wpilib.SmartDashboard.putData("first name", self.turn)
+            wpilib.SmartDashboard.putData("second name", self.turn)
+
+        def robotPeriodic(self):
+            now = round(wpilib.Timer.getFPGATimestamp(), 2)
+            self.speed.set(ChassisSpeeds(now, 0, 0))
+            self.plain.set(GAIN * now * self.limit.get())
+            self.seen.set([Pose2d(now, 0, 0)] if 0.5 < now < 1.5 else [])
+
+        def teleopInit(self):
+            wpilib.SmartDashboard.putBoolean("Commands/Reset", True)
+"""
+LIMITED = """{"format": "pyfrc-input 1", "end": 2.0}
+{"t": 0.5, "set": {"nt:Arm/limit": 0.5}}
+{"t": 1.0, "set": {"mode": "teleop"}}
+"""
+
+
+def test_every_topic_is_compared_and_those_of_one_run_only_have_a_time(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": TOPICS, "limited.jsonl": LIMITED})
+    result = project.run(*SIM, "--script", "limited.jsonl", "--wpilog", "match.wpilog")
+    assert result.code == 0, result.output
+    (own,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
+    own.rename(project.path / "robot.wpilog")
+    # Names without a slash, structs, empty lists of them, and a Sendable that has lost its first name.
+    said = log_of(project, "match.wpilog")
+    assert "no difference: " in said
+    assert " only: " not in said
+    change(project, "robot.py", "GAIN = 1.0", "GAIN = 2.0")
+    change(project, "robot.py", "Commands/Reset", "Commands/Set")
+    said = log_of(project, "match.wpilog", "--seconds", "1.2")
+    assert "differs first at 0:00.02, in plain: 0.02 in match.wpilog, 0.04 here" in said
+    assert "if plain differs in each run, such as a time that code took: --ignore plain\n" in said
+    assert "compared up to 0:01.20 of 0:01.98\n" in said
+    assert "in match.wpilog only: Commands/Reset (0:01.00)\nhere only: Commands/Set (0:01.00)\n" in said
+    (project.path / "pyproject.toml").write_text('[tool.pyfrc.sim]\nignore = ["pl*n"]\n', encoding="utf-8")
+    said = log_of(project, "robot.wpilog", "--input", "Arm/limit", "--ignore", "Commands", "--seconds", "1.2")
+    assert "no difference up to 0:01.20 of 0:01.98: " in said
+    assert " only: " not in said
+    assert "not compared, as you asked: pl*n, Commands\n" in said
+
+
 def test_a_log_of_another_robot_has_nothing_to_compare(played: RobotProject) -> None:
     (played.path / "robot.py").write_text("import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n", "utf-8")
     assert "nothing to compare: match.wpilog has no value" in log_of(played, "match.wpilog")
@@ -397,7 +459,7 @@ def test_a_log_that_has_no_inputs_is_refused_in_a_sentence(make_project: MakePro
     assert "--log has the modes and all inputs" in result.output
     result = project.run(*SIM, "--mode", "auto", "--tolerance", "5")
     assert result.code == 2
-    assert "--tolerance and --input are for a log" in result.output
+    assert "--tolerance, --input and --ignore are for a log" in result.output
 
 
 def history(*changes: tuple[float, object]) -> ValueHistory:

@@ -125,6 +125,16 @@ class FuzzSettings:
 
 
 @dataclass(frozen=True)
+class SimSettings:
+    """``[tool.pyfrc.sim]``: what ``pyfrc sim`` does."""
+
+    __pydantic_config__ = STRICT
+
+    #: Names of values that ``pyfrc sim --log`` does not compare, such as for how long code has computed.
+    ignore: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Settings:
     """``[tool.pyfrc]``."""
 
@@ -138,6 +148,7 @@ class Settings:
     team: int | None = None
     match: MatchSettings = field(default_factory=MatchSettings)
     test: TestSettings = field(default_factory=TestSettings)
+    sim: SimSettings = field(default_factory=SimSettings)
     fuzz: FuzzSettings = field(default_factory=FuzzSettings)
     deploy: DeploySettings = field(default_factory=DeploySettings)
 
@@ -183,6 +194,7 @@ _KEYS: dict[KeyPath, list[str]] = {
         ("match",): MatchSettings,
         ("test",): TestSettings,
         ("deploy",): DeploySettings,
+        ("sim",): SimSettings,
         ("fuzz",): FuzzSettings,
     }.items()
 }

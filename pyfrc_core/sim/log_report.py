@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING
 from ..hal.paths import format_path, parse_path
 from ..runtime.robot_time import PACKET_US
 from ..runtime.scripts.sensors import camera_of
+from ..shell import quoted
 from ..wording import counted
 from .engine.messages import VALUE
-from .engine.past_run import PastRun
+from .engine.past_run import name_of
 from .engine.source import Source
 from .logs.align import enabled_moments
 from .ui.models.wording import clock, differing_texts
 
 if TYPE_CHECKING:
+    from .log_run import LogRun
     from .ui.web.collector import Collector
     from .ui.web.differences import FirstDifference
 
@@ -33,14 +35,15 @@ _SOURCES = {
 class LogReport:
     """Compares a simulation with the log that drives it.
 
-    :param log: the branch of the source that is the log
+    :param log: the log that drives the source, and is a branch of it
     :param names_all: whether to name all values that differ, and all sensors
     """
 
-    def __init__(self, source: Source, log: PastRun, names_all: bool = False) -> None:
+    def __init__(self, source: Source, log: LogRun, names_all: bool = False) -> None:
         from .ui.web.collector import Collector
 
-        self._log, self._most = log, None if names_all else _MOST_NAMED
+        self._source, self._end = source, log.end
+        self._log, self._most = log.run, None if names_all else _MOST_NAMED
         self._collector: Collector = Collector(source, lambda: None)
         self._collector.start()
 
@@ -55,12 +58,16 @@ class LogReport:
         if branch is None or found is None:
             return
         yield from self._differences(found, branch.number)
-        yield from self._in_one_only(found.end, branch.number)
+        yield from self._in_one_only(branch.number)
+        if found.by.ignored:
+            yield f"not compared, as you asked: {self._listed(found.by.ignored)}"
         for kind, names in _devices_by_source(runs.sensors(branch.number)).items():
             if names:
                 yield f"{_SOURCES[kind]}: {self._listed(names)}"
 
     def _differences(self, found: FirstDifference, branch: int) -> Iterator[str]:
+        from .ui.web.differences import is_number
+
         log, by = self._log, found.by
         how = f"within {by.share * 100:g} % of their range" if by.share else "exactly"
         differing = _named(found)
@@ -68,7 +75,8 @@ class LogReport:
             yield f"nothing to compare: {log.name} has no value that the robot's code sets here, too"
             return
         if not differing:
-            yield f"no difference: {counted(found.compared, 'value')} that {log.name} has, too, {how} the same"
+            values = f"{counted(found.compared, 'value')} that {log.name} has, too, {how} the same"
+            yield f"no difference{self._until()}: {values}"
             yield from self._slight(found)
             return
         (path, time), *others = differing
@@ -76,6 +84,11 @@ class LogReport:
         yield f"differs first at {clock(time)}, in {name_of(path)}: {there} in {log.name}, {here} here"
         if others:
             yield f"then in {self._listed(map(_with_time, others))}"
+        if path.startswith(VALUE) and is_number(found.values[path][0]):
+            name = name_of(path)
+            yield f"if {name} differs in each run, such as a time that code took: --ignore {quoted(name)}"
+        if until := self._until():
+            yield f"compared{until}"
         for moment in enabled_moments(log.histories["network"])[1:]:
             yield from self._after(moment + log.offset, time, branch)
         yield from self._slight(found)
@@ -96,16 +109,19 @@ class LogReport:
         if later := [each for each in _named(found) if each[1] > before]:
             yield f"after it was enabled at {clock(enabled)}, in {self._listed(map(_with_time, later))}"
 
-    def _in_one_only(self, end: float, branch: int) -> Iterator[str]:
+    def _in_one_only(self, branch: int) -> Iterator[str]:
         """Say what only one of the two publishes: a renamed value, or a log of another robot."""
-        from .ui.web.differences import is_published
+        found = self._collector.runs.only_in_one(branch)
+        for where, topics in zip((f"in {self._log.name} only", "here only"), found or (), strict=False):
+            if topics:
+                yield f"{where}: {self._listed(_with_time((each.path, each.time)) for each in topics)}"
 
-        here, there = (set(self._collector.runs.values_at(end, number) or ()) for number in (None, branch))
-        if not any(map(is_published, there)):  # a trace has nothing of NetworkTables
-            return
-        for where, paths in ((f"in {self._log.name} only", there - here), ("here only", here - there)):
-            if names := sorted(map(name_of, filter(is_published, paths))):
-                yield f"{where}: {self._listed(names)}"
+    def _until(self) -> str:
+        """Return how far the run has come, if that is not the end of the log."""
+        snapshot = self._source.snapshot
+        reached = 0.0 if snapshot is None else snapshot.time
+        is_whole = reached > self._end - PACKET_US / 1_000_000
+        return "" if is_whole else f" up to {clock(reached)} of {clock(self._end)}"
 
     def _listed(self, names: Iterable[str]) -> str:
         names = list(names)
@@ -113,14 +129,9 @@ class LogReport:
         return ", ".join(islice(names, self._most)) + (f" and {left_out} more (-v names all)" if left_out > 0 else "")
 
 
-def name_of(path: str) -> str:
-    """Return the name of a value for people."""
-    return path.removeprefix(f"{VALUE}/SmartDashboard/").removeprefix(f"{VALUE}/")
-
-
-def _with_time(difference: tuple[str, float]) -> str:
-    path, time = difference
-    return f"{name_of(path)} ({clock(time)})"
+def _with_time(moment: tuple[str, float | None]) -> str:
+    path, time = moment
+    return name_of(path) if time is None else f"{name_of(path)} ({clock(time)})"
 
 
 def _named(found: FirstDifference) -> list[tuple[str, float]]:

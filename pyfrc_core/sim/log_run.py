@@ -57,16 +57,24 @@ class LogRun:
         return (self.script.end_us - 1) // PACKET_US * PACKET_US / 1_000_000
 
 
-def log_run(project: Project, file: Path, share: float | None = None, given: tuple[str, ...] = ()) -> LogRun:
+def log_run(
+    project: Project,
+    file: Path,
+    share: float | None = None,
+    given: tuple[str, ...] = (),
+    ignored: tuple[str, ...] = (),
+) -> LogRun:
     """Open a log.
 
     :param share: values of log and simulation are equal if they differ by at most this share of their range; None: 0 if
         both repeat exactly, else `SHARE`
     :param given: further entries of NetworkTables that a person has set, by name
+    :param ignored: values that are not compared, by name, besides those of the project's settings
     :raises PyfrcError: when it is no log, or has no inputs
     """
     file = _script_of(file)
-    given = tuple(f"/{name.removeprefix(VALUE).removeprefix('/')}" for name in given)
+    given = tuple(name.removeprefix(VALUE).removeprefix("/") for name in given)
+    given = (*given, *(f"/{name}" for name in given))  # with and without the slash that most names begin with
     script = _inputs(file, given)
     opened = open_log(file, field_of(project).height)
     run = opened.run
@@ -86,7 +94,8 @@ def log_run(project: Project, file: Path, share: float | None = None, given: tup
         late = PACKET_US / 1_000_000 if is_data_log(file) else 0.0
     logged = () if is_own else (path.removeprefix(VALUE) for path in run.histories["network"].paths())
     replayed = tuple(sorted(kit_names.subsystems(logged)))
-    compared = Comparison(True, share, late, frozenset(written | sensors), replayed)
+    ignored = (*project.settings.sim.ignore, *ignored)
+    compared = Comparison(True, share, late, frozenset(written | sensors), replayed, ignored)
     script = replace(script, problem=opened.problem)  # that of a trace, too
     return LogRun(script, replace(run, offset=offset, compared=compared))
 

@@ -36,7 +36,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     _check(request, kind)
     front_end = make_front_end(ui, request, say)
     share = None if request.tolerance is None else request.tolerance / 100
-    log = None if request.log is None else log_run(project, request.log, share, request.inputs)
+    log = None if request.log is None else log_run(project, request.log, share, request.inputs, request.ignored)
     options = _options(request, kind, log)
     for remark in () if options.script is None else remarks(options.script):
         say(f"{remark}\n")
@@ -51,7 +51,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
             closing.enter_context(watching(simulation, front_end.saved))
         if page is not None:
             page.follow(simulation, front_end if kind.shows_network else None)
-        reported = None if log is None or kind.shows_network else log.run
+        reported = None if kind.shows_network else log
         report = None if reported is None else LogReport(simulation, reported, request.verbose)
         try:
             code = front_end.run(simulation)
@@ -77,8 +77,8 @@ def _check(request: SimRequest, kind: FrontEndKind) -> None:
         raise UsageError("without a window, --opmode needs --mode", remedy="Add --mode auto, --mode teleop, ...")
     if not kind.is_served and request.is_for_page:
         raise UsageError("--share, --port and --allow-host are for the simulator in a browser", remedy="Add --ui web.")
-    if request.log is None and (request.tolerance is not None or request.inputs):
-        raise UsageError("--tolerance and --input are for a log", remedy="Add --log FILE.")
+    if request.log is None and (request.tolerance is not None or request.inputs or request.ignored):
+        raise UsageError("--tolerance, --input and --ignore are for a log", remedy="Add --log FILE.")
     if request.log is not None and any((request.mode, request.script, request.opmodes)):
         raise UsageError("--log has the modes and all inputs", remedy="Leave out --mode, --opmode and --script.")
     if not kind.is_served and request.share is not None and not _network_port(request, kind):

@@ -51,9 +51,9 @@ def parse_entry_target(target: str) -> tuple[str, str]:
 
     rest = target.removeprefix(NETWORK)
     typed = _TYPED.match(rest)  # the name of an entry may begin without a slash
-    if typed is None or not (
+    if typed is not None and (
         typed[1].removesuffix("[]") in network.TYPES or typed[1].startswith(STRUCT) or typed[1].startswith(DATA)
     ):
-        type_name, slash, name = rest.partition("/")
-        return slash + name if slash else type_name, type_name.removesuffix(":") if slash else ""
-    return rest[typed.end() :], typed[1]
+        return rest[typed.end() :], typed[1]
+    type_name, unknown, name = rest.partition(":/")
+    return (f"/{name}", type_name) if unknown and "/" not in type_name else (rest, "")

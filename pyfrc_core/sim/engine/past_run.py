@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Literal, NamedTuple
 
+from .messages import VALUE
 from .value_history import ValueHistory
 
 #: The two kinds of values: those of `hal_data`, and those of NetworkTables with the mode and the robot's place.
@@ -35,6 +38,7 @@ class Comparison:
     :param late: how late a value may come, in seconds
     :param given: the values from outside, besides those of the driver station
     :param replayed: the subsystems whose inputs the log has, which only the library that wrote it can give to the code
+    :param ignored: names of values that are not compared, as reports print them; ``*`` stands for any text
     """
 
     is_log: bool = False
@@ -42,6 +46,23 @@ class Comparison:
     late: float = 0.0
     given: frozenset[str] = frozenset()
     replayed: tuple[str, ...] = ()
+    ignored: tuple[str, ...] = ()
+
+    def ignores(self, path: str) -> bool:
+        """Return whether a value, or the topic or device that it is part of, is not compared."""
+        return bool(self.ignored) and _pattern(self.ignored).fullmatch(name_of(path)) is not None
+
+
+def name_of(path: str) -> str:
+    """Return the name of a value for people: of one in NetworkTables, without the table of what robot code shows."""
+    return path.removeprefix(VALUE).removeprefix("/SmartDashboard/").removeprefix("/")
+
+
+@cache
+def _pattern(names: tuple[str, ...]) -> re.Pattern[str]:
+    """Return the pattern of the values with some names, and of their parts."""
+    shown = (re.escape(name_of(f"/{name.removeprefix(VALUE).removeprefix('/')}")) for name in names)
+    return re.compile(f"(?:{'|'.join(shown)})(?:[/.].*)?".replace(r"\*", ".*"), re.DOTALL)
 
 
 #: How former runs are compared.

@@ -25,7 +25,7 @@ from ..engine.past_run import Happened, PastRun, Stream
 from ..engine.value_history import MISSING, ValueHistory
 from .columns import Column, LogHistory, ReadLog
 
-_HAL, _STATION = "/hal_data/", "DS:"
+_HAL, _STATION, _NETWORK = "/hal_data/", "DS:", "NT:"
 #: The entries with the output of a robot.
 _OUTPUT = re.compile(r"(NT:)?/?((Real|Replay)Outputs/)?(messages|console|DSEvents)", re.IGNORECASE)
 _EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
@@ -112,10 +112,9 @@ def _path(name: str, table: str) -> str:
     """
     if name.startswith(_STATION):
         return f"{VALUE}/DS/{name.removeprefix(_STATION)}"
-    plain = name.removeprefix("NT:")
-    if not plain.startswith("/"):
-        return f"{VALUE}/{plain}"
-    return VALUE + plain if plain != name else VALUE + table + plain
+    if name.startswith(_NETWORK):  # a topic may have a name without a leading slash
+        return VALUE + name.removeprefix(_NETWORK)
+    return VALUE + table + name if name.startswith("/") else f"{VALUE}/{name}"
 
 
 def _of_kit(columns: Mapping[str, Column]) -> Iterator[tuple[str, Column]]:

@@ -38,6 +38,7 @@ class SimRequest:
     :param log: the log whose inputs drive the robot, and that is shown beside it
     :param tolerance: how far values of the log may differ, in percent of their range; None: see `log_run`
     :param inputs: entries of NetworkTables that a person set while the log was made
+    :param ignored: names of values that are not compared with those of the log
     :param speed: robot seconds per second; None: real time, or as fast as possible when unattended
     :param nt_port: None: the usual port, or none when unattended; 0: none
     :param quiet: print only the robot's output and what is wrong
@@ -54,6 +55,7 @@ class SimRequest:
     log: Path | None = None
     tolerance: float | None = None
     inputs: tuple[str, ...] = ()
+    ignored: tuple[str, ...] = ()
     start_at: float = 0.0
     speed: float | None = None
     paused: bool = False

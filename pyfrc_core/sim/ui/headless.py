@@ -49,7 +49,7 @@ class Summary:
         found = []
         snapshot = self.snapshot
         if snapshot is not None:
-            speed = f", at {self.speed:.0f} times real time" if self.speed else ""
+            speed = f", at {self.speed:.{0 if self.speed >= 9.95 else 1}f} times real time" if self.speed else ""
             seconds = snapshot.time
             if self.failure is not None and self.failure.time > seconds + PACKET_US / 1_000_000:
                 # A process that is killed sends no last update.

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 from ....compat.unrepeatable import in_real_time
 from ....runtime.scripts import kit_names
+from ....runtime.scripts.network_targets import NETWORK_INPUTS
 from ....runtime.scripts.sensors import camera_of, is_input, is_sensor
 from ....runtime.scripts.trace_difference import rank
 from ...engine.messages import MODE, POSE, TYPE, VALUE
@@ -40,7 +41,9 @@ _GIVEN = re.compile(
 )
 
 #: Entries that logs add to what the robot publishes, and those that describe a table or a value.
-_OF_LOGS = re.compile(rf"{VALUE}/(console$|messages$|systemTime$|pose/|(.*/)?\.[^/]+)")
+_OF_LOGS = re.compile(
+    rf"{VALUE}((/(console|messages|systemTime|NTConnection|pose(/.*)?)|{NETWORK_INPUTS})$|/?(.*/)?\.[^/]+)"
+)
 
 #: The parts of structs that are angles in radians: -pi and pi are the same direction.
 _ANGLE = re.compile(r"/(rotation|angle)/value$")
@@ -99,14 +102,14 @@ class FirstDifference:
         if self.by.is_log:
             answer["others"] = others = []
             for path, time in self.sorted()[:_MOST_OTHERS]:
-                both = (value if _is_number(value) else clean(str(value)) for value in self.values[path])
+                both = (value if is_number(value) else clean(str(value)) for value in self.values[path])
                 others.append((path, time, *differing_texts(*both)))
             answer["slight"] = self.sorted_slight()[:_MOST_OTHERS]
         return answer
 
     def compare(self, one: ValueHistory, other: ValueHistory, path: str) -> None:
         """Look for a difference in this value."""
-        if self.by.is_log and (path in self.by.given or _is_from_outside(path)):
+        if self.by.is_log and (path in self.by.given or _is_from_outside(path) or self.by.ignores(path)):
             return
         self.compared += 1
         end = self.end if self.by.is_log or self.time is None else self.time
@@ -166,7 +169,7 @@ class FirstDifference:
         if not self.by.is_log or not self.by.share:
             return _Limits()
         whole = (value if isinstance(value, tuple) else (value,) for _, value in (*left, *right))
-        numbers = [each for value in whole for each in value if _is_number(each) and math.isfinite(each)]
+        numbers = [each for value in whole for each in value if is_number(each) and math.isfinite(each)]
         if not numbers:
             return _Limits()
         low, high = min(numbers), max(numbers)
@@ -193,7 +196,7 @@ def _apart(one: Any, other: Any, is_log: bool = True) -> float:
         return 0.0
     if not is_log or one is MISSING or other is MISSING:
         return math.inf
-    if _is_number(one) and _is_number(other):
+    if is_number(one) and is_number(other):
         apart = float(abs(one - other))
         return math.inf if math.isnan(apart) else apart
     if isinstance(one, tuple) and isinstance(other, tuple):
@@ -230,7 +233,8 @@ def sensors_by_source(hal: ValueHistory, network: ValueHistory, given: frozenset
     return found
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """Return whether a value is a number, and no boolean."""
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
@@ -242,7 +246,7 @@ def _between_angles(one: Any, other: Any, is_log: bool = True) -> float:
 
 def _apart_from(value: Any, others: list[Any], apart_of: Callable[..., float]) -> float:
     """Return how far a value is from the nearest of others; 0 for a number between them."""
-    if _is_number(value) and others and all(map(_is_number, others)) and min(others) <= value <= max(others):
+    if is_number(value) and others and all(map(is_number, others)) and min(others) <= value <= max(others):
         return 0.0
     return min((apart_of(value, other) for other in others), default=math.inf)
 

@@ -13,6 +13,7 @@ from ...engine.past_run import EXACT, Comparison, PastRun, Stream
 from ...engine.value_history import MISSING, ValueHistory, packed
 from ..models.wording import clock
 from .differences import FirstDifference, sensors_by_source
+from .only_in_one import OnlyThere, only_in_one, topics
 from .plots import MOST_POINTS, picked, resolve, same, series
 
 #: About how much memory the values of all runs may take together.
@@ -264,8 +265,22 @@ class Runs:
 
     @staticmethod
     def _known(history: ValueHistory, former: ValueHistory, by: Comparison) -> Iterable[str]:
-        """Return the values to compare: of a log, those that both have."""
-        return history.now.keys() & former.now.keys() if by.is_log else history.now.keys() | former.now.keys()
+        """Return the values to compare: of a log, those that both have had."""
+        if by.is_log:
+            return set(history.paths()).intersection(former.paths())
+        return history.now.keys() | former.now.keys()
+
+    def only_in_one(self, number: int) -> tuple[list[OnlyThere], list[OnlyThere]] | None:
+        """Return the topics that only a branch has, and those that only the present run has, with their times in it.
+
+        None if there is no such branch, or it has nothing of NetworkTables, as a trace.
+        """
+        with self._lock:
+            branch = self._branch(number)
+            if branch is None or not topics(there := branch.histories["network"]):
+                return None
+            here, by = self._histories["network"], EXACT if branch.compared is None else branch.compared
+            return only_in_one(here, there, branch.begin, branch.offset, by)
 
     def samples(self, paths: Iterable[str], after: Position) -> tuple[dict[str, list[Any]], Position]:
         """Return every change of some values since a position, as times and values in turn, and the next position."""

@@ -13,7 +13,7 @@ const SOURCES = [
 
 // The name of a value for people.
 export function nameOf(path) {
-  return path.replace(/^nt:\/(SmartDashboard\/)?/, "");
+  return path.replace(/^nt:(\/SmartDashboard\/|\/)?/, "");
 }
 
 // The sentence about the first difference, which a click goes to.

@@ -17,7 +17,7 @@ export function nameOf(path) {
 // Without the table of what robot code shows.
 function withoutTable(path) {
   const table = model.hello?.options?.dashboard.tables.find((each) => path.startsWith(`${each}/`)) ?? "nt:";
-  return path.startsWith(`${table}/`) ? path.slice(table.length + 1) : path;
+  return path.startsWith(`${table}/`) ? path.slice(table.length + 1) : path.replace(/^nt:/, "");
 }
 
 // The unit of a value, as far as it is known; otherwise "".

@@ -6,7 +6,7 @@ const TYPE = "/.type";
 export function typedTables(values) {
   const found = [];
   for (const [path, type] of values) {
-    if (path.startsWith("nt:/") && path.endsWith(TYPE) && typeof type === "string") found.push([path.slice(0, -TYPE.length), type]);
+    if (path.startsWith("nt:") && path.endsWith(TYPE) && typeof type === "string") found.push([path.slice(0, -TYPE.length), type]);
   }
   return found;
 }

@@ -54,7 +54,7 @@ const BY_STRUCT = [
 export function otherTables() {
   const streams = [...model.values.keys()].filter((path) => path.startsWith("nt:/CameraPublisher/") && path.endsWith("/streams"));
   const cameras = streams.map((path) => path.slice(0, -"/streams".length)).map((path) => ({ path, name: path.split("/").pop(), type: "Camera" }));
-  const paths = Object.keys(model.types).filter((path) => path.startsWith("nt:/") && BY_STRUCT.some(([pattern]) => pattern.test(model.types[path])));
+  const paths = Object.keys(model.types).filter((path) => path.startsWith("nt:") && BY_STRUCT.some(([pattern]) => pattern.test(model.types[path])));
   return [...cameras, ...paths.map((path) => ({ path, name: path.split("/").pop(), type: model.types[path].replace("struct:", "") }))];
 }
 

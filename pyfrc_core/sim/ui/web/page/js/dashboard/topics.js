@@ -1,4 +1,5 @@
 // Topics of widgets: "/SmartDashboard/kP" or a table of NetworkTables, or a path into hal_data; and what is published there.
+// A topic of NetworkTables whose name begins without a slash is its whole path: "nt:kP".
 import { model } from "#js/model.js";
 import { elementIn, valueIn } from "#js/parts.js";
 
@@ -7,7 +8,7 @@ export function pathOf(topic) {
 }
 
 export function topicOf(path) {
-  return path.startsWith("nt:") ? path.slice("nt:".length) : path;
+  return path.startsWith("nt:/") ? path.slice("nt:".length) : path;
 }
 
 // The value to which a path belongs: of an element its list.

@@ -85,7 +85,7 @@ export const WANTED = /target|desired|setpoint|wanted/i; // in the name of a top
 const MODULES_AS_NUMBERS = /swerve.*state|module.*state/i;
 
 export function topicsOf(types) {
-  return Object.keys(model.types).filter((path) => path.startsWith("nt:/") && types.test(model.types[path]));
+  return Object.keys(model.types).filter((path) => path.startsWith("nt:") && types.test(model.types[path]));
 }
 
 // The beginnings of the paths of all values that a field may show.

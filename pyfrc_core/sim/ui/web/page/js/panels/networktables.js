@@ -9,7 +9,7 @@ import { addToPlot, carryPath, carryTable } from "#js/plotting.js";
 import { ValueBox } from "#js/value_box.js";
 import { Bound, Icon, Live, classes, createRef, html } from "#js/view.js";
 
-const START = "nt:/";
+const START = "nt:";
 
 export class NetworkTablesPanel extends Live {
   parts = ["paths", "types", "hello", "shown", "settings"];
@@ -59,13 +59,17 @@ function byName(one, other) {
   return one.name.localeCompare(other.name, "en", { numeric: true });
 }
 
+// The nodes by their paths: a topic's name may begin without a slash, so "/Speed" and "Speed" are two tables.
 function treeOf(paths) {
-  const root = { path: "nt:", children: new Map() };
+  const root = { path: START, children: new Map() };
   for (const path of paths) {
     let node = root;
-    for (const name of path.slice(START.length).split("/")) {
-      if (!node.children.has(name)) node.children.set(name, { name, path: `${node.path}/${name}`, children: new Map(), leaf: false });
-      node = node.children.get(name);
+    for (let end = START.length; end < path.length; ) {
+      const slash = path.indexOf("/", end + 1);
+      end = slash < 0 ? path.length : slash;
+      const whole = path.slice(0, end);
+      if (!node.children.has(whole)) node.children.set(whole, { name: whole.slice(node.path.length).replace("/", ""), path: whole, children: new Map(), leaf: false });
+      node = node.children.get(whole);
     }
     node.leaf = true;
   }
