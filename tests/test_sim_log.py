@@ -179,6 +179,45 @@ def test_sensors_measure_what_they_measured_in_the_log(recorded: RobotProject) -
     assert "hold:encoder[0].count" in writes
 
 
+SIMULATED = """
+    import commands2
+    import wpilib
+    from wpilib.simulation import EncoderSim
+
+    STEP = 2
+
+    class Lift(commands2.Subsystem):
+        def __init__(self):
+            super().__init__()
+            self.encoder = wpilib.Encoder(0, 1)
+            self.simulated = EncoderSim(self.encoder)
+            self.turns = 0
+
+        def periodic(self):
+            wpilib.SmartDashboard.putNumber("in periodic", self.encoder.get())
+
+        def simulationPeriodic(self):
+            self.turns += STEP
+            self.simulated.setCount(self.turns)
+
+    class MyRobot(commands2.TimedCommandRobot):
+        def robotInit(self):
+            self.lift = Lift()
+            encoder = self.lift.encoder
+            show = commands2.cmd.run(lambda: wpilib.SmartDashboard.putNumber("in a command", encoder.get()), self.lift)
+            self.lift.setDefaultCommand(show.ignoringDisable(True))
+"""
+
+
+def test_commands_see_the_sensors_of_the_log_whatever_a_subsystem_simulates(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": SIMULATED})
+    assert project.run(*SIM, "--mode", "teleop", "--seconds", "0.5", "--wpilog", "match.wpilog").code == 0
+    change(project, "robot.py", "STEP = 2", "STEP = 7")
+    said = log_of(project, "match.wpilog")
+    assert "no difference: " in said
+    assert "encoder[0]" in said.partition("sensors from the log")[2]
+
+
 def test_a_log_is_not_overwritten_by_what_is_written(recorded: RobotProject) -> None:
     before = {file: file.read_bytes() for file in recorded.path.glob("match.*")}
     for log, option, file in (

@@ -69,6 +69,8 @@ class RobotRun:
         #: Called when the robot has been constructed, and when its `robotInit` is over (see `initializes`).
         self.when_constructed: list[Callable[[], object]] = []
         self.when_initialized: list[Callable[[], object]] = []
+        #: Called within the loop when robot code has simulated something (`time.simulation_periodic`).
+        self.when_simulated: list[Callable[[], object]] = []
         #: The recorder of external writes, if there is one.
         self.recorder: ExternalWrites | None = None
         #: Called with what is written to NetworkTables from outside: the target, as in scripts, and the value.
@@ -118,7 +120,7 @@ class RobotRun:
             raise missing_super_init(robot_class, error) or error from None
         if self.when_initialized:
             robots.when_initialized(self.robot, self._on_initialized)
-        gate_robot(self.robot, lambda: self.output_gate)
+        gate_robot(self.robot, lambda: self.output_gate, self._on_simulated)
         for listener in self.when_constructed:
             listener()
         return self.robot
@@ -130,8 +132,12 @@ class RobotRun:
 
     def _on_initialized(self) -> None:
         __tracebackhide__ = True
-        gate_subsystems(lambda: self.output_gate)
+        gate_subsystems(lambda: self.output_gate, self._on_simulated)
         for listener in self.when_initialized:
+            listener()
+
+    def _on_simulated(self) -> None:
+        for listener in self.when_simulated:
             listener()
 
     @cached_property

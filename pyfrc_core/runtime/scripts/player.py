@@ -63,6 +63,8 @@ class Player:
             self._targets.held.replace_simulation()
         if held:
             run.clock.every(self._physics_us, MEASURED, self._targets.held.apply)
+            self._targets.held.ahead = script.steps
+            run.when_simulated.append(lambda: self._targets.held.hold_in_loop(run.clock.now_us))
         if script.start_us > run.clock.now_us:
             run.run_until(script.start_us)
         self._write_until(script.start_us)
