@@ -44,6 +44,7 @@ _NOT_PASSED_ON_EITHER = {
     "CLICOLOR_FORCE",
     "CI",
     "BUILD_NUMBER",
+    "XDG_DATA_HOME",
 }
 
 # Threads of numpy's linear algebra spin while they wait, in each process that imports it for up to a tenth of a second.
@@ -129,6 +130,8 @@ def _environment() -> dict[str, str]:
         "PYTHONDONTWRITEBYTECODE": "1",
         # Robot projects do not use hypothesis. With -v its plugin imports all of it, which takes a second.
         "PYTEST_ADDOPTS": "-p no:hypothesispytest",
+        # Units that were parsed are the one thing in the home directory of who runs the suite that commands share.
+        "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache")),
     }
 
 
@@ -220,6 +223,11 @@ class RobotProject:
     #: Whether its files have the season's spelling already.
     as_written: bool = False
 
+    @property
+    def home(self) -> Path:
+        """The home directory that its commands see: they write nothing into that of the person who runs the suite."""
+        return self.path.parent / "home of the user"
+
     def write(self, files: Mapping[str, str]) -> None:
         """Write the files, named relative to the project, their text without its common indentation."""
         motors = motors_of(files.values())
@@ -306,7 +314,8 @@ class RobotProject:
         :param own_session: whether it leads a session of its own, as at another terminal
         """
         stdin, stdout, stderr = streams
-        environment = _environment() | {"TMPDIR": str(self.temporary), "TEMP": str(self.temporary)}
+        environment = _environment() | dict.fromkeys(("TMPDIR", "TEMP"), str(self.temporary))
+        environment |= dict.fromkeys(("HOME", "USERPROFILE"), str(self.home))
         if args[:1] == ("fuzz",):
             # With more processes, shrinking runs scripts that it does not need then: a third more processor time. What
             # is found is the same. Tests that are about the number pass it.
@@ -369,8 +378,8 @@ MakeProject = Callable[[Mapping[str, str]], RobotProject]
 def new_project(directory: Path, files: Mapping[str, str], as_written: bool = False) -> RobotProject:
     """Make a robot project of files in this directory."""
     project = RobotProject(directory / "robot-project", directory / "temporary", as_written)
-    project.path.mkdir()
-    project.temporary.mkdir()
+    for path in (project.path, project.temporary, project.home):
+        path.mkdir()
     project.write(files)
     return project
 

@@ -122,6 +122,7 @@ def test_programs_in_java_and_cpp_are_removed_on_request(make_project) -> None:
         result = project.run(*command, "--yes")
         assert result.code == 0, result.output
         assert "/home/lvuser/Robot.jar" in result.stdout
+        assert robot.host in (project.home / ".pyfrc/known_hosts").read_text()  # outside of a project, the user's
         assert list(robot.home.iterdir()) == []
         assert not (robot.disk / "usr/local/frc/third-party/lib").exists()
         robot.put("home/lvuser/robotCommand", "python3 -m robotpy --main /home/lvuser/py/robot.py run\n")
