@@ -7,17 +7,18 @@ import { html } from "#js/view.js";
 
 const NAMES = { x: "X", left: "Left", right: "Right" };
 
-// axes: names of the axes that the plot has; ranges: limits that were set; limits(axis): what the chart shows
+// axes: names of the axes that the plot has; ranges(): limits that were set; limits(axis): what the chart shows
 // hold: whether the time that is shown stays, or undefined if the plot has no axis of time
 export function PlotAxes({ axes, ranges, limits, setRange, hold, setHold }) {
   return html`<${Dropdown} label="Axes" title="Limits of the axes" content=${() => html`<div class="axes-settings">
     ${hold !== undefined && html`<label><input type="checkbox" checked=${hold} onChange=${() => setHold(!hold)} /> Keep the time that is shown</label>`}
-    ${axes.map((axis) => html`<${Axis} key=${axis} axis=${axis} locked=${axis in ranges} shown=${ranges[axis] ?? limits(axis)} setRange=${setRange} />`)}
+    ${axes.map((axis) => html`<${Axis} key=${axis} axis=${axis} locked=${axis in ranges()} range=${() => ranges()[axis] ?? limits(axis)} setRange=${setRange} />`)}
   </div>`} />`;
 }
 
-function Axis({ axis, locked, shown, setRange }) {
-  const [low, high] = shown;
+// What is typed into one box goes with the other limit of that moment, which may not be drawn yet.
+function Axis({ axis, locked, range, setRange }) {
+  const [low, high] = range();
   const typed = (make) => ({ target }) => {
     try {
       const [from, to] = make(typedNumber(target.value));
@@ -28,9 +29,9 @@ function Axis({ axis, locked, shown, setRange }) {
     }
   };
   return html`<div class="axis-line"><span>${NAMES[axis]}</span>
-    <${TextBox} aria-label=${`${NAMES[axis]} axis from`} text=${short(low)} onChange=${typed((value) => [value, high])} />
-    <${TextBox} aria-label=${`${NAMES[axis]} axis to`} text=${short(high)} onChange=${typed((value) => [low, value])} />
-    <label><input type="checkbox" aria-label=${`Lock the ${NAMES[axis].toLowerCase()} axis`} checked=${locked} onChange=${() => setRange(axis, locked ? null : shown)} /> Lock</label></div>`;
+    <${TextBox} aria-label=${`${NAMES[axis]} axis from`} text=${short(low)} onChange=${typed((value) => [value, range()[1]])} />
+    <${TextBox} aria-label=${`${NAMES[axis]} axis to`} text=${short(high)} onChange=${typed((value) => [range()[0], value])} />
+    <label><input type="checkbox" aria-label=${`Lock the ${NAMES[axis].toLowerCase()} axis`} checked=${locked} onChange=${() => setRange(axis, locked ? null : range())} /> Lock</label></div>`;
 }
 
 function short(value) {
