@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -162,8 +163,9 @@ REFUSED = [["script-src-elem"] * 5, 0]
 @contextmanager
 def open_browser() -> Iterator[Browser]:
     """Start Chromium without a window."""
-    from playwright.sync_api import sync_playwright
+    from playwright.sync_api import expect, sync_playwright
 
+    expect.set_options(timeout=PATIENCE * 1000)  # otherwise five seconds, for all that was set for a page
     program = next(filter(None, map(shutil.which, _PROGRAMS)))
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=_ARGUMENTS)
@@ -224,11 +226,22 @@ class Seen:
         """Wait until a box or a slider has this value."""
         from playwright.sync_api import expect
 
-        expect(box).to_have_value(text, timeout=PATIENCE * 1000)
+        expect(box).to_have_value(text)
 
     def drawn(self) -> None:
         """Wait until the page has drawn what was changed."""
         self.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    def eventually(self, script: str, argument: Any = None, accept: Callable[[Any], object] = bool) -> Any:
+        """Run a script in the page until its result is accepted, and return it.
+
+        `Page.wait_for_function` does not wait for the result of a promise, and takes the promise for true.
+        """
+        ends = monotonic() + PATIENCE
+        while not accept(found := self.page.evaluate(script, argument)):
+            assert monotonic() < ends, found
+            self.drawn()
+        return found
 
     def state(self, text: str) -> None:
         """Wait until the driver station shows this."""

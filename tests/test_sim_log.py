@@ -627,6 +627,7 @@ def test_a_person_sees_where_the_log_differs(recorded: RobotProject, browser: Br
         page.get_by_title("Compare with an earlier run", exact=True).click()
         page.locator(".menu-list button", has_text="What differs").click()
         row = page.locator(".comparison tr", has_text="pwm[1].value").locator("td")
+        row.nth(3).wait_for()
         assert row.all_inner_texts()[1:] == ["pwm[1].value", "0.278884", "0.52988"]
         page.locator(".comparison tr", has_text="From the log").get_by_text("encoder[0].count").wait_for()
         page.get_by_role("button", name="Close", exact=True).click()

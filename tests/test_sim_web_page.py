@@ -13,6 +13,7 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
     shared_browser,
     shared_server,
 )
+from playwright.sync_api import expect
 from skips import require
 
 require("the page of pyfrc sim in a browser", missing_browser())
@@ -122,6 +123,8 @@ def test_time_is_paused_stepped_and_scaled(person: Seen) -> None:
 
 def test_the_robot_is_dragged_turned_and_moved_by_keys(person: Seen) -> None:
     field = person.page.locator(".field-canvas")
+    person.page.locator(".pose b", has_text="10.00 ft").wait_for()
+    person.drawn()
     # The robot at (10, 12) of the field of 54 by 26.4 feet, which has a margin around it.
     box = field.bounding_box()
     scale = 0.93 * min(box["width"] / 54.25, box["height"] / 26.417)
@@ -250,9 +253,9 @@ def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> 
 def test_nothing_of_the_robot_is_ever_html(person: Seen) -> None:
     page = person.page
     page.locator(".line-text", has_text=HOSTILE).first.wait_for()
-    assert page.get_by_label(CHOOSER).first.locator("option").all_inner_texts() == [HOSTILE, "Forward", "Nothing"]
+    expect(page.get_by_label(CHOOSER).first.locator("option")).to_have_text([HOSTILE, "Forward", "Nothing"])
     person.tab("NetworkTables").click()
-    assert person.row("nt:/SmartDashboard/text").locator("input").input_value() == HOSTILE
+    person.shows(person.row("nt:/SmartDashboard/text").locator("input"), HOSTILE)
     person.choose("Layout", "Tuning")
     page.locator(".alert", has_text="the battery is low").wait_for()
     person.page.keyboard.press("Control+e")

@@ -197,6 +197,7 @@ def test_fingers_arrange(width: int, height: int, browser: Any, server: Any, fil
         page.set_viewport_size({"width": width, "height": height})
         tablet.choose("Layout", "Dashboard")
         tablet.button("Arrange").tap()
+        page.locator(".grid.arranging").wait_for()
         fingers = Fingers(tablet)
         grid = page.locator(".grid")
         for finger_at, until in (((8.5, 5.5), (10.5, 2.5)), ((10.5, 2.5), (5.5, 6.5))):

@@ -122,6 +122,7 @@ def said(person: Seen) -> None:
     """Wait until the page says that this is the past, and hide it."""
     person.page.locator(".notice", has_text=PAST).wait_for()
     person.page.get_by_label("Hide this message").click()
+    person.page.locator(".notice").wait_for(state="detached")
 
 
 @BROWSER
@@ -201,8 +202,7 @@ def test_a_branch_that_is_longer_than_the_present_is_shown_whole(person: Seen) -
       return [length(), compared.end];
     }"""
     page.locator(".u-over").first.wait_for()
-    page.wait_for_function("module('js/compare.js').then(({ compared }) => compared.end > 0)")
-    present, end = page.evaluate(shown)
+    present, end = person.eventually(shown, accept=lambda found: found[1] > 0)
     assert (present, end) == (pytest.approx(1.0), pytest.approx(long))
     # The pointer is at a moment that only the branch has, and the plot's own curve has no value there.
     page.locator("[data-panel='plot:1'] .u-over").hover(position={"x": 200, "y": 20})

@@ -6,6 +6,8 @@ import pytest
 from browser_pages import Seen, person_at_page, shared_browser, shared_server  # noqa: F401 - `person` and what it needs
 
 PLOT = "[data-panel='plot:1']"
+#: A promise of what the page keeps of this plot.
+CONFIG = "module('js/plotting.js').then(({ plotOf }) => plotOf('plot:1'))"
 ADD = "paths => module('js/plotting.js').then(({ addToPlot }) => paths.forEach((path) => addToPlot(path, 'plot:1')))"
 
 
@@ -86,7 +88,7 @@ def test_axes_are_zoomed_locked_and_typed(drove: Seen) -> None:
     automatic = limits(drove, "Left")
     page.locator(f"{PLOT} .u-axis.axis-handle").hover()
     page.mouse.wheel(0, -300)
-    page.wait_for_function("module('js/plotting.js').then(({ plotOf }) => plotOf('plot:1').ranges?.left)")
+    drove.eventually(f"{CONFIG}.then(({{ ranges }}) => ranges?.left)")
     low, high = limits(drove, "Left")
     assert high - low < 0.9 * (automatic[1] - automatic[0])
     page.locator(PLOT).get_by_role("button", name="Axes").click()
@@ -103,7 +105,7 @@ def test_axes_are_zoomed_locked_and_typed(drove: Seen) -> None:
     page.locator(f"{PLOT} .uplot").wait_for()
     assert limits(drove, "Left") == [-50, 100]
     page.locator(f"{PLOT} .u-axis.axis-handle").dblclick()
-    page.wait_for_function("module('js/plotting.js').then(({ plotOf }) => !plotOf('plot:1').ranges.left)")
+    drove.eventually(f"{CONFIG}.then(({{ ranges }}) => !ranges.left)")
     assert limits(drove, "Left") == pytest.approx(automatic, abs=0.1)
 
 
@@ -141,7 +143,7 @@ def test_curves_over_another_curve(drove: Seen) -> None:
     zoomed = limits(drove, "X")
     assert zoomed[1] - zoomed[0] == pytest.approx(0.4 * (high - low), rel=0.1)
     page.locator(f"{PLOT} .u-over").dblclick()
-    page.wait_for_function("module('js/plotting.js').then(({ plotOf }) => !plotOf('plot:1').ranges.x)")
+    drove.eventually(f"{CONFIG}.then(({{ ranges }}) => !ranges.x)")
     assert limits(drove, "X") == pytest.approx([low, high], abs=0.1)
 
 
@@ -198,6 +200,8 @@ def test_a_chart_keeps_a_height_below_many_curves_and_above_many_states(person: 
         "alliance_station",
     ]
     page.evaluate(ADD, paths)
+    page.locator(f"{PLOT} .curve-name").nth(len(paths) - 1).wait_for()
+    page.locator(f"{PLOT} .u-over").wait_for()
     for is_table in (False, True):
         if is_table:
             page.locator(PLOT).get_by_role("button", name="Table").click()

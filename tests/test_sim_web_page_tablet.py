@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from browser_pages import Seen, page_of, shared_browser, shared_server  # noqa: F401 - `browser`, `server`
 from conftest import sampled
+from playwright.sync_api import Locator, expect
 
 SIZE = {"width": 1180, "height": 820}
 #: The least width and height of what a thumb hits, in pixels.
@@ -48,6 +49,12 @@ def person_with_a_tablet(browser: Any, server: Any) -> Iterator[Seen]:
     with page_of(browser, server, has_touch=True) as person:
         person.page.set_viewport_size(SIZE)
         yield person
+
+
+def show_tab(tab: Locator) -> None:
+    """Tap a tab, and wait until its panel is in front."""
+    tab.tap()
+    expect(tab).to_have_attribute("aria-selected", "true")
 
 
 class Fingers:
@@ -119,7 +126,7 @@ def test_nothing_is_off_the_screen_and_thumbs_hit_it(layout: str, tablet: Seen) 
     page.locator(".menu-list button", has_text=layout).first.tap()
     page.get_by_title("Layout", exact=True).filter(has_text=layout).wait_for()
     for tab in page.locator(".tab > [role=tab]").all():
-        tab.tap()
+        show_tab(tab)
         assert page.evaluate(LOOK) == {"hidden": [], "small": []}, tab.inner_text()
 
 
@@ -127,8 +134,9 @@ def test_nothing_is_off_the_screen_and_thumbs_hit_it(layout: str, tablet: Seen) 
 def test_a_phone_reaches_everything(width: int, height: int, tablet: Seen) -> None:
     page = tablet.page
     page.set_viewport_size({"width": width, "height": height})
+    tablet.drawn()
     for tab in page.locator(".tab > [role=tab]").all():
-        tab.tap()
+        show_tab(tab)
         assert page.evaluate(LOOK) == {"hidden": [], "small": []}, tab.inner_text()
     # Most of the screen is for the panels, also when a phone lies.
     dock = page.locator(".dock").bounding_box()

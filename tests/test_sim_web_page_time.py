@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from functools import partial
 
 import pytest
@@ -17,7 +16,6 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
     shared_server,
 )
 from conftest import sampled
-from sim_robots import PATIENCE
 from skips import require
 from web_pages import served
 
@@ -72,10 +70,12 @@ def plotted(person: Seen, panel: str = "plot:1") -> list[str]:
 def test_values_are_plotted_zoomed_and_saved(person: Seen) -> None:
     page = person.page
     person.choose("Layout", "Tuning")
+    page.locator("[data-panel='plot:1']").wait_for()
     person.tab("Devices").click()
     row = person.row("pwm[0].value")
     row.hover()
     row.get_by_label("Plot 0 left motor").click()
+    page.locator(".curve-name", has_text="left motor").wait_for()
     row = person.row("dio[3].value")
     row.drag_to(page.locator("[data-panel='plot:1'] .plot-area"))
     page.locator(".curve-name", has_text="Digital I/O 3").wait_for()
@@ -118,15 +118,7 @@ SERIES = """async (path) => {
 def same_series(person: Seen, path: str) -> None:
     """Wait until the page has what the server has, without holes."""
     person.page.get_by_role("button", name="Run", exact=True).first.wait_for()
-
-    def differs() -> list[str]:
-        shown, kept = person.page.evaluate(SERIES, path)
-        return sorted(set(shown) ^ set(kept))
-
-    ends = time.monotonic() + PATIENCE
-    while differs() and time.monotonic() < ends:  # the last samples are on their way
-        person.page.evaluate("new Promise(requestAnimationFrame)")
-    assert differs() == []
+    person.eventually(SERIES, path, lambda found: set(found[0]) == set(found[1]))  # the last samples are on their way
 
 
 @pytest.mark.slow
