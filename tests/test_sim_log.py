@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -218,6 +219,53 @@ def test_commands_see_the_sensors_of_the_log_whatever_a_subsystem_simulates(make
     assert "encoder[0]" in said.partition("sensors from the log")[2]
 
 
+WRIST = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            wpilib.DataLogManager.start()
+            wpilib.DriverStation.startDataLog(wpilib.DataLogManager.getLog())
+            self.wrist = wpilib.DutyCycleEncoder(8)
+
+        def robotPeriodic(self):
+            wpilib.SmartDashboard.putNumber("wrist", self.wrist.get())
+
+        def disabledInit(self):
+            print("wrist", self.wrist.get())
+"""
+TURNING = """
+    from wpilib.simulation import DutyCycleEncoderSim
+
+    class PhysicsEngine:
+        def __init__(self, physics_controller):
+            pass
+
+        def update_sim(self, hal_data, now, tm_diff):
+            DutyCycleEncoderSim(8).set(now % 1)
+"""
+
+
+def test_a_sensor_can_freeze_in_the_match_of_a_log(make_project: MakeProject) -> None:
+    """As `docs/view.md` says: the log as a script, to which a line is added."""
+    guide = (Path(__file__).parents[1] / "docs" / "view.md").read_text("utf-8")
+    (line,) = re.findall(r"^```json\n(.*)\n```$", guide, re.MULTILINE)
+    project = make_project({"robot.py": WRIST, "physics.py": TURNING, "drive.jsonl": DRIVEN})
+    assert project.run(*SIM, "--script", "drive.jsonl").code == 0
+    (log,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
+    result = project.run("-v", *SIM, "--log", str(log), "--record", "frozen.jsonl")
+    path = 'CAN["DutyCycle:DutyCycleEncoder[8]"].Position'
+    assert path in result.stdout.partition("sensors from physics: ")[2].partition("\n")[0]
+    assert path in json.loads(line)["set"].popitem()[0]
+    script = project.path / "frozen.jsonl"
+    head, *steps = script.read_text("utf-8").splitlines()
+    steps = sorted([*steps, line], key=lambda step: json.loads(step)["t"])
+    script.write_text("\n".join([head, *steps]), "utf-8")
+    result = project.run(*SIM, "--script", "frozen.jsonl")
+    assert result.code == 0, result.output
+    assert result.stdout.count("wrist 0.25\n") == 1  # at the end; at the beginning, it has not frozen
+
+
 def test_a_log_is_not_overwritten_by_what_is_written(recorded: RobotProject) -> None:
     before = {file: file.read_bytes() for file in recorded.path.glob("match.*")}
     for log, option, file in (
@@ -297,6 +345,7 @@ class Log:
             "DS:joystick0/axes": DoubleArrayLogEntry,
             "NT:/SmartDashboard/Elevator/setpoint": DoubleLogEntry,
             "NT:/SmartDashboard/kP": DoubleLogEntry,
+            "NT:/SmartDashboard/Field/Robot": DoubleArrayLogEntry,
         }
         self._entries = {name: kind(self._log, name) for name, kind in entries.items()}
 
@@ -330,8 +379,9 @@ def played(make_project: MakeProject) -> RobotProject:
     project = make_project({"robot.py": PUBLISHING})
     log = Log(project.path / "match.wpilog")
     log.at(0.0, enabled=False, autonomous=False, test=False, estop=False, kP=1.0, setpoint=0.0)
-    log.at(0.0, axes=[0.0, 0.0])
+    log.at(0.0, axes=[0.0, 0.0], Robot=[0.0, 0.0, 0.0])
     log.at(60.004, enabled=True)
+    log.at(61.0, Robot=[0.1, 0.0, 0.0])
     for number in range(100):
         axis = number / 100
         log.at(60.1 + 0.02 * number, axes=[axis, 0.0])
@@ -348,7 +398,9 @@ def test_the_log_of_a_robot_is_shown_on_the_times_of_the_simulation(played: Robo
     # It begins five seconds before the robot was enabled, and ends three seconds after it was disabled.
     assert [step.at_us for step in script.steps if step.writes.get("mode") == "teleop"] == [5_020_000]
     assert 11.0 <= script.end_us / 1e6 <= 11.1
-    said = log_of(played, "match.wpilog")
+    said = log_of(played, "match.wpilog", "--record", "again.jsonl")
+    # Where the robot is, it has not been told: it believes to be in a corner.
+    assert "Field/Robot" not in (played.path / "again.jsonl").read_text("utf-8")
     # At 0.85, since 5 % of the range are 0.05.
     assert "differs first at 0:06.84, in Elevator/setpoint: 0.854 in match.wpilog, 0.8 here" in said
     assert "differs slightly" not in said
@@ -496,6 +548,9 @@ def test_a_log_that_has_no_inputs_is_refused_in_a_sentence(make_project: MakePro
     result = project.run(*SIM, "--log", "turns.wpilog", "--mode", "auto")
     assert result.code == 2
     assert "--log has the modes and all inputs" in result.output
+    result = project.run(*SIM, "--log", "turns.wpilog", "--script", "drive.jsonl")
+    assert result.code == 2
+    assert "--log FILE --record NEW.jsonl writes them as a script" in " ".join(result.output.split())
     result = project.run(*SIM, "--mode", "auto", "--tolerance", "5")
     assert result.code == 2
     assert "--tolerance, --input and --ignore are for a log" in result.output

@@ -36,7 +36,7 @@ class LogReport:
     """Compares a simulation with the log that drives it.
 
     :param log: the log that drives the source, and is a branch of it
-    :param names_all: whether to name all values that differ, and all sensors
+    :param names_all: whether to name all values that differ, and each sensor by its path
     """
 
     def __init__(self, source: Source, log: LogRun, names_all: bool = False) -> None:
@@ -61,7 +61,8 @@ class LogReport:
         yield from self._in_one_only(branch.number)
         if found.by.ignored:
             yield f"not compared, as you asked: {self._listed(found.by.ignored)}"
-        for kind, names in _devices_by_source(runs.sensors(branch.number)).items():
+        sensors = runs.sensors(branch.number)
+        for kind, names in (sensors if self._most is None else _devices_by_source(sensors)).items():
             if names:
                 yield f"{_SOURCES[kind]}: {self._listed(names)}"
 

@@ -135,13 +135,18 @@ def _offset(script: InputScript, run: PastRun) -> float:
 
 
 def _placed(project: Project, script: InputScript, run: PastRun, is_own: bool) -> InputScript:
-    """Return the script with the robot's place in the log, as soon as it is enabled, if that is not where it starts."""
+    """Return the script with the robot's place in the log, as soon as it is enabled, if that is not where it starts.
+
+    A robot that believes to be at 0, 0 in WPILib's coordinates, a corner of the field, has not been told its place.
+    """
     network = run.histories["network"]
     moment = PACKET_US / 1_000_000 if is_own else (moment_of(network, "enabled") or 0.0) + _PLACED
     place = network.value_at(POSE, moment)
     field = field_of(project)
     start = start_named(field, None)
-    if place is MISSING or math.hypot(place[0] - start.x, place[1] - start.y) < _SAME_PLACE:
+    if place is MISSING or any(
+        math.hypot(place[0] - x, place[1] - y) < _SAME_PLACE for x, y in ((start.x, start.y), (0.0, field.height))
+    ):
         return script
     return replace(script, steps=(Step(0, robot_at(field, Pose(*place))), *script.steps))
 

@@ -79,8 +79,14 @@ def _check(request: SimRequest, kind: FrontEndKind) -> None:
         raise UsageError("--share, --port and --allow-host are for the simulator in a browser", remedy="Add --ui web.")
     if request.log is None and (request.tolerance is not None or request.inputs or request.ignored):
         raise UsageError("--tolerance, --input and --ignore are for a log", remedy="Add --log FILE.")
-    if request.log is not None and any((request.mode, request.script, request.opmodes)):
-        raise UsageError("--log has the modes and all inputs", remedy="Leave out --mode, --opmode and --script.")
+    if request.log is not None and request.script is not None:
+        raise UsageError(
+            "--log has all inputs",
+            remedy="To change them, such as by a sensor that freezes: --log FILE --record NEW.jsonl writes them as a "
+            "script, and --script NEW.jsonl plays what you have changed there.",
+        )
+    if request.log is not None and any((request.mode, request.opmodes)):
+        raise UsageError("--log has the modes and all inputs", remedy="Leave out --mode and --opmode.")
     if not kind.is_served and request.share is not None and not _network_port(request, kind):
         raise UsageError(
             "without a page, --share drive shares NetworkTables, and these are not served here",
