@@ -608,14 +608,22 @@ def test_how_much_a_value_differs_that_does_not_count(here: list, log: list, sli
     assert [share for _, share, _ in found.sorted_slight()] == ([] if slight is None else [pytest.approx(slight)])
 
 
-@pytest.mark.parametrize(("path", "differs"), [("nt:/pose/rotation/value", None), ("nt:/pose/translation/x", 1.0)])
-def test_an_angle_goes_on_after_half_a_turn(path: str, differs: float | None) -> None:
+@pytest.mark.parametrize(
+    ("values", "differs"),
+    [
+        ([(3.0, 3.0), (3.14, -3.14), (-3.0, -3.0)], None),
+        ([(179.0, 179.0), (-180.0, 179.98), (-179.0, -179.0)], None),
+        (
+            [((1.0, 2.0, 179.0),) * 2, ((1.0, 2.0, 179.9), (1.0, 2.0, -179.9)), ((1.0, 2.0, -170.0),) * 2],
+            None,
+        ),  # a Field2d
+        ([(3.0, 3.0), (3.0, -3.0), (-3.0, -3.0)], 1.0),
+    ],
+)
+def test_an_angle_goes_on_after_half_a_turn(values: list, differs: float | None) -> None:
     found = FirstDifference(0.0, 4.0, Comparison(True, 0.05, 0.06))
-    here, log = ValueHistory(), ValueHistory()
-    for time, value in ((0.0, 3.0), (1.0, 3.14), (2.0, -3.0), (4.0, -3.0)):
-        here.add(time, {path: value})
-        log.add(time, {path: -3.14 if time == 1.0 else value})
-    found.compare(here, log, path)
+    here, log = (history(*((float(time), each[run]) for time, each in enumerate(values))) for run in (0, 1))
+    found.compare(here, log, "nt:/x")
     assert found.time == differs
 
 

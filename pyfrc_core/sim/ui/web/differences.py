@@ -12,6 +12,7 @@ import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, NamedTuple
 
 from ....compat.unrepeatable import in_real_time
@@ -45,8 +46,8 @@ _OF_LOGS = re.compile(
     rf"{VALUE}((/(console|messages|systemTime|NTConnection|pose(/.*)?)|{NETWORK_INPUTS})$|/?(.*/)?\.[^/]+)"
 )
 
-#: The parts of structs that are angles in radians: -pi and pi are the same direction.
-_ANGLE = re.compile(r"/(rotation|angle)/value$")
+#: A value that has just this range, or at most this share less, is taken for an angle: -180 and 180 are the same.
+_TURNS, _LESS = (360.0, math.tau), 0.005
 
 #: A value from a moment on.
 Held = tuple[float, Any]
@@ -119,7 +120,8 @@ class FirstDifference:
         if left == right:  # as most are
             return
         limits = self._limits(left, right)
-        apart = _between_angles if self.by.share and _ANGLE.search(path) else _apart
+        turn = next((each for each in _TURNS if each * (1 - _LESS) <= limits.range <= each + limits.rounding), math.inf)
+        apart = partial(_apart, turn=turn, is_log=self.by.is_log)
         difference, (largest, moment) = self._difference(left, right, end, limits.most, apart)
         if difference is None:
             if largest > limits.rounding:
@@ -153,7 +155,7 @@ class FirstDifference:
                 if here is not there and not self.by.is_log:
                     return (time, there, here), largest
                 continue
-            apart = apart_of(here, there, self.by.is_log)
+            apart = apart_of(here, there)
             if late and apart > largest[0]:
                 apart = max(
                     _apart_from(here, _between(right, rights, time, late), apart_of),
@@ -190,17 +192,21 @@ class _Limits(NamedTuple):
     range: float = 0.0
 
 
-def _apart(one: Any, other: Any, is_log: bool = True) -> float:
-    """Return how far two values are apart; infinite: they differ, and are no numbers."""
+def _apart(one: Any, other: Any, turn: float, is_log: bool) -> float:
+    """Return how far two values are apart; infinite: they differ, and are no numbers.
+
+    :param turn: what is a whole turn, if they are angles; else infinite
+    """
     if same(one, other):
         return 0.0
     if not is_log or one is MISSING or other is MISSING:
         return math.inf
     if is_number(one) and is_number(other):
         apart = float(abs(one - other))
-        return math.inf if math.isnan(apart) else apart
+        return abs(math.remainder(apart, turn)) if math.isfinite(apart) else math.inf
     if isinstance(one, tuple) and isinstance(other, tuple):
-        return max(map(_apart, one, other), default=0.0) if len(one) == len(other) else math.inf
+        parts = (_apart(*both, turn, is_log) for both in zip(one, other, strict=False))
+        return max(parts, default=0.0) if len(one) == len(other) else math.inf
     return 0.0 if isinstance(one, str) != isinstance(other, str) else math.inf  # data logs have lists as texts
 
 
@@ -236,12 +242,6 @@ def sensors_by_source(hal: ValueHistory, network: ValueHistory, given: frozenset
 def is_number(value: Any) -> bool:
     """Return whether a value is a number, and no boolean."""
     return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
-def _between_angles(one: Any, other: Any, is_log: bool = True) -> float:
-    """Return the same of two angles in radians."""
-    apart = _apart(one, other, is_log)
-    return abs(math.remainder(apart, math.tau)) if math.isfinite(apart) else apart
 
 
 def _apart_from(value: Any, others: list[Any], apart_of: Callable[..., float]) -> float:
