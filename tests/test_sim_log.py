@@ -141,12 +141,20 @@ NAMED = """
         def disabledPeriodic(self):
             pass
 
+        def make_talon(self):
+            talon = hal.SimDevice("CANMotor:Talon FX (v6)", 11)
+            talon.createDouble("rotorPos", hal.SimDevice.Direction.kInput, 0.0)
+            return talon
+
 """
 
 
 def test_what_differs_is_named_anew_after_each_enabling_and_shortly(make_project: MakeProject) -> None:
     named = ROBOT.replace("GAIN = 0.5", 'GAIN = 0.5\n    NAME = "before"')
     named = named.replace('setDefaultNumber("kP", 1.0)\n\n', f'setDefaultNumber("kP", 1.0){NAMED}')
+    named = "\n    import hal\n" + named.replace(
+        "self.encoder = ", "self.talon = self.make_talon()\n            self.encoder = "
+    )
     named = named.replace("self.encoder = ", "self.turn = wpilib.DutyCycleEncoder(5)\n            self.encoder = ")
     turning = PHYSICS.replace("self.turns +=", "DutyCycleEncoderSim(5).set(now % 1)\n            self.turns +=")
     turning = "\n    from wpilib.simulation import DutyCycleEncoderSim\n" + turning
@@ -160,6 +168,7 @@ def test_what_differs_is_named_anew_after_each_enabling_and_shortly(make_project
     assert "after it was enabled at 0:04.00, in Elevator/setpoint (0:05.00), pwm[1].value (0:05.00)\n" in said
     of_encoder = [line for line in said.splitlines() if "DutyCycleEncoder[5]" in line]
     assert [line.partition(",")[0] for line in of_encoder] == ["sensors from the log"]
+    assert "simulated in real time, so what depends on them differs in each run: Talon FX 11\n" in said
     assert " only: " not in said
     change(project, "robot.py", '"before"', '"after"')
     change(project, "robot.py", '"Elevator/setpoint"', '"Elevator/goal"')

@@ -93,6 +93,12 @@ def in_real_time(name: str) -> bool:
     return any(_DEVICES[module].search(name) for module in _REAL_TIME)
 
 
+def real_time_device(name: str) -> str | None:
+    """Return such a device, such as ``Talon FX 11``; None for others."""
+    found = next((match for module in _REAL_TIME if (match := _DEVICES[module].search(name))), None)
+    return None if found is None else f"{found[1]} {found[2]}"
+
+
 def may_not_repeat(name: str) -> bool:
     """Return whether a path into `hal_data` is of a device that does not repeat in some runs."""
     return any(pattern.search(name) for pattern in _DEVICES.values())

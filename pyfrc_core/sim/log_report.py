@@ -28,8 +28,12 @@ _SOURCES = {
     "log": "sensors from the log, whatever today's code does",
     "physics": "sensors from physics",
     "nothing": "sensors that neither the log nor physics move",
+    "real time": "simulated in real time, so what depends on them differs in each run",
     "replay": "inputs of subsystems, which only the replay of AdvantageKit or PyKit gives to the code",
 }
+
+#: The kinds of which the names are not those of sensors, but what is listed.
+_NAMED_ALREADY = ("real time", "replay")
 
 
 class LogReport:
@@ -146,7 +150,8 @@ def _named(found: FirstDifference) -> list[tuple[str, float]]:
 def _devices_by_source(sensors: dict[str, list[str]]) -> dict[str, list[str]]:
     """Return the devices of sensors in their order; among those that nothing moves, none of which something moves."""
     found = {
-        kind: list(dict.fromkeys(paths if kind == "replay" else map(_device, paths))) for kind, paths in sensors.items()
+        kind: list(dict.fromkeys(paths if kind in _NAMED_ALREADY else map(_device, paths)))
+        for kind, paths in sensors.items()
     }
     moved = {*found["log"], *found["physics"]}
     return found | {"nothing": [name for name in found["nothing"] if name not in moved]}

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
 
-from ....compat.unrepeatable import in_real_time
+from ....compat.unrepeatable import in_real_time, real_time_device
 from ....runtime.scripts import kit_names
 from ....runtime.scripts.network_targets import NETWORK_INPUTS
 from ....runtime.scripts.sensors import camera_of, is_input, is_sensor
@@ -225,6 +225,8 @@ def _is_from_outside(path: str) -> bool:
 def sensors_by_source(hal: ValueHistory, network: ValueHistory, given: frozenset[str]) -> dict[str, list[str]]:
     """Return the sensors of a run by where their values come from: ``log``, ``physics``, or ``nothing``.
 
+    ``real time``: the devices that are simulated in real time, by name.
+
     :param hal: the values of `hal_data`
     :param network: those of NetworkTables, to which cameras belong
     :param given: the values that a log has
@@ -236,7 +238,8 @@ def sensors_by_source(hal: ValueHistory, network: ValueHistory, given: frozenset
     for path in sorted(hal.now):
         if is_sensor(path) and is_input(path, hal.now):
             found["log" if path in given else "physics" if hal.moves(path) else "nothing"].append(path)
-    return found
+    devices = dict.fromkeys(map(real_time_device, sorted(hal.now)))
+    return found | {"real time": [device for device in devices if device is not None]}
 
 
 def is_number(value: Any) -> bool:

@@ -8,6 +8,7 @@ const SOURCES = [
   ["log", "From the log"],
   ["physics", "From physics.py"],
   ["nothing", "Neither: not simulated"],
+  ["real time", "Simulated in real time: differs in each run"],
   ["replay", "Only by the replay of AdvantageKit or PyKit"],
 ];
 
