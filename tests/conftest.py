@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import compileall
 import faulthandler
-import functools
 import json
 import os
 import re
@@ -153,9 +152,17 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def pytest_configure(config: pytest.Config) -> None:
     """Compile our packages, as installing them does: commands would do it each time, since they keep nothing."""
     config.stash[_STDERR] = os.dup(2)  # while a test runs, its own goes to pytest's capture
-    if not hasattr(config, "workerinput"):
-        for package in ("pyfrc", "pyfrc_cli", "pyfrc_core"):
-            compileall.compile_dir(Path(__file__).parents[1] / package, quiet=2)
+    if hasattr(config, "workerinput"):
+        _forking.extend(config.workerinput["forking"])
+        return
+    for package in ("pyfrc", "pyfrc_cli", "pyfrc_core"):
+        compileall.compile_dir(Path(__file__).parents[1] / package, quiet=2)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node: Any) -> None:
+    """Give all workers of pytest-xdist one process that forks: its imports take as long as a hundred forks."""
+    node.workerinput["forking"] = [_forking_process()] if forked.POSSIBLE else []
 
 
 @pytest.hookimpl(wrapper=True)
@@ -188,9 +195,14 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object
         faulthandler.cancel_dump_traceback_later()
 
 
-@functools.cache
+#: The address of the process that forks, once there is one.
+_forking: list[str] = []
+
+
 def _forking_process() -> str:
-    return forked.start_server(_environment())
+    if not _forking:
+        _forking.append(forked.start_server(_environment()))
+    return _forking[0]
 
 
 def _start_python(command: Sequence[str], **options: Any) -> Any:

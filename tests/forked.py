@@ -325,6 +325,7 @@ def main() -> None:
     listener = socket.socket(fileno=int(sys.argv[1]))
     del sys.path[0]
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    gc.disable()  # what is imported stays
     with redirect_stdout(io.StringIO()):
         pytest.main(["-VV"])  # imports its plugins, in its own way
     for package in (pyfrc_cli, pyfrc_core):
@@ -343,6 +344,7 @@ def main() -> None:
     load_settings(Path(__file__).parent / "robots/competition/magic_swerve/pyproject.toml")  # builds their validator
     gc.collect()
     gc.freeze()
+    gc.enable()
     if (request := _serve(listener)) is not None:
         _become(request)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import struct
 from datetime import datetime, timezone
@@ -222,6 +223,7 @@ def test_a_very_long_log_is_shown_as_far_as_memory_allows(tmp_path: Path) -> Non
     assert "its first 100 records are read" in found.problem
 
 
+@functools.cache
 def _whole(kind: str) -> bytes:
     """Return a log of each kind, whole."""
     if kind == "wpilog":

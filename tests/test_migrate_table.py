@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from pyfrc_core.collector import collector_paused
 from pyfrc_core.migrate.names.packages import Class, Packages
 from pyfrc_core.migrate.names.table import HERE, corrections, table
 from pyfrc_core.season.spelling import snake_case
@@ -19,7 +20,8 @@ def installed() -> Packages:
     assert spec is not None
     assert spec.origin is not None
     packages = Packages(Path(spec.origin).parents[1])
-    packages.read()
+    with collector_paused():  # it keeps what it reads
+        packages.read()
     return packages
 
 

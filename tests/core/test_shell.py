@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import ast
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from pyfrc_core.shell import getting_tkinter, quoted
+
+from .source_texts import texts_in
 
 ROOT = Path(__file__).parents[2]
 
@@ -48,28 +48,13 @@ def test_tkinter_is_had_in_another_way_on_each_system() -> None:
     assert "sudo" not in getting_tkinter("win32")
 
 
-def texts(file: Path) -> Iterator[str]:
-    """Yield the strings of a module without its docstrings."""
-    tree = ast.parse(file.read_text("utf-8"))
-    docstrings = {
-        id(node.body[0].value)
-        for node in ast.walk(tree)
-        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef))
-        and node.body
-        and isinstance(node.body[0], ast.Expr)
-    }
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
-            yield node.value
-
-
 @pytest.mark.parametrize("package", ["pyfrc_cli", "pyfrc_core"])
 def test_no_message_has_a_command_that_windows_lacks(package: str) -> None:
     found = [
         f"{file.relative_to(ROOT)}: {text}"
         for file in sorted((ROOT / package).rglob("*.py"))
         if not file.relative_to(ROOT).as_posix().startswith(ELSEWHERE)
-        for text in texts(file)
+        for text in texts_in(file).others
         if POSIX_ONLY.search(text)
     ]
     assert found == []

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import ast
 import io
-from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from unittest.mock import patch
 
@@ -15,6 +14,8 @@ from hypothesis import strategies as st
 
 from pyfrc_cli import main
 from pyfrc_core.errors import PyfrcError
+
+from .source_texts import texts_in
 
 ROOT = Path(__file__).parents[2]
 
@@ -71,12 +72,6 @@ def test_any_text_can_be_printed(encoding: str, errors: str, text: str) -> None:
         assert f"warning: {text}!\nerror: {text}.py:3: {text}!\n  Remove {text}!\n" == err
 
 
-def texts_in(file: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(file.read_text("utf-8"))):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str):
-            yield node.value
-
-
 @pytest.mark.parametrize("encoding", ["cp1252", "cp437"])
 def test_no_message_needs_an_escape_on_a_console_of_windows(encoding: str) -> None:
     """With what users have written left out: the texts in the source, which are help, hints and errors."""
@@ -85,7 +80,7 @@ def test_no_message_needs_an_escape_on_a_console_of_windows(encoding: str) -> No
         for file in sorted((ROOT / package).rglob("*.py")):
             if file.relative_to(ROOT).as_posix().startswith(NOT_PRINTED):
                 continue
-            for text in texts_in(file):
+            for text in chain(*texts_in(file)):
                 if text.encode(encoding, "replace").decode(encoding) != text:
                     found.append(f"{file.relative_to(ROOT)}: {text}")
     assert found == []
