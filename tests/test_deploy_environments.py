@@ -14,6 +14,7 @@ from typing import Any
 from zipfile import ZipFile, ZipInfo
 
 import pytest
+from conftest import sampled
 from roborio.local import ROBOT_PY, Agents, Disk, LocalRobot, Processes, directory_in_memory, project_of
 
 from pyfrc_core.deploy.agent.robot_paths import Lock
@@ -372,7 +373,7 @@ def test_connections_cut(scenario: Scenario, places: int) -> None:
             scenario.check_deploy(**{f"cut_{way}_robot": total * number // places})
 
 
-@pytest.mark.parametrize("loses", [False, True], ids=["killed", "without power"])
+@pytest.mark.parametrize("loses", sampled([False, True], True), ids=["killed", "without power"])
 @on_each("each", 10, 1)
 def test_agents_killed_before_steps_on_the_disk(scenario: Scenario, each: int, loses: bool) -> None:
     assert scenario.installing.steps is not None

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject, RobotProject, sampled
 from test_command_line import EVERY
 
 from pyfrc_cli.file_options import ReadPath, WrittenDirectory, WrittenFile
@@ -43,6 +43,8 @@ DIRECTORIES: dict[str, tuple[str, ...]] = {
     "test --trace": ("test", "{}"),
     "virtual-robot --directory": ("virtual-robot", "{}"),
 }
+#: Files of a project, by other names, too.
+CODE = ("robot.py", "symbolic.html", "hard.png", "sim/config.json", "pyproject.toml", "deploy/path.txt")
 #: `pyfrc init` leaves every file that exists as it is.
 CHANGES_NOTHING = "init directory"
 
@@ -110,14 +112,19 @@ def refused(project: RobotProject, name: str, arguments: tuple[str, ...], path: 
     assert contents(project) == before
 
 
+@pytest.mark.parametrize("how_many", sampled(["a third of them", "all"], "a third of them"))
 @pytest.mark.parametrize("name", FILES)
-def test_a_file_that_is_read_is_not_overwritten(name: str, project: RobotProject) -> None:
+def test_a_file_that_is_read_is_not_overwritten(name: str, how_many: str, project: RobotProject) -> None:
+    """By day, each file in one spelling and two of the project's files, which are others for the next option."""
     arguments, read = FILES[name]
-    for file in read:
-        for spelled in (file, f"components/../{file}", str(project.path / file)):
-            refused(project, name, arguments, spelled, "this command reads it")
-    for code in ("robot.py", "symbolic.html", "hard.png", "sim/config.json", "pyproject.toml", "deploy/path.txt"):
-        refused(project, name, arguments, code, "it is a file of your robot project")
+    places = [
+        (spelled, "this command reads it")
+        for file in read
+        for spelled in (file, f"components/../{file}", str(project.path / file))
+    ]
+    places += [(file, "it is a file of your robot project") for file in CODE]
+    for path, why in places if how_many == "all" else places[list(FILES).index(name) % 3 :: 3]:
+        refused(project, name, arguments, path, why)
     refused(project, name, arguments, "components", "it is a directory")
     refused(project, name, arguments, "robot.py/out", "robot.py is a file")
 
