@@ -60,7 +60,7 @@ function byName(one, other) {
 }
 
 // The nodes by their paths: a topic's name may begin without a slash, so "/Speed" and "Speed" are two tables.
-function treeOf(paths) {
+export function treeOf(paths) {
   const root = { path: START, children: new Map() };
   for (const path of paths) {
     let node = root;
