@@ -501,6 +501,10 @@ TOPICS = """
 
         def teleopInit(self):
             wpilib.SmartDashboard.putBoolean("Commands/Reset", True)
+
+        def teleopPeriodic(self):
+            if wpilib.Timer.getFPGATimestamp() > 1.5:
+                wpilib.SmartDashboard.putBoolean("Commands/Climb", True)
 """
 LIMITED = """{"format": "pyfrc-input 1", "end": 2.0}
 {"t": 0.5, "set": {"nt:Arm/limit": 0.5}}

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from ...engine.messages import TYPE, VALUE
 from ...engine.past_run import Comparison
-from ...engine.value_history import ValueHistory
+from ...engine.value_history import MISSING, ValueHistory
 from .differences import is_published
 from .plots import same
 
@@ -48,17 +48,19 @@ def only_in_one(
 ) -> tuple[list[OnlyThere], list[OnlyThere]]:
     """Return the topics that only `there` has, and those that only `here` has, in the order of `OnlyThere.order`.
 
+    What came in `there` after the end of `here` is left out: it may still have come here.
+
     :param begin: where both runs begin, in seconds of the one that is here
     :param offset: what is added to the times of the other one
     """
     ours, theirs = topics(here), topics(there)
     shown = {path for path in ours ^ theirs if is_published(path) and not by.ignores(path)}
-    found = _only_in(there, shown & theirs, begin - offset)
+    found = _only_in(there, shown & theirs, begin - offset, here.end - offset)
     found = [each if each.time is None else each._replace(time=each.time + offset) for each in found]
-    return found, _only_in(here, shown & ours, begin)
+    return found, _only_in(here, shown & ours, begin, here.end)
 
 
-def _only_in(history: ValueHistory, found: Collection[str], begin: float) -> list[OnlyThere]:
+def _only_in(history: ValueHistory, found: Collection[str], begin: float, end: float) -> list[OnlyThere]:
     start = max(begin, 0.0) + _START
     parts: dict[str, list[str]] = {path: [] for path in found}
     for path in history.paths():
@@ -70,7 +72,9 @@ def _only_in(history: ValueHistory, found: Collection[str], begin: float) -> lis
     made = []
     for topic, paths in parts.items():
         firsts = [time for path in paths if (time := _first_change(history, path, start)) is not None]
-        made.append(OnlyThere(topic, min(firsts, default=None), sum(map(history.change_count, paths))))
+        first = min(firsts, default=None)
+        if first is None or first <= end or any(history.value_at(path, end) is not MISSING for path in paths):
+            made.append(OnlyThere(topic, first, sum(map(history.change_count, paths))))
     return sorted(made, key=lambda each: each.order)
 
 
