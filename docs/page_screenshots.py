@@ -32,7 +32,11 @@ def save(page: Page, name: str) -> None:
     """Save a picture in few colours: a repository is no place for large files."""
     page.wait_for_timeout(800)  # until everything has been drawn
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
-    picture.quantize(128, dither=Image.Dither.NONE).save(IMAGES / f"{name}.png", optimize=True)
+    # The colours that most pixels have, as they are: those of lamps and warnings mean something.
+    colors = sorted(picture.getcolors(picture.width * picture.height) or (), reverse=True)[:256]
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([part for _, color in colors for part in color])
+    picture.quantize(palette=palette, dither=Image.Dither.NONE).save(IMAGES / f"{name}.png", optimize=True)
 
 
 def run_for(server: Served, seconds: float) -> None:
@@ -118,7 +122,7 @@ _WIDGETS = (
     ("gauge", "/SwerveStates/Measured/0/speed", 7, 5, 2, 3, {"title": "Front left", "min": -4.0, "max": 4.0}),
     ("number", "sim.pose[0]", 9, 5, 3, 1, {"title": "x"}),
     ("number", "sim.pose[1]", 9, 6, 3, 1, {"title": "y"}),
-    ("number", "/SmartDashboard/Intake", 9, 7, 3, 1, {}),
+    ("number", "sim.pose[2]", 9, 7, 3, 1, {"title": "angle"}),
     (
         "graph",
         "/SwerveStates/Measured/0/speed",
@@ -148,7 +152,7 @@ def take_page_pictures() -> None:
     """Take the pictures of the page, each of a new project."""
     with tempfile.TemporaryDirectory() as directory, open_browser() as browser:
         for template, take in (("swerve", drive_swerve), ("elevator-arm", tune_elevator), ("swerve", show_dashboard)):
-            project = Path(directory, take.__name__)
+            project = Path(directory, take.__name__, f"{template}-robot")
             shutil.copytree(ROOT / "templates" / template, project)
             with served(SimpleNamespace(path=project), speed=1, paused=False) as server:
                 take(browser, server)

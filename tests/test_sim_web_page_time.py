@@ -377,9 +377,15 @@ def test_a_server_that_was_silent_is_connected_again(browser, server) -> None:
             page.get_by_text("The connection to pyfrc sim was lost, reconnecting").wait_for()
             assert person.button("E-STOP").is_disabled()
             server.simulation.choose_mode("autonomous")
+            person.choose("Layout", "Review")
+            page.wait_for_function("sessionStorage.getItem('pyfrc-unsaved')?.includes('review')")
         finally:
             awake.set()
         page.get_by_text("reconnecting").wait_for(state="detached")
+        saved = server.simulation.project.root / ".pyfrc" / "sim-layout.json"
+        while not (saved.exists() and '"layout": "review"' in saved.read_text("utf-8")):
+            page.wait_for_timeout(50)  # it is saved with the new connection
+        assert page.locator(".notice").count() == 0
         person.state("Autonomous disabled")
         page.locator(".live-now", has_text="Live").wait_for()
         server.simulation.enable()  # now: a robot that the last driver has left is disabled

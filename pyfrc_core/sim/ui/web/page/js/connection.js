@@ -13,6 +13,9 @@ const TICK = 1000; // milliseconds
 const ASK_AFTER = 2; // ticks of silence, after which the page asks whether the server is there
 const LOST_AFTER = 6; // ticks of silence, after which it connects again
 
+// Why a question has no answer. What the page keeps by itself is sent again with the next connection.
+export class Disconnected extends Error {}
+
 let run = null; // the recorded run
 let socket = null;
 let attempts = 0;
@@ -72,7 +75,7 @@ function open() {
 
 function lost() {
   socket = null;
-  for (const request of requests.values()) request.reject(new Error("the connection was lost"));
+  for (const request of requests.values()) request.reject(new Disconnected("The connection was lost. What you did last may not have been carried out."));
   requests.clear();
   if (finished) return;
   if (attempts) checkAddress();
@@ -121,7 +124,7 @@ export function ask(type, fields = {}) {
   if (run) return run.answer(type, fields);
   const id = nextId++;
   return new Promise((resolve, reject) => {
-    if (!send({ ...fields, type, id })) return reject(new Error("there is no connection to the simulation"));
+    if (!send({ ...fields, type, id })) return reject(new Disconnected("There is no connection. What you did last was not carried out."));
     requests.set(id, { resolve, reject });
   });
 }

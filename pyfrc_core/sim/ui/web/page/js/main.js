@@ -42,7 +42,7 @@ function receive(message) {
     settings.load(message.layout);
     applyTheme();
     document.title = `${message.project.name} – ${message.source.title}`;
-  }
+  } else if (message.type === "hello") settings.saveUnsaved();
   model.take(message);
 }
 

@@ -1,5 +1,5 @@
 // What a person has arranged: panels, plots, pins, keys, gamepads, light or dark. The server keeps it for the project.
-import { ask } from "#js/connection.js";
+import { Disconnected, ask } from "#js/connection.js";
 import { model } from "#js/model.js";
 import { PRESETS } from "#js/layout/presets.js";
 import { isRecorded } from "#js/recorded.js";
@@ -67,10 +67,16 @@ class Settings {
     try {
       await ask("layout", { layout: { version: DEFAULTS.version, ...changes(this.#saved, now, 2) } });
     } catch (error) {
+      if (error instanceof Disconnected) return; // `saveUnsaved` comes with the next one
       return model.set("problem", error.message);
     }
     this.#saved = now;
     if (timer === this.#timer) sessionStorage.removeItem(UNSAVED);
+  }
+
+  // Save what could not be saved while there was no connection.
+  saveUnsaved() {
+    if (sessionStorage.getItem(UNSAVED)) this.save();
   }
 
   // The panels' arrangement in the chosen layout.
