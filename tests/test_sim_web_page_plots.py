@@ -225,7 +225,7 @@ def test_the_wheel_scrolls_a_low_panel_and_zooms_with_ctrl(person: Seen) -> None
     page.set_viewport_size({"width": 1366, "height": 700})
     page.locator(f"{PLOT} .plot-bands").hover()
     page.mouse.wheel(0, 400)
-    scrolled = f"document.querySelector({PLOT + ' .plot'!r}).scrollTop"
+    scrolled = f"() => document.querySelector({PLOT + ' .plot'!r}).scrollTop"
     page.wait_for_function(f"{scrolled} > 0")
     chart.hover()
     page.mouse.wheel(0, -400)

@@ -378,7 +378,7 @@ def test_a_server_that_was_silent_is_connected_again(browser, server) -> None:
             assert person.button("E-STOP").is_disabled()
             server.simulation.choose_mode("autonomous")
             person.choose("Layout", "Review")
-            page.wait_for_function("sessionStorage.getItem('pyfrc-unsaved')?.includes('review')")
+            page.wait_for_function("() => sessionStorage.getItem('pyfrc-unsaved')?.includes('review')")
         finally:
             awake.set()
         page.get_by_text("reconnecting").wait_for(state="detached")
