@@ -248,9 +248,10 @@ class Seen:
         self.page.locator(".state b", has_text=text).wait_for()
 
     def pause(self) -> None:
-        """Press the key that pauses, and wait until the simulation does."""
+        """Press the key that pauses, and wait until the simulation does, and the page shows that moment."""
         self.page.keyboard.press("F5")
         self.until(lambda: self.simulation.status.state == "paused")
+        self.button("Run").first.wait_for()
 
     def drag(self, place: Locator, start: tuple[float, float], end: tuple[float, float], **options: Any) -> None:
         """Drag from a place in an element to another one, each as a share of its width and height."""

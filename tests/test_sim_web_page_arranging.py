@@ -12,6 +12,7 @@ from test_sim_web_page_dashboard import TABLE, dashboards_file, shown, widgets, 
 from test_sim_web_page_tablet import LEAST, LOOK, Fingers
 
 LAMP = {"kind": "lamp", "topic": f"{TABLE}flag", "x": 8, "y": 5, "w": 1, "h": 1}
+LONG = "A table with a name that is far too long for its column among the values"
 GAUGE = {"kind": "gauge", "topic": f"{TABLE}doubled", "x": 2, "y": 1, "w": 2, "h": 2}
 
 #: The draft, or what the file has: its name, and the place of each widget.
@@ -234,4 +235,7 @@ def test_fingers_arrange(width: int, height: int, browser: Any, server: Any, fil
         tablet.button("Put Turn on the dashboard").tap()
         assert arranged(tablet)[4:] == ["number 1 0 2 1", "pid 4 0 3 3"]
         shown(tablet, "pid").locator(".widget-tools:visible").wait_for()
+        # A table without a type, whose name is too long, does not push its button off.
+        tablet.simulation.write({f"nt:/{LONG}/one": 1.0})
+        page.locator(".nt-row.folder", has_text=LONG).wait_for()
         assert page.evaluate(LOOK) == {"hidden": [], "small": []}

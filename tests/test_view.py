@@ -425,7 +425,7 @@ def test_a_simulation_that_a_log_drives_is_started_and_ended(make_project: Any) 
         assert what_if.start() == address.geturl()
         with connect(f"ws://{address.netloc}/ws?{address.query}", max_size=None) as socket:
             page = Page(socket)
-            assert [branch["name"] for branch in page.parts["branches"]] == ["match.wpilog"]
+            page.until(lambda: [branch["name"] for branch in page.parts["branches"]] == ["match.wpilog"])
     finally:
         what_if.close()
     assert f"The simulator is at {address.geturl()}\n" in said
