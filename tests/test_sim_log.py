@@ -176,7 +176,10 @@ def test_what_differs_is_named_anew_after_each_enabling_and_shortly(make_project
     assert re.search(r"in name \d+: \.\.\..{,20} before in match.wpilog, \.\.\..{,20} after here", said)
     assert "and 4 more (-v names all)" in said
     assert "in match.wpilog only: Elevator/setpoint (0:01.00)\nhere only: Elevator/goal (0:01.00)\n" in said
-    assert "name 11 (" in project.run("-v", *SIM, "--log", "match.wpilog").stdout
+    change(project, "robot.py", "GAIN if", "(GAIN if wpilib.Timer.getFPGATimestamp() > 4 else 0.5) if")
+    said = project.run("-v", *SIM, "--log", "match.wpilog").stdout
+    assert "name 11 (" in said
+    assert said.count("pwm[1].value (0:05.00)") == 1  # it was equal until then, so it is not named anew
 
 
 def test_sensors_measure_what_they_measured_in_the_log(recorded: RobotProject) -> None:

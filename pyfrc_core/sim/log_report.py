@@ -95,7 +95,7 @@ class LogReport:
         if until := self._until():
             yield f"compared{until}"
         for moment in enabled_moments(log.histories["network"])[1:]:
-            yield from self._after(moment + log.offset, time, branch)
+            yield from self._after(moment + log.offset, differing, branch)
         yield from self._slight(found)
 
     def _slight(self, found: FirstDifference) -> Iterator[str]:
@@ -106,12 +106,15 @@ class LogReport:
             )
             yield f"differs slightly, at most by this share of its range: {listed}"
 
-    def _after(self, enabled: float, first: float, branch: int) -> Iterator[str]:
-        """Say what differs from a later enabling on, of what was equal before it."""
+    def _after(self, enabled: float, named: list[tuple[str, float]], branch: int) -> Iterator[str]:
+        """Say what differs again from a later enabling on, of what was equal before it.
+
+        :param named: what has been named, with when it differs first
+        """
         before = enabled - PACKET_US / 1_000_000
-        if before <= first or (found := self._collector.runs.first_difference(branch, None, before)) is None:
+        if before <= named[0][1] or (found := self._collector.runs.first_difference(branch, None, before)) is None:
             return
-        if later := [each for each in _named(found) if each[1] > before]:
+        if later := [each for each in _named(found) if each[1] > before and each not in named]:
             yield f"after it was enabled at {clock(enabled)}, in {self._listed(map(_with_time, later))}"
 
     def _in_one_only(self, branch: int) -> Iterator[str]:
