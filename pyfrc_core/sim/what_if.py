@@ -17,6 +17,8 @@ from ..project import Project
 _ADDRESS = re.compile(r"^The simulator is at (\S+)$")
 #: How long the simulation may take to end, in seconds.
 _ENDING_SECONDS = 10.0
+#: How long `WhatIf.start` waits for the address, in seconds: the page has no other answer until then.
+_WAITING_SECONDS = 0.5
 #: The last lines of a simulation that did not start that are its reason.
 _LINES = 3
 
@@ -36,7 +38,7 @@ class WhatIf:
         self._known = threading.Event()
 
     def start(self) -> str:
-        """Return the address of the simulation's page, when it is served.
+        """Start the simulation, unless it runs, and return the address of its page; empty while it is not yet served.
 
         :raises PyfrcError: when the simulation does not start
         """
@@ -56,7 +58,8 @@ class WhatIf:
                 errors="replace",
             )
             threading.Thread(target=self._read, args=(self._process,), name="pyfrc view: what if", daemon=True).start()
-        self._known.wait()
+        if not self._known.wait(_WAITING_SECONDS):
+            return ""
         if not self._address:
             raise PyfrcError("The simulation did not start: " + " ".join(self._lines[-_LINES:]).strip())
         return self._address

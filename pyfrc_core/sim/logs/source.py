@@ -28,7 +28,8 @@ class LogSource:
     """A log, with others as its branches.
 
     :param project: whose layout, field and names are used
-    :param what_if: starts a simulation of the project's robot that this log drives, and returns its page's address
+    :param what_if: starts a simulation of the project's robot that this log drives, and returns its page's address, as
+        `WhatIf.start` does
     :raises SettingsError: when ``sim/config.json`` is invalid
     """
 

@@ -59,10 +59,13 @@ export class RecordedTimeBar extends Live {
   }
 }
 
+// The robot's code may take longer to start than a page waits for an answer, so it asks again until it has an address.
 async function whatIf() {
-  model.set("problem", "Starting the simulation…");
-  const answer = await command("what_if");
-  if (answer?.address) location.href = answer.address;
+  model.set("problem", "Starting your code…");
+  let answer;
+  do answer = await command("what_if");
+  while (answer?.address === "");
+  if (answer) location.href = answer.address;
 }
 
 function toEnd() {
