@@ -68,6 +68,12 @@ from .verbosity import verbosity
     help="With --log: do not compare this value, such as led_time; * stands for any text; may be repeated.",
 )
 @click.option(
+    "--sensors",
+    type=click.Choice(["log", "physics"]),
+    help="With --log: what moves the sensors that the log has. Default: log. With physics, the robot goes on where "
+    "changed code drives it.",
+)
+@click.option(
     "--from",
     "start_at",
     type=click.FloatRange(min=0),

@@ -190,6 +190,10 @@ def test_sensors_measure_what_they_measured_in_the_log(recorded: RobotProject) -
     assert result.code == 0, result.output
     writes = [target for step in load_inputs(recorded.path / "again.jsonl").steps for target in step.writes]
     assert "hold:encoder[0].count" in writes
+    said = log_of(recorded, "match.wpilog", "--sensors", "physics")
+    assert "differs first at 0:01." in said
+    assert "sensors from physics: analog_in[0], encoder[0]\n" in said
+    assert "sensors from the log" not in said
 
 
 SIMULATED = """
@@ -569,7 +573,7 @@ def test_a_log_that_has_no_inputs_is_refused_in_a_sentence(make_project: MakePro
     assert "--log FILE --record NEW.jsonl writes them as a script" in " ".join(result.output.split())
     result = project.run(*SIM, "--mode", "auto", "--tolerance", "5")
     assert result.code == 2
-    assert "--tolerance, --input and --ignore are for a log" in result.output
+    assert "--tolerance, --input, --ignore and --sensors are for a log" in result.output
 
 
 def history(*changes: tuple[float, object]) -> ValueHistory:
@@ -793,6 +797,10 @@ def test_cameras_measure_what_they_measured_in_the_log(log: str, make_project: M
 
 def test_a_camera_that_a_log_does_not_have_comes_from_physics(make_project: MakeProject) -> None:
     project = make_project({"robot.py": CAMERAS, "physics.py": CHANCE, "drive.jsonl": DRIVEN})
-    result = project.run(*SIM, "--script", "drive.jsonl", "--record", "match.jsonl")
+    files = ("--record", "match.jsonl", "--wpilog", "match.wpilog")
+    result = project.run(*SIM, "--script", "drive.jsonl", *files)
     assert result.code == 0, result.output
     assert "sensors from physics: limelight, photonvision/front" in log_of(project, "match.jsonl")
+    said = log_of(project, "match.wpilog", "--sensors", "physics")
+    assert "sensors from physics: limelight, photonvision/front" in said
+    assert "limelight/" not in said.partition("sensors from physics")[0]  # what a camera measured is not compared

@@ -12,7 +12,7 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from ..compat.unrepeatable import may_not_repeat
 from ..errors import UsageError
@@ -32,6 +32,8 @@ from .engine.value_history import MISSING, ValueHistory
 from .logs import open_log
 from .logs.align import moment_of
 
+#: What moves the sensors that a log has: the log, or the project's physics.
+SensorSource = Literal["log", "physics"]
 #: The default share of a value's range that does not count as a difference, of runs that do not repeat exactly.
 SHARE = 0.05
 #: How late a value of such a run may come, in seconds: three turns of the loop.
@@ -63,6 +65,7 @@ def log_run(
     share: float | None = None,
     given: tuple[str, ...] = (),
     ignored: tuple[str, ...] = (),
+    moved_by: SensorSource = "log",
 ) -> LogRun:
     """Open a log.
 
@@ -70,6 +73,7 @@ def log_run(
         both repeat exactly, else `SHARE`
     :param given: further entries of NetworkTables that a person has set, by name
     :param ignored: values that are not compared, by name, besides those of the project's settings
+    :param moved_by: what moves the sensors, also cameras, that the log has
     :raises PyfrcError: when it is no log, or has no inputs
     """
     file = _script_of(file)
@@ -81,7 +85,9 @@ def log_run(
     hal = run.histories["hal"]
     offset = _offset(script, run)
     is_own = "power.vin_voltage" in hal.paths()  # a simulation has it, and no other log calls it so
-    sensors = frozenset(filter(partial(_is_measured, hal), hal.paths() if is_own else ()))
+    sensors = frozenset(filter(partial(_is_measured, hal), hal.paths() if is_own and moved_by == "log" else ()))
+    if moved_by == "physics":
+        script = _without_sensors(script)
     if is_own:  # to its end; that of a robot's log ends soon after the match
         script = replace(script, end_us=max(script.end_us, round((run.end + offset) * 1_000_000) + PACKET_US))
     script = _with_sensors(_placed(project, script, run, is_own), hal, sensors, offset)
@@ -164,6 +170,15 @@ def _is_measured(hal: ValueHistory, path: str) -> bool:
     if not (is_sensor(path) and is_input(path, hal.now)):
         return False
     return not path.startswith("CAN[") or hal.moves(path)
+
+
+def _without_sensors(script: InputScript) -> InputScript:
+    """Return the script without what sensors and cameras have measured."""
+    steps = (
+        Step(step.at_us, {to: each for to, each in step.writes.items() if not to.startswith(HOLD)})
+        for step in script.steps
+    )
+    return replace(script, steps=tuple(step for step in steps if step.writes))
 
 
 def _with_sensors(script: InputScript, hal: ValueHistory, sensors: frozenset[str], offset: float) -> InputScript:

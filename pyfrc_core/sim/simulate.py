@@ -36,7 +36,9 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     _check(request, kind)
     front_end = make_front_end(ui, request, say)
     share = None if request.tolerance is None else request.tolerance / 100
-    log = None if request.log is None else log_run(project, request.log, share, request.inputs, request.ignored)
+    log = None
+    if request.log is not None:
+        log = log_run(project, request.log, share, request.inputs, request.ignored, request.sensors or "log")
     options = _options(request, kind, log)
     for remark in () if options.script is None else remarks(options.script):
         say(f"{remark}\n")
@@ -77,8 +79,8 @@ def _check(request: SimRequest, kind: FrontEndKind) -> None:
         raise UsageError("without a window, --opmode needs --mode", remedy="Add --mode auto, --mode teleop, ...")
     if not kind.is_served and request.is_for_page:
         raise UsageError("--share, --port and --allow-host are for the simulator in a browser", remedy="Add --ui web.")
-    if request.log is None and (request.tolerance is not None or request.inputs or request.ignored):
-        raise UsageError("--tolerance, --input and --ignore are for a log", remedy="Add --log FILE.")
+    if request.log is None and any((request.tolerance is not None, request.inputs, request.ignored, request.sensors)):
+        raise UsageError("--tolerance, --input, --ignore and --sensors are for a log", remedy="Add --log FILE.")
     if request.log is not None and request.script is not None:
         raise UsageError(
             "--log has all inputs",

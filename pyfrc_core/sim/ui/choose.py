@@ -20,6 +20,7 @@ from ...shell import getting_tkinter
 from ..engine.extensions import WINDOW
 from ..engine.output_log import OutputCursor
 from ..engine.simulation import Simulation
+from ..log_run import SensorSource
 from . import FrontEnd
 from .headless import Headless, HeadlessMode
 
@@ -38,6 +39,7 @@ class SimRequest:
     :param log: the log whose inputs drive the robot, and that is shown beside it
     :param tolerance: how far values of the log may differ, in percent of their range; None: see `log_run`
     :param inputs: entries of NetworkTables that a person set while the log was made
+    :param sensors: what moves the sensors that the log has; None: the log
     :param ignored: names of values that are not compared with those of the log
     :param speed: robot seconds per second; None: real time, or as fast as possible when unattended
     :param nt_port: None: the usual port, or none when unattended; 0: none
@@ -55,6 +57,7 @@ class SimRequest:
     log: Path | None = None
     tolerance: float | None = None
     inputs: tuple[str, ...] = ()
+    sensors: SensorSource | None = None
     ignored: tuple[str, ...] = ()
     start_at: float = 0.0
     speed: float | None = None

@@ -212,14 +212,16 @@ def _apart(one: Any, other: Any, turn: float, is_log: bool) -> float:
 
 def is_published(path: str) -> bool:
     """Return whether a path is of a value in NetworkTables that robot code sets, and none that describes others."""
-    if not path.startswith(VALUE) or camera_of(path.removeprefix(VALUE)) is not None:
-        return False
-    return not _OF_LOGS.match(path) and not _is_from_outside(path)
+    return path.startswith(VALUE) and not _OF_LOGS.match(path) and not _is_from_outside(path)
 
 
 def _is_from_outside(path: str) -> bool:
     """Return whether a value is none that robot code sets; devices that never repeat count as such, too."""
-    return bool(_GIVEN.match(path)) or is_sensor(path) or in_real_time(path)
+    return bool(_GIVEN.match(path)) or is_sensor(path) or _is_of_camera(path) or in_real_time(path)
+
+
+def _is_of_camera(path: str) -> bool:
+    return path.startswith(VALUE) and camera_of(path.removeprefix(VALUE)) is not None
 
 
 def sensors_by_source(hal: ValueHistory, network: ValueHistory, given: frozenset[str]) -> dict[str, list[str]]:
