@@ -348,9 +348,10 @@ def test_curves_of_another_log_are_kept_for_it_and_not_shown(tmp_path: Path, bro
 #: The colours in the middle of each band below a plot, at a share of its width.
 BANDS = """([share, count]) => {
   const canvas = document.querySelector("[data-panel='plot:1'] .plot-bands");
-  const [x, step] = [canvas.width * share, canvas.height / count];
+  const top = count > 2 ? 15 : 0; // the name of the branch
+  const [x, step] = [canvas.width * share, (canvas.height - top) / count];
   const colorAt = (y) => canvas.getContext("2d").getImageData(x, y, 1, 1).data.join();
-  return Array.from({ length: count }, (_, n) => colorAt(step * (n + 0.3)));
+  return Array.from({ length: count }, (_, n) => colorAt(top + step * (n + 0.3)));
 }"""
 
 
@@ -375,15 +376,22 @@ def test_states_of_the_other_log_are_drawn_below_those_of_the_first(tmp_path: Pa
         page.locator("[data-panel='plot:1']").get_by_role("button", name="All", exact=True).click()
         bands = page.locator("[data-panel='plot:1'] .plot-bands")
         page.wait_for_function("() => document.querySelector(`[data-panel='plot:1'] .plot-bands`).clientHeight === 49")
+        box = bands.bounding_box()
+        assert box is not None
+        bands.click(position={"x": box["width"] / 4, "y": 10})
+        page.locator(".clock", has_text="0:02.4").wait_for()
         page.get_by_title("Compare with another log", exact=True).click()
         page.locator(".menu-list button", has_text="b.wpilog").first.click()
-        page.wait_for_function("() => document.querySelector(`[data-panel='plot:1'] .plot-bands`).clientHeight === 95")
+        page.wait_for_function("() => document.querySelector(`[data-panel='plot:1'] .plot-bands`).clientHeight === 110")
         page.wait_for_function(  # until the curves are there, and drawn; those of the branch are fainter
             f"""() => {{
                 const [on, onThere] = ({BANDS})([0.3, 4]), [off, stillOn, idle, aiming] = ({BANDS})([0.5, 4]);
                 return on !== onThere && off !== on && stillOn === onThere && idle !== aiming;
             }}"""
         )
+        # Nothing covers the last state of the branch.
+        off, *_, last = page.evaluate(BANDS, [0.97, 4])
+        assert last != off
         page.locator("[data-panel='plot:1']").get_by_role("button", name="Table").click()
         page.locator(".timeline").focus()
         page.keyboard.press("Home")

@@ -36,8 +36,8 @@ def picked(value: Any, index: int | None) -> Any:
 def series(history: ValueHistory, path: str, begin: float, end: float, points: int) -> dict[str, Any]:
     """Return the curve of a value: times, values, and the kind of its values.
 
-    A value holds until the next time. If there are more changes than points, the lowest and the highest of each
-    interval are kept, and it says that it is ``thinned``.
+    A value holds until the next time. If there are more changes than points, the lowest, the highest and the last
+    of each interval are kept, and it says that it is ``thinned``.
     """
     path, index = resolve(history, path)
     points = min(max(points, 2), MOST_POINTS)
@@ -67,19 +67,20 @@ def _kind(values: list[Any]) -> str:
 
 
 def _decimated(times: list[float], values: list[float], points: int) -> tuple[list[float], list[float]]:
-    """Keep the first, the lowest and the highest of each of half as many intervals, and the last."""
-    intervals = points // 2
+    """Keep the first point, and the lowest, the highest and the last of each of a third as many intervals.
+
+    The last one of an interval may hold for long.
+    """
+    intervals = max(points // 3, 1)
     step = len(values) / intervals
     kept = [0]
     after = 1
     for number in range(1, intervals + 1):
-        begin, after = after, int(number * step)
+        begin, after = after, len(values) if number == intervals else int(number * step)
         part = values[begin:after]
         if part:
             low, high = begin + part.index(min(part)), begin + part.index(max(part))
-            kept += (low,) if low == high else (low, high) if low < high else (high, low)
-    if kept[-1] != len(values) - 1:
-        kept.append(len(values) - 1)
+            kept += sorted({low, high, after - 1})
     return [times[each] for each in kept], [values[each] for each in kept]
 
 

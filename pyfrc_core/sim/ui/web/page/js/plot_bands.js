@@ -8,17 +8,22 @@ import { color } from "#js/settings.js";
 
 const GAP = 3; // pixels between bands
 const FAINT = 0.55; // how much weaker the bands of the branch are
+const CAPTION = 15; // pixels of height for the name of the branch
 
-// bands: curves with their `series`; those of the compared branch, below the run's, with its name as `other`
+// bands: curves with their `series`; those of the compared branch, below the run's, with its name as `other`, which is
+// written above them all: in a band it would cover its states
 export function drawBands(canvas, bands, { width, inside, band, range: [from, to], now, past }) {
-  const height = bands.length * (band + GAP) + GAP;
+  const other = bands.find((one) => one.other !== undefined)?.other;
+  const begin = other === undefined ? GAP : GAP + CAPTION;
+  const height = begin + bands.length * (band + GAP);
   const context = sizeCanvas(canvas, width, height);
   const x = (t) => inside.left + ((t - from) / (to - from)) * inside.width;
   context.textBaseline = "middle";
   context.font = font(11);
+  if (other !== undefined) write(context, `Paler: ${other}`, inside.left + 6, GAP + CAPTION / 2, inside.width - 12);
   let seen = new Map(); // value: its number; a state looks the same in both
   bands.forEach((one, index) => {
-    const top = GAP + index * (band + GAP);
+    const top = begin + index * (band + GAP);
     context.save();
     context.beginPath();
     context.roundRect(inside.left, top, inside.width, band, 4);
@@ -26,7 +31,7 @@ export function drawBands(canvas, bands, { width, inside, band, range: [from, to
     context.fill();
     context.clip();
     if (one.other === undefined) seen = new Map();
-    drawBand(context, one, top, band, x, [from, Math.min(to, one.series.until ?? now), inside.left + inside.width], seen);
+    drawBand(context, one, top, band, x, [from, Math.min(to, one.series.until ?? now)], seen);
     context.restore();
   });
   if (past !== undefined && past >= from && past <= to) {
@@ -35,7 +40,7 @@ export function drawBands(canvas, bands, { width, inside, band, range: [from, to
   }
 }
 
-function drawBand(context, { series, color: number, path, kind, other }, top, height, x, [from, to, right], seen) {
+function drawBand(context, { series, color: number, path, kind, other }, top, height, x, [from, to], seen) {
   const { t, v } = series;
   const strength = other === undefined ? 1 : FAINT;
   for (let index = Math.max(indexAfter(t, from) - 1, 0); index < t.length && t[index] <= to; index++) {
@@ -52,11 +57,6 @@ function drawBand(context, { series, color: number, path, kind, other }, top, he
     if (text && context.measureText(text).width < end - left - 8) write(context, text, left + 5, top + height / 2);
   }
   if (kind === "boolean") write(context, nameOf(path), x(from) + 6, top + height / 2);
-  if (other === undefined) return;
-  const width = Math.min(context.measureText(other).width, (right - x(from)) / 2);
-  context.fillStyle = color("track");
-  context.fillRect(right - width - 12, top, width + 12, height);
-  write(context, other, right - width - 6, top + height / 2, width);
 }
 
 function write(context, text, left, middle, most = undefined) {

@@ -2,11 +2,12 @@
 import { plain } from "#js/format.js";
 import { indexAfter } from "#js/times.js";
 
-const PER_PIXEL = 4; // points of a curve; with more, only the lowest and highest of each interval are drawn
+const PER_PIXEL = 4; // points of a curve; of more, each pixel keeps its lowest, its highest and its last
 
 // Columns for uPlot: all times, then each curve with its value in force at each of them, until its end.
 export function aligned(curves, from, to, width) {
-  const parts = curves.map((curve) => thinned(part(curve, from, to), Math.max(width, 50) * PER_PIXEL));
+  const pixels = Math.max(width, 50);
+  const parts = curves.map((curve) => thinned(part(curve, from, to), (to - from) / pixels, pixels * PER_PIXEL));
   const times = [...new Set(parts.flatMap((each) => each.t))].sort((one, other) => one - other);
   if (!times.length) return [[], ...parts.map(() => [])];
   const columns = parts.map(({ t, v }, curve) => {
@@ -43,19 +44,21 @@ function part({ t, v, until = Infinity }, from, whole) {
   return { t: times, v: values };
 }
 
-function thinned({ t, v }, most) {
+// The lowest, the highest and the last point of each pixel, which is this long. The last one holds until the next pixel with
+// a change, which may be far away, or the end.
+function thinned({ t, v }, pixel, most) {
   if (t.length <= most) return { t, v };
-  const size = Math.ceil((2 * t.length) / most);
   const times = [];
   const values = [];
-  for (let start = 0; start < t.length; start += size) {
+  for (let start = 0, end = 0; start < t.length; start = end) {
+    const after = (Math.floor(t[start] / pixel) + 1) * pixel;
     let low = start;
     let high = start;
-    for (let index = start; index < Math.min(start + size, t.length); index++) {
-      if (v[index] < v[low]) low = index;
-      if (v[index] > v[high]) high = index;
+    for (end = start + 1; end < t.length && t[end] < after; end++) {
+      if (v[end] < v[low]) low = end;
+      if (v[end] > v[high]) high = end;
     }
-    for (const index of low === high ? [low] : [Math.min(low, high), Math.max(low, high)]) {
+    for (const index of new Set([Math.min(low, high), Math.max(low, high), end - 1])) {
       times.push(t[index]);
       values.push(v[index]);
     }

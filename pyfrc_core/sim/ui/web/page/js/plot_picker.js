@@ -45,7 +45,7 @@ export class PlotPicker extends Component {
           aria-label="Search all values" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
         <ul>${others.map(({ key, name, note, add }) => html`<li key=${key}><button title=${key} onClick=${() => this.choose(add)}><b>${name}</b><small>${note}</small></button></li>`)}
           ${found.map((path) => html`<li key=${path}><button title=${path} onClick=${() => this.add(path)}>
-          <span>${nameOf(path)}</span><small>${valueText(valueIn(model.values, path)).slice(0, 24)}</small></button></li>`)}</ul>
+          <span class="long-name"><bdi>${nameOf(path)}</bdi></span><small>${valueText(valueIn(model.values, path)).slice(0, 24)}</small></button></li>`)}</ul>
         ${found.length === MOST && html`<p class="faint">Only ${MOST} values are listed: search for others.</p>`}
         ${!found.length && !others.length && html`<p class="faint">No value is called that.</p>`}
       </div>`}

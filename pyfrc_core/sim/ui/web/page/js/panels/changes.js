@@ -50,7 +50,7 @@ export class ChangesPanel extends Live {
 
 function Change({ path, t, before, after, count }) {
   return html`<div class="nt-row change" role="listitem" title=${`${path}, ${count} changes in all`} draggable="true" onDragStart=${(event) => carryPath(event, path)} data-path=${path}>
-    <span class="row-label"><bdi>${nameOf(path)}</bdi></span>
+    <span class="row-label long-name"><bdi>${nameOf(path)}</bdi></span>
     <span class="faint">${valueText(before)} → ${valueText(after)}</span>
     <span class="row-tools"><button class="tool" title="Plot this value" aria-label=${`Plot ${nameOf(path)}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button></span>
     <button class="quiet when" title="Look at the moment of this change" onClick=${() => goTo(t)}>${clock(t)}</button></div>`;

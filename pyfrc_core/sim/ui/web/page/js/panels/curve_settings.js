@@ -1,5 +1,5 @@
 // The settings of one curve: what is shown of its value, in which unit, and how it is drawn.
-import { CURVE_COLORS, LINES, keyOf, swatchOf } from "#js/curves.js";
+import { CURVE_COLORS, LINES, keyOf, swatchOf, titleOf } from "#js/curves.js";
 import { Dropdown } from "#js/dropdown.js";
 import { nameOf, unitOfPath } from "#js/names.js";
 import { UNITS, unitsLike } from "#js/units.js";
@@ -9,9 +9,13 @@ const MATH = [["", "Its value"], ["derivative", "Derivative, per second"], ["int
 const LINE_NAMES = ["solid", "dashed", "dotted", "dash-dotted"];
 
 // plot: { curves, x, isNumber(curve), change(curve, changes, or a function that returns them), copy(curve), setX(key or null) }
-export function CurveSettings({ curve, plot, title }) {
-  return html`<${Dropdown} className="curve-button" title=${`Settings of ${title}`} name=${`Settings of ${keyOf(curve)}`}
-    label=${html`<span class="curve-name" title=${curve.path}>${title}</span>`} content=${(close) => html`<${Settings} curve=${curve} plot=${plot} close=${close} />`} />`;
+export function CurveSettings({ curve, plot }) {
+  return html`<${Dropdown} className="curve-button" title=${`Settings of ${titleOf(curve)}`} name=${`Settings of ${keyOf(curve)}`}
+    label=${html`<${CurveName} curve=${curve} />`} content=${(close) => html`<${Settings} curve=${curve} plot=${plot} close=${close} />`} />`;
+}
+
+export function CurveName({ curve }) {
+  return html`<span class="curve-name long-name" title=${curve.path}><bdi>${titleOf(curve)}</bdi></span>`;
 }
 
 function Settings({ curve, plot, close }) {

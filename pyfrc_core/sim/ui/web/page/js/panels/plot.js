@@ -113,7 +113,7 @@ export class PlotPanel extends Live {
       <div class="plot-area" ref=${this.area}>
         ${!curves.length && html`<p class="empty">Drag a value here, choose <b class="plus">+</b> beside it, or search with “Add value”.</p>`}
       </div>
-      <canvas class="plot-bands" ref=${this.bands}></canvas>
+      <canvas class="plot-bands" ref=${this.bands} onClick=${this.goToState}></canvas>
     </div>`;
   }
 
@@ -289,8 +289,6 @@ export class PlotPanel extends Live {
     );
     if (xCurve) return;
     onWheel(this.plot.over, { zoom: this.zoomBy, move: this.moveBy });
-    // While a robot is driven, a slip of the hand must not lead to the past.
-    const isMeant = (event) => event.detail === 1 && (event.altKey || !model.isDriven);
     this.plot.over.addEventListener("click", (event) => isMeant(event) && goTo(this.plot.posToVal(event.offsetX, "x")));
   }
 
@@ -359,6 +357,19 @@ export class PlotPanel extends Live {
     return [{ ...this.xCurve, other: line.other }, line].map((curve) => numberIn(this.valueOf(curve, t)));
   }
 
+  // Where time is, across the panel.
+  get inside() {
+    if (!this.plot) return { left: 8, width: this.size.width - 16 };
+    return { left: this.plot.bbox.left / devicePixelRatio, width: this.plot.bbox.width / devicePixelRatio };
+  }
+
+  goToState = (event) => {
+    const { left, width } = this.inside;
+    const share = (event.offsetX - left) / width;
+    const [from, to] = this.range();
+    if (isMeant(event) && share >= 0 && share <= 1) goTo(from + share * (to - from));
+  };
+
   drawBands() {
     const canvas = this.bands.current;
     if (!canvas || !this.size.width) return;
@@ -366,7 +377,7 @@ export class PlotPanel extends Live {
     canvas.style.display = curves.length ? "block" : "none";
     if (!curves.length) return;
     const { width } = this.size;
-    const inside = this.plot ? { left: this.plot.bbox.left / devicePixelRatio, width: this.plot.bbox.width / devicePixelRatio } : { left: 8, width: width - 16 };
+    const { inside } = this;
     const withOther = (curve) => [curve, ...(compared.id === null ? [] : [{ ...curve, other: compared.branch?.name || "branch" }])];
     const bands = curves.flatMap(withOther).map((curve) => ({ ...curve, series: this.seriesOf(curve), kind: this.watched.get(curve.path)?.kind }));
     drawBands(canvas, bands, { width, inside, band: BAND, range: this.range(), now: length(), past: model.past?.t });
@@ -399,4 +410,9 @@ export class PlotPanel extends Live {
     event.preventDefault();
     addToPlot(path, this.props.id);
   };
+}
+
+// Whether a click asks for its moment. While a robot is driven, a slip of the hand must not lead to the past.
+function isMeant(event) {
+  return event.detail === 1 && (event.altKey || !model.isDriven);
 }

@@ -1,8 +1,8 @@
 // The curves of a plot: their names, values and settings, as a list or as a table with what is in view.
-import { keyOf, swatchOf, titleOf, unitOf } from "#js/curves.js";
+import { keyOf, swatchOf, unitOf } from "#js/curves.js";
 import { shownNumber, valueText } from "#js/format.js";
 import { Icon, classes, html } from "#js/view.js";
-import { CurveSettings } from "#js/panels/curve_settings.js";
+import { CurveName, CurveSettings } from "#js/panels/curve_settings.js";
 
 const COLUMNS = ["Minimum", "Mean", "Maximum", "5 %", "Median", "95 %"];
 
@@ -13,7 +13,7 @@ export function PlotLegend({ plot, bare, isTable, hasBranch, isNumber, shownOf, 
   const curves = plot.curves;
   if (bare) {
     return html`<ul class="legend" aria-label="Curves">
-      ${curves.map((curve) => html`<li key=${keyOf(curve)}><i class="swatch" style=${swatchOf(curve)}></i><span class="curve-name" title=${curve.path}>${titleOf(curve)}</span>
+      ${curves.map((curve) => html`<li key=${keyOf(curve)}><i class="swatch" style=${swatchOf(curve)}></i><${CurveName} curve=${curve} />
         <${Value} curve=${curve} value=${shownOf(curve)} /></li>`)}
     </ul>`;
   }
@@ -43,12 +43,11 @@ export function PlotLegend({ plot, bare, isTable, hasBranch, isNumber, shownOf, 
 }
 
 function Name({ curve, plot, isNumber }) {
-  const title = titleOf(curve);
   const hide = `${curve.hidden ? "Show" : "Hide"} ${keyOf(curve)}`;
   return html`<span class="curve">
     <button class="swatch-button" aria-label=${hide} title=${hide} aria-pressed=${Boolean(curve.hidden)} onClick=${() => plot.change(curve, { hidden: !curve.hidden })}>
       <i class="swatch" style=${swatchOf(curve)}></i></button>
-    ${isNumber(curve) ? html`<${CurveSettings} curve=${curve} plot=${plot} title=${title} />` : html`<span class="curve-name" title=${curve.path}>${title}</span>`}
+    ${isNumber(curve) ? html`<${CurveSettings} curve=${curve} plot=${plot} />` : html`<${CurveName} curve=${curve} />`}
   </span>`;
 }
 
