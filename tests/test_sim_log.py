@@ -178,7 +178,9 @@ def test_what_differs_is_named_anew_after_each_enabling_and_shortly(make_project
     assert "in match.wpilog only: Elevator/setpoint (0:01.00)\nhere only: Elevator/goal (0:01.00)\n" in said
     change(project, "robot.py", "GAIN if", "(GAIN if wpilib.Timer.getFPGATimestamp() > 4 else 0.5) if")
     said = project.run("-v", *SIM, "--log", "match.wpilog").stdout
-    assert "name 11 (" in said
+    (line,) = re.findall(r"^  name 11 \(.*", said, re.MULTILINE)
+    assert re.search(r": \.\.\..{,20} before in match.wpilog, \.\.\..{,20} after here$", line)
+    assert "in match.wpilog only:\n  Elevator/setpoint (0:01.00)\nhere only:\n" in said
     assert said.count("pwm[1].value (0:05.00)") == 1  # it was equal until then, so it is not named anew
 
 
@@ -271,7 +273,7 @@ def test_a_sensor_can_freeze_in_the_match_of_a_log(make_project: MakeProject) ->
     (log,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
     result = project.run("-v", *SIM, "--log", str(log), "--record", "frozen.jsonl")
     path = 'CAN["DutyCycle:DutyCycleEncoder[8]"].Position'
-    assert path in result.stdout.partition("sensors from physics: ")[2].partition("\n")[0]
+    assert f"  {path}\n" in result.stdout.partition("sensors from physics:\n")[2].partition(":\n")[0]
     assert path in json.loads(line)["set"].popitem()[0]
     script = project.path / "frozen.jsonl"
     head, *steps = script.read_text("utf-8").splitlines()
@@ -546,6 +548,16 @@ def test_every_topic_is_compared_and_those_of_one_run_only_have_a_time(make_proj
 def test_a_log_of_another_robot_has_nothing_to_compare(played: RobotProject) -> None:
     (played.path / "robot.py").write_text("import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n", "utf-8")
     assert "nothing to compare: match.wpilog has no value" in log_of(played, "match.wpilog")
+
+
+def test_a_log_of_which_the_code_publishes_little_is_of_another_robot(make_project: MakeProject) -> None:
+    arm = 'for number in range(12):\n                wpilib.SmartDashboard.putNumber(f"Arm/{number}", 1.0)'
+    robot = PUBLISHING.replace('wpilib.SmartDashboard.putNumber("kP", 1.0)', arm)
+    project = make_project({"robot.py": robot, "drive.jsonl": DRIVEN})
+    assert project.run(*SIM, "--script", "drive.jsonl", "--wpilog", "match.wpilog").code == 0
+    change(project, "robot.py", "Arm/", "Claw/")
+    said = log_of(project, "match.wpilog")
+    assert "\nmatch.wpilog seems to be of another robot: 12 of its 13 values are not published here\n" in said
 
 
 def test_a_log_that_has_no_inputs_is_refused_in_a_sentence(make_project: MakeProject) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import islice
 from typing import TYPE_CHECKING
 
 from ..hal.paths import format_path, parse_path
@@ -24,6 +23,8 @@ if TYPE_CHECKING:
 
 #: The most values that differ, and the most sensors, that are named.
 _MOST_NAMED = 8
+#: A log is of another robot if the code publishes less than half of its values; of fewer values, nothing is said.
+_FEWEST = 10
 _SOURCES = {
     "log": "sensors from the log, whatever today's code does",
     "physics": "sensors from physics",
@@ -61,21 +62,27 @@ class LogReport:
         found = None if branch is None else runs.first_difference(branch.number, None)
         if branch is None or found is None:
             return
+        only = collector.runs.only_in_one(branch.number)
+        if only is not None and (count := len(only.there) + only.both) >= _FEWEST and len(only.there) > only.both:
+            what = f"{len(only.there)} of its {count} values are not published here"
+            yield f"{self._log.name} seems to be of another robot: {what}"
         yield from self._differences(found, branch.number)
-        yield from self._in_one_only(branch.number)
+        for where, topics in ((f"in {self._log.name} only:", only.there), ("here only:", only.here)) if only else ():
+            if topics:
+                yield self._listed(where, (_with_time((each.path, each.time)) for each in topics))
         if found.by.ignored:
-            yield f"not compared, as you asked: {self._listed(found.by.ignored)}"
+            yield self._listed("not compared, as you asked:", found.by.ignored)
         sensors = runs.sensors(branch.number)
         for kind, names in (sensors if self._most is None else _devices_by_source(sensors)).items():
             if names:
-                yield f"{_SOURCES[kind]}: {self._listed(names)}"
+                yield self._listed(f"{_SOURCES[kind]}:", names)
 
     def _differences(self, found: FirstDifference, branch: int) -> Iterator[str]:
         from .ui.web.differences import is_number
 
         log, by = self._log, found.by
         how = f"within {by.share * 100:g} % of their range" if by.share else "exactly"
-        differing = _named(found)
+        differing = self._named(found)
         if not found.compared:
             yield f"nothing to compare: {log.name} has no value that the robot's code sets here, too"
             return
@@ -88,7 +95,7 @@ class LogReport:
         there, here = differing_texts(*found.values[path])
         yield f"differs first at {clock(time)}, in {name_of(path)}: {there} in {log.name}, {here} here"
         if others:
-            yield f"then in {self._listed(map(_with_time, others))}"
+            yield self._listed("then in", self._moments(found, others))
         if path.startswith(VALUE) and is_number(found.values[path][0]):
             name = name_of(path)
             yield f"if {name} differs in each run, such as a time that code took: --ignore {quoted(name)}"
@@ -101,10 +108,10 @@ class LogReport:
     def _slight(self, found: FirstDifference) -> Iterator[str]:
         """Say what differs by less than what counts as a difference: a changed constant may do no more."""
         if slight := found.sorted_slight():
-            listed = self._listed(
-                f"{name_of(path)} ({share * 100:.2g} % at {clock(time)})" for path, share, time in slight
+            yield self._listed(
+                "differs slightly, at most by this share of its range:",
+                (f"{name_of(path)} ({share * 100:.2g} % at {clock(time)})" for path, share, time in slight),
             )
-            yield f"differs slightly, at most by this share of its range: {listed}"
 
     def _after(self, enabled: float, named: list[tuple[str, float]], branch: int) -> Iterator[str]:
         """Say what differs again from a later enabling on, of what was equal before it.
@@ -114,15 +121,8 @@ class LogReport:
         before = enabled - PACKET_US / 1_000_000
         if before <= named[0][1] or (found := self._collector.runs.first_difference(branch, None, before)) is None:
             return
-        if later := [each for each in _named(found) if each[1] > before and each not in named]:
-            yield f"after it was enabled at {clock(enabled)}, in {self._listed(map(_with_time, later))}"
-
-    def _in_one_only(self, branch: int) -> Iterator[str]:
-        """Say what only one of the two publishes: a renamed value, or a log of another robot."""
-        found = self._collector.runs.only_in_one(branch)
-        for where, topics in zip((f"in {self._log.name} only", "here only"), found or (), strict=False):
-            if topics:
-                yield f"{where}: {self._listed(_with_time((each.path, each.time)) for each in topics)}"
+        if later := [each for each in self._named(found) if each[1] > before and each not in named]:
+            yield self._listed(f"after it was enabled at {clock(enabled)}, in", self._moments(found, later))
 
     def _until(self) -> str:
         """Return how far the run has come, if that is not the end of the log."""
@@ -131,23 +131,35 @@ class LogReport:
         is_whole = reached > self._end - PACKET_US / 1_000_000
         return "" if is_whole else f" up to {clock(reached)} of {clock(self._end)}"
 
-    def _listed(self, names: Iterable[str]) -> str:
+    def _named(self, found: FirstDifference) -> list[tuple[str, float]]:
+        """Return the values that differ, the earliest first; unless all are named, one for each device at a moment."""
+        if self._most is None:
+            return found.sorted()
+        one_each: dict[object, tuple[str, float]] = {}
+        for path, time in found.sorted():
+            one_each.setdefault((path if path.startswith(VALUE) else _device(path), time), (path, time))
+        return list(one_each.values())
+
+    def _moments(self, found: FirstDifference, differing: Iterable[tuple[str, float]]) -> Iterator[str]:
+        """Yield values with when they differ and, if all are named, with what they are then."""
+        for path, time in differing:
+            both = differing_texts(*found.values[path])
+            whole = "" if self._most is not None else f": {both[0]} in {self._log.name}, {both[1]} here"
+            yield _with_time((path, time)) + whole
+
+    def _listed(self, what: str, names: Iterable[str]) -> str:
+        """Return what is said of some names: in one line, or if all are named, each in a line of its own."""
         names = list(names)
-        left_out = 0 if self._most is None else len(names) - self._most
-        return ", ".join(islice(names, self._most)) + (f" and {left_out} more (-v names all)" if left_out > 0 else "")
+        if self._most is None:
+            return "\n  ".join((f"{what.removesuffix(':')}:", *names))
+        left_out = len(names) - self._most
+        more = f" and {left_out} more (-v names all)" if left_out > 0 else ""
+        return f"{what} {', '.join(names[: self._most])}{more}"
 
 
 def _with_time(moment: tuple[str, float | None]) -> str:
     path, time = moment
     return name_of(path) if time is None else f"{name_of(path)} ({clock(time)})"
-
-
-def _named(found: FirstDifference) -> list[tuple[str, float]]:
-    """Return the values that differ, the earliest first; one for each device of `hal_data` at a moment."""
-    one_each: dict[object, tuple[str, float]] = {}
-    for path, time in found.sorted():
-        one_each.setdefault((path if path.startswith(VALUE) else _device(path), time), (path, time))
-    return list(one_each.values())
 
 
 def _devices_by_source(sensors: dict[str, list[str]]) -> dict[str, list[str]]:

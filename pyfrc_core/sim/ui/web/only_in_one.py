@@ -38,15 +38,24 @@ class OnlyThere(NamedTuple):
         return self.time is None, self.changes, self.time or 0.0, self.path
 
 
+class OnlyInOne(NamedTuple):
+    """The topics that only one of two runs has, in the order of `OnlyThere.order`.
+
+    :param both: how many both have
+    """
+
+    there: list[OnlyThere]
+    here: list[OnlyThere]
+    both: int
+
+
 def topics(history: ValueHistory) -> set[str]:
     """Return the paths of all topics that a run has had."""
     return {VALUE + path.removeprefix(TYPE) for path in history.paths() if path.startswith(TYPE)}
 
 
-def only_in_one(
-    here: ValueHistory, there: ValueHistory, begin: float, offset: float, by: Comparison
-) -> tuple[list[OnlyThere], list[OnlyThere]]:
-    """Return the topics that only `there` has, and those that only `here` has, in the order of `OnlyThere.order`.
+def only_in_one(here: ValueHistory, there: ValueHistory, begin: float, offset: float, by: Comparison) -> OnlyInOne:
+    """Return the topics that only `there` has, and those that only `here` has.
 
     What came in `there` after the end of `here` is left out: it may still have come here.
 
@@ -54,10 +63,10 @@ def only_in_one(
     :param offset: what is added to the times of the other one
     """
     ours, theirs = topics(here), topics(there)
-    shown = {path for path in ours ^ theirs if is_published(path) and not by.ignores(path)}
-    found = _only_in(there, shown & theirs, begin - offset, here.end - offset)
+    shown = {path for path in ours | theirs if is_published(path) and not by.ignores(path)}
+    found = _only_in(there, shown & theirs - ours, begin - offset, here.end - offset)
     found = [each if each.time is None else each._replace(time=each.time + offset) for each in found]
-    return found, _only_in(here, shown & ours, begin, here.end)
+    return OnlyInOne(found, _only_in(here, shown & ours - theirs, begin, here.end), len(shown & ours & theirs))
 
 
 def _only_in(history: ValueHistory, found: Collection[str], begin: float, end: float) -> list[OnlyThere]:

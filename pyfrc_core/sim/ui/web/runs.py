@@ -13,7 +13,7 @@ from ...engine.past_run import EXACT, Comparison, PastRun, Stream
 from ...engine.value_history import MISSING, ValueHistory, packed
 from ..models.wording import clock
 from .differences import FirstDifference, sensors_by_source
-from .only_in_one import OnlyThere, only_in_one, topics
+from .only_in_one import OnlyInOne, only_in_one, topics
 from .plots import MOST_POINTS, picked, resolve, same, series
 
 #: About how much memory the values of all runs may take together.
@@ -270,7 +270,7 @@ class Runs:
             return set(history.paths()).intersection(former.paths())
         return history.now.keys() | former.now.keys()
 
-    def only_in_one(self, number: int) -> tuple[list[OnlyThere], list[OnlyThere]] | None:
+    def only_in_one(self, number: int) -> OnlyInOne | None:
         """Return the topics that only a branch has, and those that only the present run has, with their times in it.
 
         None if there is no such branch, or it has nothing of NetworkTables, as a trace.
