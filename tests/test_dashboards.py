@@ -134,10 +134,10 @@ def test_a_page_gets_them_when_they_have_changed(root: Path) -> None:
         ({"dashboard": "n" * 61, "content": {}}, "at most 60 characters"),
         (
             {"dashboard": "Drive", "content": None, "seen": {"Drive": {"widgets": [WIDGET]}}},
-            "The dashboard was not saved: “Drive” has just been changed in sim/dashboards.json by another page",
+            'The dashboard was not saved: "Drive" has just been changed in sim/dashboards.json by another page',
         ),
-        ({"dashboard": "New", "content": {}, "seen": {"New": {}}}, "“New” has just been changed"),
-        ({"dashboard": "Drive", "content": {}, "seen": {"Drive": None}}, "“Drive” has just been changed"),
+        ({"dashboard": "New", "content": {}, "seen": {"New": {}}}, '"New" has just been changed'),
+        ({"dashboard": "Drive", "content": {}, "seen": {"Drive": None}}, '"Drive" has just been changed'),
         ({"dashboard": "Drive", "content": {}, "seen": {"Drive": {"rows": 0}}}, "dashboards.Drive.rows = 0"),
         ({"dashboard": "Drive", "content": {}, "seen": 3}, "seen: an object with a dashboard for each name is needed"),
         ({"dashboard": "Drive", "content": "no"}, "dashboards.Drive = 'no': input should be an object"),
@@ -162,7 +162,7 @@ def test_the_second_of_two_pages_replaces_only_what_it_has_seen(root: Path) -> N
         dashboards.save(Message(json.loads(json.dumps(message))))
 
     save("Drive", GAUGE)
-    with pytest.raises(CommandError, match="“Drive” has just been changed"):
+    with pytest.raises(CommandError, match='"Drive" has just been changed'):
         save("Drive", WIDGET)
     save("Pit", WIDGET)  # which the first has not touched
     assert [len(each.widgets) for each in load_dashboards(root).values()] == [1, 1]

@@ -152,7 +152,7 @@ def save_dashboard(
         expected = {} if supposed is None else _validated({"dashboards": {each: supposed}}, _Given())
         if before.get(each) != expected.get(each):
             raise ChangedMeanwhileError(
-                f"“{each}” has just been changed in {DASHBOARDS.as_posix()} by another page, an editor or Git."
+                f'"{each}" has just been changed in {DASHBOARDS.as_posix()} by another page, an editor or Git.'
             )
     for each, content in before.items():
         if each in (former_name, name):
