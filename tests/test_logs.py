@@ -150,6 +150,11 @@ def test_a_field_that_is_never_set_is_no_place(tmp_path: Path) -> None:
     log.values("NT:/SmartDashboard/Field/Robot", "double[]", "", (1, struct.pack("<3d", 3.048, 3.048, 90)))
     now = open_log(log.save(file), HEIGHT).run.histories["network"].now
     assert now["sim.pose"] == pytest.approx((10, HEIGHT - 10, -1.5708), abs=1e-4)
+    # Another one moves, and is the robot.
+    moved = [(step, struct.pack("<3d", step * 0.3048, 3.048, 0)) for step in range(1, 16)]
+    log.values("NT:/SmartDashboard/Field/fused_pose", "double[]", "", *moved)
+    now = open_log(log.save(file), HEIGHT).run.histories["network"].now
+    assert now["sim.pose"] == pytest.approx((15, HEIGHT - 10, 0), abs=1e-4)
 
 
 def test_times_before_the_robots_clock_began_are_those_of_the_log(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from bisect import bisect
 
 import pytest
 
@@ -69,11 +70,15 @@ def test_a_long_curve_keeps_its_peaks() -> None:
         history.add(
             packet * 0.02, {"a": 50.0 if packet == 3217 else -50.0 if packet == 4001 else math.sin(packet / 99)}
         )
-    found = series(history, "a", 0, 100, 200)
+    history.add(100, {"a": 0.3})  # for ten seconds, between many changes: neither lowest nor highest
+    for packet in range(5500, 5600):
+        history.add(packet * 0.02, {"a": math.sin(packet)})
+    found = series(history, "a", 0, 200, 200)
     assert len(found["v"]) <= 204
+    assert found["v"][bisect(found["t"], 105) - 1] == 0.3
     assert (max(found["v"]), min(found["v"])) == (50, -50)
     assert found["t"] == sorted(found["t"])
-    assert (found["t"][0], found["t"][-1]) == (0, pytest.approx(4999 * 0.02))
+    assert (found["t"][0], found["t"][-1]) == (0, pytest.approx(5599 * 0.02))
 
 
 def test_two_runs_differ_first_where_one_changed_alone_or_otherwise() -> None:

@@ -302,6 +302,7 @@ def test_curves_of_another_log_are_kept_for_it_and_not_shown(tmp_path: Path, bro
     first, second = a_match(), practice()
     for log, name in ((first, "BatteryVoltage"), (second, "arm")):
         log.values(f"NT:/{name}", "double", "d", *((step / 10, 12.0) for step in range(90)))
+    first.values("NT:/BatteryVolts", "double[]", "", (0, b""))  # not a number
     logs = {
         name: open_log(log.save(tmp_path / name), HEIGHT) for name, log in (("a.wpilog", first), ("b.wpilog", second))
     }
@@ -390,8 +391,7 @@ def test_states_of_the_other_log_are_drawn_below_those_of_the_first(tmp_path: Pa
             }}"""
         )
         # Nothing covers the last state of the branch.
-        off, *_, last = page.evaluate(BANDS, [0.97, 4])
-        assert last != off
+        page.wait_for_function(f"() => {{ const [off, , , last] = ({BANDS})([0.97, 4]); return last !== off; }}")
         page.locator("[data-panel='plot:1']").get_by_role("button", name="Table").click()
         page.locator(".timeline").focus()
         page.keyboard.press("Home")

@@ -48,9 +48,13 @@ _PLACES = (
     r"/pose",
     r".*/Odometry/Robot",
     r".*Field\w*/Robot(/0)?",
-    r".*(estimat(ed|or)|odometry|robot|bot|drive)_?pose(2d)?",
+    r".*(estimat(ed|or)|odometry|robot|bot|drive|fused)_?pose(2d)?",
     r".*/pose",
 )
+#: In so many places code may have put a robot that does not move on its field.
+_PLACINGS = 10
+#: What a `Field2d` may call the robot.
+_FIELD_OBJECT = re.compile(r"/Robot$|pose$", re.IGNORECASE)
 _NO_PLACE = re.compile(r"vision|target|goal|tag|set_?point|camera|ghost|desired|limelight", re.IGNORECASE)
 
 
@@ -213,13 +217,21 @@ def _station_number(is_red: Any, number: Any) -> int:
 
 
 def _place(columns: Mapping[str, Column], height: float) -> Column | None:
+    """Return the place with the most certain name of those that move; if none does, of those that are set.
+
+    A `Field2d` that code never sets stays at 0, and one that code sets at the start alone stays there.
+    """
     found = [each for each in (_place_of(columns, name) for name in columns) if each is not None]
+    still = None
     for pattern in _PLACES:
         named = [each for each in found if re.fullmatch(pattern, each[0].removeprefix("NT:"), re.IGNORECASE)]
-        matching = [each for each in named if _is_set(each[2](0, len(each[1])))]
-        if matching:
-            return _placed(*max(matching, key=lambda each: len(each[1]))[1:], height)
-    return None
+        for _, moments, read in sorted(named, key=lambda each: len(each[1]), reverse=True):
+            places = {(x, y) for x, y, _ in read(0, len(moments)) if x or y}
+            if len(places) > _PLACINGS:
+                return _placed(moments, read, height)
+            if places and still is None:
+                still = moments, read
+    return None if still is None else _placed(*still, height)
 
 
 def when_of(log: ReadLog) -> datetime | None:
@@ -251,15 +263,10 @@ def _place_of(columns: Mapping[str, Column], name: str) -> tuple[str, array[int]
             return None
         parts = x, y, angle
         return whole, x.moments, lambda begin, end: list(zip(*(each.decode(begin, end) for each in parts), strict=True))
-    if name.endswith("/Robot") and _is_place(column.decode(0, 1)[0]):
+    if _FIELD_OBJECT.search(name) and _is_place(column.decode(0, 1)[0]):
         # As Field2d publishes it: metres and degrees.
         return name, column.moments, lambda begin, end: [_in_radians(each) for each in column.decode(begin, end)]
     return None
-
-
-def _is_set(places: Iterable[tuple[Any, Any, Any]]) -> bool:
-    """Return whether a place is used: a `Field2d` that code never sets stays at 0."""
-    return any(x or y for x, y, _ in places)
 
 
 def _is_place(value: Any) -> bool:

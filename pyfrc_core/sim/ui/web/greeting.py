@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ....project import Project
     from ...engine.source import Source
 
-_BATTERY = re.compile(r"battery_?voltage$", re.IGNORECASE)
+_BATTERY = re.compile(r"battery(_?volt(age|s))?$", re.IGNORECASE)
 #: The version of the messages; a page of another version asks to be reloaded.
 PROTOCOL = 1
 
@@ -122,8 +122,13 @@ def _paths(source: Source) -> set[str]:
 
 def _battery(source: Source) -> list[dict[str, object]]:
     """Return the curve of the battery's voltage, which most questions about a match begin with."""
-    found = [path for path in _paths(source) if path.startswith(VALUE) and _BATTERY.search(path)]
-    return [{"path": path, "axis": "left", "color": 0} for path in sorted(found, key=len)[:1]]
+    histories = () if source.recorded is None else source.recorded.histories.values()
+    named = {
+        path: each for each in histories for path in each.paths() if path.startswith(VALUE) and _BATTERY.search(path)
+    }
+    found = [path for path, history in named.items() if type(history.now.get(path)) in (float, int)]
+    found.sort(key=lambda path: ("volt" not in path.lower(), len(path)))
+    return [{"path": path, "axis": "left", "color": 0} for path in found[:1]]
 
 
 #: The largest layout, in characters of JSON.

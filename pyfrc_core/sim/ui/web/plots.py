@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from array import array
+from itertools import pairwise
 from typing import Any
 
 from ...engine.value_history import MISSING, ValueHistory
@@ -36,8 +37,8 @@ def picked(value: Any, index: int | None) -> Any:
 def series(history: ValueHistory, path: str, begin: float, end: float, points: int) -> dict[str, Any]:
     """Return the curve of a value: times, values, and the kind of its values.
 
-    A value holds until the next time. If there are more changes than points, the lowest, the highest and the last
-    of each interval are kept, and it says that it is ``thinned``.
+    A value holds until the next time. If there are more changes than points, the lowest and the highest of each
+    interval and those that hold for long are kept, and it says that it is ``thinned``.
     """
     path, index = resolve(history, path)
     points = min(max(points, 2), MOST_POINTS)
@@ -67,21 +68,19 @@ def _kind(values: list[Any]) -> str:
 
 
 def _decimated(times: list[float], values: list[float], points: int) -> tuple[list[float], list[float]]:
-    """Keep the first point, and the lowest, the highest and the last of each of a third as many intervals.
-
-    The last one of an interval may hold for long.
-    """
+    """Keep the first point and the last, the lowest and the highest of each interval, and those that hold for long."""
     intervals = max(points // 3, 1)
     step = len(values) / intervals
-    kept = [0]
+    long = (times[-1] - times[0]) / intervals
+    held = enumerate(pairwise(times))
+    kept = {0, len(values) - 1, *(number for number, (begin, end) in held if end - begin >= long)}
     after = 1
     for number in range(1, intervals + 1):
-        begin, after = after, len(values) if number == intervals else int(number * step)
-        part = values[begin:after]
-        if part:
-            low, high = begin + part.index(min(part)), begin + part.index(max(part))
-            kept += sorted({low, high, after - 1})
-    return [times[each] for each in kept], [values[each] for each in kept]
+        begin, after = after, int(number * step)
+        if part := values[begin:after]:
+            kept |= {begin + part.index(min(part)), begin + part.index(max(part))}
+    chosen = sorted(kept)
+    return [times[each] for each in chosen], [values[each] for each in chosen]
 
 
 def same(one: Any, other: Any) -> bool:
