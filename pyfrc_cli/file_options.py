@@ -73,6 +73,8 @@ def check_outputs(context: click.Context, project: Project | None) -> None:
             if any(_is_same(path, file.parent) for file in code):
                 raise cannot_write(option, path, "your robot's code is in it")
             continue
+        if (missing := path.absolute().parent) and not (missing.exists() or _is_near(missing, project)):
+            raise cannot_write(option, path, f"there is no directory {missing}")
         for file in _written_with(path, kind):
             check_writable(option, file)
             if any(_is_same(file, each) for each in read):
@@ -101,6 +103,8 @@ def _read_with(file: Path) -> list[Path]:
     """Return a file and what is read with it: a script has a trace, a log of the driver station its events."""
     from pyfrc_core.runtime.scripts.script import script_beside, trace_beside
 
+    if not file.name:  # a directory, such as .
+        return [file]
     if (script := script_beside(file)) is not None:
         return [file, script]
     return [file, trace_beside(file)] if file.suffix == ".jsonl" else [file, file.with_suffix(".dsevents")]
@@ -126,6 +130,12 @@ def _code_of(project: Project) -> Iterator[Path]:
         below = file.relative_to(project.root).as_posix() if file.is_relative_to(project.root) else file.name
         if file.suffix == ".py" or below in _SETTINGS or below.startswith("deploy/"):
             yield file
+
+
+def _is_near(directory: Path, project: Project | None) -> bool:
+    """Return whether a directory is or would be in the current one or in the project, where outputs make their own."""
+    places = (Path.cwd(), *(() if project is None else (project.root,)))
+    return any(directory.resolve().is_relative_to(place.resolve()) for place in places)
 
 
 def _is_same(one: Path, other: Path) -> bool:

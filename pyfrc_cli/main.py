@@ -156,6 +156,7 @@ def run() -> None:
     except click.ClickException as error:
         if isinstance(error, click.NoSuchOption):
             nearest = difflib.get_close_matches(error.option_name, error.possibilities or (), n=1)
+            nearest = [] if _remedy(error) else nearest
             error = click.NoSuchOption(error.option_name, possibilities=nearest, ctx=error.ctx)
         error.show()
         if remedy := _remedy(error):
@@ -176,6 +177,13 @@ def _remedy(error: click.ClickException) -> str:
         return "Write options of pytest after --, for example: pyfrc test -- -k drive"
     if isinstance(error, click.NoSuchOption) and command == "sim" and "gui" in error.option_name:
         return "Write: pyfrc sim, for the simulator's page, or: pyfrc sim --ui none --mode practice"
+    if isinstance(error, click.NoSuchOption) and command == "view" and error.option_name == "--log":
+        return "To look at a log: pyfrc view FILE. To run your code with its inputs: pyfrc sim --log FILE"
+    if command == "sim" and (extra := re.search(r"unexpected extra argument \((.*)\)", error.message, re.DOTALL)):
+        if os.path.isdir(extra[1]):  # noqa: PTH112 - a name that is too long is none
+            return f"To simulate the project in it: pyfrc sim --project {extra[1]}"
+        if not extra[1].endswith(".py") and os.path.isfile(extra[1]):  # noqa: PTH113
+            return f"To run your code with the inputs of a log: pyfrc sim --log {extra[1]}"
     if command is not None and re.search(r"unexpected extra arguments? \(.*\.py\b", error.message):
         return "pyfrc finds the robot's file. Use --main FILE if it is not called robot.py."
     if command in ("deploy", "deploy-info", "undeploy", "console"):

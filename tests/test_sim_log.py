@@ -437,6 +437,9 @@ def test_what_a_person_has_set_on_a_dashboard_is_named(played: RobotProject) -> 
     said = log_of(played, "match.wpilog", "--input", "SmartDashboard/kP")
     assert "in Elevator/setpoint" in said
     assert "in kP" not in said
+    result = played.run(*SIM, "--log", "match.wpilog", "--input", "Nope/kP")
+    assert (result.code, result.first_error) == (2, "--input Nope/kP: match.wpilog has no value of this name")
+    assert "It has SmartDashboard/kP." in result.stderr
 
 
 TUNED = """
@@ -579,7 +582,7 @@ def test_a_log_that_has_no_inputs_is_refused_in_a_sentence(make_project: MakePro
         assert "Traceback" not in result.output
     result = project.run(*SIM, "--log", "turns.wpilog", "--mode", "auto")
     assert result.code == 2
-    assert "--log has the modes and all inputs" in result.output
+    assert "--log has the modes and all inputs\n  Leave out --mode.\n" in result.output
     result = project.run(*SIM, "--log", "turns.wpilog", "--script", "drive.jsonl")
     assert result.code == 2
     assert "--log FILE --record NEW.jsonl writes them as a script" in " ".join(result.output.split())

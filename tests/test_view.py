@@ -133,6 +133,26 @@ def test_a_page_does_not_overwrite_a_log_that_it_shows(make_project: Any) -> Non
         assert result.code == 2, result.output
         assert "cannot be written: this command reads it" in result.output
     assert (made.path / "match.wpilog").read_bytes() == log
+    outside = made.path.parent / "none" / "a.html"
+    result = made.run("view", "match.wpilog", "--page", outside)
+    assert (result.code, result.first_error) == (
+        2,
+        f"--page {outside} cannot be written: there is no directory {outside.parent}",
+    )
+    assert not outside.parent.exists()
+    assert made.run("view", "match.wpilog", "--page", "pages/a.html").code == 0
+
+
+def test_the_page_says_that_the_project_is_below_the_current_directory(make_project: Any) -> None:
+    made = make_project({"src/robot.py": ""})
+    a_match().save(made.path / "match.wpilog")
+    with made.start("view", "match.wpilog") as view:
+        said = iter(view.stdout.readline, "")
+        assert next(said) == "there is no robot.py here, but there is one in ./src\n"
+        address = urlsplit(next(line for line in said if "is at" in line).split()[-1])
+        with connect(f"ws://{address.netloc}/ws?{address.query}", max_size=None) as socket:
+            answer = Page(socket).ask(type="command", name="what_if")
+    assert answer["message"].startswith("there is no robot.py here, but there is one in ./src\n")
 
 
 # -- the page ---------------------------------------------------------------------------------------------------------

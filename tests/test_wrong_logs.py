@@ -32,6 +32,7 @@ WHAT = {
     "logs.zip": "this is a ZIP archive",
     "match.wpilog.gz": "this is a compressed file",
     "notes.log": "this is text",
+    "settings.wpilog": "this is text",
     "page.html": "this is a web page",
     "random.bin": "this is binary data",
     "renamed.wpilog": "this is text",
@@ -63,6 +64,7 @@ def project(make_shared_project: MakeProject) -> RobotProject:
             "robot.py": ROBOT,
             "settings.json": '{"a": 1}',
             "notes.log": "first line\n",
+            "settings.wpilog": "[tool.pyfrc]\n",
             "renamed.wpilog": "text",
             "empty.wpilog": "",
             "logs/a.wpilog": "",
@@ -107,12 +109,20 @@ def test_what_has_no_inputs_is_named(command: str, project: RobotProject) -> Non
 def test_what_cannot_be_shown_is_named(project: RobotProject) -> None:
     for name, what in WHAT.items():
         result = project.run("view", name, "--page", "out.html")
-        assert result.code == (2 if name == "missing.wpilog" else 1), (name, result.output)
+        assert result.code == (2 if name in ("missing.wpilog", "logs") else 1), (name, result.output)
         assert what in result.first_error
         assert name in result.first_error
         if (remedy := REMEDY.get(name)) is not None:
             assert remedy in result.stderr.splitlines()[1]
         assert not (project.path / "out.html").exists()
+
+
+def test_logs_in_the_directories_of_a_directory_are_named(project: RobotProject) -> None:
+    for command in (INPUTS["sim --log"], VIEW):
+        result = project.run(*command, ".")
+        assert result.code == 2
+        assert "Its newest logs: " in result.stderr
+        assert "logs/a.wpilog" in result.stderr
 
 
 def test_a_misspelled_name_gets_the_right_one(project: RobotProject) -> None:

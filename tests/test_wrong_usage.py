@@ -138,6 +138,10 @@ def test_a_wrong_option_is_told(make_project: MakeProject, args: list[str], mess
         ("deploy-info 127.0.0.1:2222", "Write: pyfrc deploy-info --robot 127.0.0.1:2222"),
         ("undeploy 1234", "Write: pyfrc undeploy --team 1234"),
         ("console 10.12.34.2", "Write: pyfrc console --robot 10.12.34.2"),
+        ("sim tests", "To simulate the project in it: pyfrc sim --project tests"),
+        ("sim tests/a.wpilog", "To run your code with the inputs of a log: pyfrc sim --log tests/a.wpilog"),
+        ("sim robot.py", "pyfrc finds the robot's file."),
+        ("view --log a.wpilog", "To look at a log: pyfrc view FILE. To run your code with its inputs: pyfrc sim --log"),
         ("deploy everything", "unexpected extra argument (everything)"),
         ("download", "There is no command 'download'. To download what the robot needs: pyfrc sync"),
         ("run", "There is no command 'run'. To run the robot on this computer: pyfrc sim. To start it on the robot: "),
@@ -147,8 +151,9 @@ def test_a_wrong_option_is_told(make_project: MakeProject, args: list[str], mess
 def test_what_other_tools_call_otherwise_leads_to_what_exists(
     make_project: MakeProject, words: str, remedy: str
 ) -> None:
-    result = make_project({"robot.py": ROBOT}).run(*words.split())
+    result = make_project({"robot.py": ROBOT, "tests/a.wpilog": ""}).run(*words.split())
     assert (result.code, result.stdout) == (2, "")
+    assert "Did you mean" not in result.stderr
     assert remedy in result.stderr.splitlines()[-1]
 
 

@@ -5,7 +5,7 @@ elsewhere: they get robot time, and their lines come first in a failure (`robot_
 commands find mistakes before they start a robot: `runtime.loading` imports the robot's code.
 """
 
-from .locate import find_project
+from .locate import find_project, projects_below
 from .project import MAIN_FILE, NO_PHYSICS, TEST_FILES, Project
 
-__all__ = ["MAIN_FILE", "NO_PHYSICS", "TEST_FILES", "Project", "find_project"]
+__all__ = ["MAIN_FILE", "NO_PHYSICS", "TEST_FILES", "Project", "find_project", "projects_below"]

@@ -62,7 +62,7 @@ def _project_in(directory: Path, class_name: str | None) -> Project | None:
 
 
 def _nothing_found(directory: Path, how: str) -> ProjectError:
-    below = _projects_below(directory)
+    below = projects_below(directory)
     if below:
         also = f" (or {', '.join(f'./{each.as_posix()}' for each in below[1:])})" if len(below) > 1 else ""
         there = (directory / below[0] if how == "in" else below[0]).as_posix()
@@ -95,7 +95,7 @@ def _defines_robot(file: Path) -> bool:
         return False
 
 
-def _projects_below(directory: Path) -> list[Path]:
+def projects_below(directory: Path) -> list[Path]:
     """Return the subdirectories that contain a robot project, as in a repository with several of them."""
     try:
         found = sorted(file.parent for file in directory.glob(f"*/{MAIN_FILE}") if file.is_file())

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal
@@ -23,6 +24,7 @@ from ..runtime.scripts.inputs_file import is_data_log, load_inputs
 from ..runtime.scripts.network_targets import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript, Step, script_beside, trace_beside
 from ..runtime.scripts.sensors import HOLD, INFINITE, is_input, is_sensor
+from ..shell import quoted
 from ..wording import from_here
 from .engine.field import field_of, robot_at, start_named
 from .engine.messages import POSE, VALUE
@@ -36,6 +38,8 @@ from .logs.align import moment_of
 SensorSource = Literal["log", "physics"]
 #: The default share of a value's range that does not count as a difference, of runs that do not repeat exactly.
 SHARE = 0.05
+#: The most names that are offered in place of one that the log does not have.
+_MOST_NEAR = 3
 #: How late a value of such a run may come, in seconds: three turns of the loop.
 _LATE = 0.06
 #: How long after it is enabled robot code has set its place, in seconds; and what is the same place, in feet.
@@ -77,11 +81,12 @@ def log_run(
     :raises PyfrcError: when it is no log, or has no inputs
     """
     file = _script_of(file)
-    given = tuple(name.removeprefix(VALUE).removeprefix("/") for name in given)
+    given = asked = tuple(name.removeprefix(VALUE).removeprefix("/") for name in given)
     given = (*given, *(f"/{name}" for name in given))  # with and without the slash that most names begin with
     script = _inputs(file, given)
     opened = open_log(file, field_of(project).height)
     run = opened.run
+    _check_given(file, asked, run.histories["network"])
     hal = run.histories["hal"]
     offset = _offset(script, run)
     is_own = "power.vin_voltage" in hal.paths()  # a simulation has it, and no other log calls it so
@@ -129,6 +134,21 @@ def _inputs(file: Path, given: tuple[str, ...]) -> InputScript:
             remedy=f"pyfrc sim --record writes both. To run the robot with its inputs: pyfrc replay {from_here(file)}",
         )
     return script
+
+
+def _check_given(file: Path, asked: tuple[str, ...], network: ValueHistory) -> None:
+    """:raises UsageError: when a log does not have a value that a person is said to have set"""
+    names = {path.removeprefix(VALUE).removeprefix("/") for path in network.paths() if path.startswith(VALUE)}
+    for name in asked:
+        if name in names or any(each.startswith(f"{name}/") for each in names):
+            continue
+        ending = name.rpartition("/")[2].lower()
+        near = sorted(each for each in names if each.lower().rpartition("/")[2] == ending)
+        near = (near or get_close_matches(name, sorted(names), n=_MOST_NEAR, cutoff=0.7))[:_MOST_NEAR]
+        raise UsageError(
+            f"--input {name}: {from_here(file)} has no value of this name",
+            remedy=f"It has {', '.join(near)}." if near else f"To see its values: pyfrc view {quoted(from_here(file))}",
+        )
 
 
 def _offset(script: InputScript, run: PastRun) -> float:

@@ -88,7 +88,10 @@ def _check(request: SimRequest, kind: FrontEndKind) -> None:
             "script, and --script NEW.jsonl plays what you have changed there.",
         )
     if request.log is not None and any((request.mode, request.opmodes)):
-        raise UsageError("--log has the modes and all inputs", remedy="Leave out --mode and --opmode.")
+        given = " and ".join(
+            option for option, is_given in (("--mode", request.mode), ("--opmode", request.opmodes)) if is_given
+        )
+        raise UsageError("--log has the modes and all inputs", remedy=f"Leave out {given}.")
     if not kind.is_served and request.share is not None and not _network_port(request, kind):
         raise UsageError(
             "without a page, --share drive shares NetworkTables, and these are not served here",

@@ -6,12 +6,14 @@ import os
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
 from ..errors import ProjectError, UsageError
 from ..interruption import ending_like_ctrl_c
-from ..project import MAIN_FILE, Project, find_project
+from ..project import MAIN_FILE, Project, find_project, projects_below
+from ..shell import quoted
 from ..wording import counted
 from .engine.field import field_of
 from .engine.past_run import PastRun
@@ -80,11 +82,12 @@ def view(request: ViewRequest, say: Say) -> int:
     names = _names(request.files)
     first, *others = [_opened(*each, height, request, say) for each in zip(request.files, names, strict=True)]
     what_if = WhatIf(project, request.files[0], say)
+    elsewhere = None if project.main_file.is_file() else _project_elsewhere()
     source = LogSource(
         project,
         first,
         tuple(_aligned(request, first.run, [each.run for each in others], say)),
-        what_if.start if project.main_file.is_file() else None,
+        what_if.start if project.main_file.is_file() else None if elsewhere is None else partial(_refuse, elsewhere),
     )
     if request.page is not None:
         _check_size(first.run, *source.branches)
@@ -94,6 +97,8 @@ def view(request: ViewRequest, say: Say) -> int:
         if not request.quiet:
             say(f"wrote {request.page}\n")
         return 0
+    if elsewhere is not None and not request.quiet:
+        say(f"{elsewhere}\n")
     try:
         return _serve(source, request, say)
     finally:
@@ -139,6 +144,22 @@ def project_or_none() -> Project | None:
         return find_project()
     except ProjectError:
         return None
+
+
+def _project_elsewhere() -> ProjectError | None:
+    """Return why no code can be run with a log, if there is a project below the current directory."""
+    if not (below := projects_below(Path.cwd())):
+        return None
+    found = below[0].as_posix()
+    return ProjectError(
+        f"there is no {MAIN_FILE} here, but there is one in ./{found}",
+        remedy="“What would my code have done?” needs it. To have it, end this, and start pyfrc view there: "
+        f"cd {quoted(found)}",
+    )
+
+
+def _refuse(error: ProjectError) -> str:
+    raise error
 
 
 def _no_project() -> Project:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from difflib import get_close_matches
 from pathlib import Path
 from struct import Struct
@@ -21,6 +22,8 @@ FOREIGN_LOGS = {
     ".rlog": "This is AdvantageKit's format before 2023. AdvantageScope opens it, and exports it as a .wpilog.",
     ".revlog": "REV's format is not read here. AdvantageScope opens it, and exports it as a .wpilog.",
 }
+#: How JSON begins; tables of TOML begin with a bracket, too.
+_JSON = re.compile(rb"\{|\[(\s*\[)*\s*([\"{\]\d-]|true\b|false\b|null\b)")
 _UNPACK = "Unpack it first."
 #: Beginnings of files, with what they are, and what to do.
 _BEGINNINGS: tuple[tuple[tuple[bytes, ...], str, str], ...] = (
@@ -50,16 +53,16 @@ def read_head(file: Path, what: str, error: type[PyfrcError] = UsageError, name:
     """Return the beginning of a file.
 
     :param what: what the file should be, such as ``a log``
-    :param error: the error; for a file that does not exist always one of usage
+    :param error: the error; for a file that does not exist, and for a directory, always one of usage
     :param name: for people; by default, the file as it was given
     :raises PyfrcError: when there is no such file, or it cannot be read
     """
     name = name or str(file)
+    of_usage = error if issubclass(error, UsageError) else UsageError
     if not file.exists():
-        missing = error if issubclass(error, UsageError) else UsageError
-        raise missing(f"there is no file {file}", remedy=_nearly(file))
+        raise of_usage(f"there is no file {file}", remedy=_nearly(file))
     if file.is_dir():
-        raise error(f"this is a directory, not {what}", where=name, remedy=_newest_in(file))
+        raise of_usage(f"this is a directory, not {what}", where=name, remedy=_newest_in(file))
     if not file.is_file():
         raise error(f"this is a pipe or a device, not {what}", where=name, remedy="Write it into a file first.")
     try:
@@ -83,7 +86,7 @@ def described(head: bytes, name: str) -> tuple[str, str]:
         return "Python code", "pyfrc finds the robot's code by itself."
     if suffix == ".csv" and is_text:
         return "a table", "pyfrc does not read tables."
-    if start.startswith((b"{", b"[")) and is_text:
+    if _JSON.match(start) and is_text:
         return "JSON", ""
     if is_ds_log(head):
         return "a log of the driver station", ""
@@ -109,11 +112,12 @@ def _nearly(file: Path) -> str | None:
 
 
 def _newest_in(directory: Path) -> str:
-    """Return which logs a directory has, the newest first."""
+    """Return which logs a directory and those in it have, the newest first."""
     try:
-        files = [file for file in directory.iterdir() if file.suffix.lower() in _LOGS]
+        within = (file for pattern in ("*", "*/*") for file in directory.glob(pattern))
+        files = [file for file in within if file.suffix.lower() in _LOGS]
         files.sort(key=lambda file: file.stat().st_mtime, reverse=True)
     except OSError as wrong:
         return f"It cannot be read: {(wrong.strerror or str(wrong)).lower()}."
-    names = ", ".join(file.name for file in files[:_MOST_NAMED])
+    names = ", ".join(file.relative_to(directory).as_posix() for file in files[:_MOST_NAMED])
     return f"Its newest logs: {names}" if names else "There are no logs in it."
