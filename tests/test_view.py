@@ -376,13 +376,18 @@ BANDS = """([share, count]) => {
 }"""
 
 
-def test_states_of_the_other_log_are_drawn_below_those_of_the_first(tmp_path: Path, browser: Browser) -> None:
+def test_a_robot_is_chosen_and_states_of_the_other_log_are_drawn_below_those_of_the_first(
+    tmp_path: Path, browser: Browser
+) -> None:
     require("the page of pyfrc view in a browser", missing_browser())
     opened = []
     for name, (until, state) in {"a.wpilog": (4, b"IDLE"), "b.wpilog": (6, b"AIMING")}.items():
         log = Written()
         log.values("NT:/on", "boolean", "?", (0, True), (until, False), (10, False))
         log.values("NT:/state", "string", "", (0, b"START"), (2, state), (10, b"END"))
+        for number, table in enumerate(("Mine", "Other"), 1):
+            log.values(f"NT:/{table}/.type", "string", "", (0, b"Field2d"))
+            log.values(f"NT:/{table}/Robot", "double[]", "", (0, struct.pack("<3d", number * 3.048, 3.048, 0)))
         opened.append(open_log(log.save(tmp_path / name), HEIGHT))
     source = LogSource(Project(tmp_path / "robot.py"), opened[0], (opened[1].run,))
     with served_source(source) as server:
@@ -390,6 +395,11 @@ def test_states_of_the_other_log_are_drawn_below_those_of_the_first(tmp_path: Pa
         page.set_default_timeout(PATIENCE * 1000)
         page.goto(server.address)
         page.locator(".recorded code", has_text="a.wpilog").wait_for()
+        # A person says which pose is the robot; those of the same name have their table.
+        for item, feet in (("Robot: Other/Robot", "20.00 ft"), ("Robot: Mine/Robot", "10.00 ft")):
+            page.get_by_title("What is drawn", exact=True).click()
+            page.locator(".menu-list button", has_text=item).click()
+            page.locator(".pose", has_text=feet).wait_for()
         for name in ("nt:/on", "nt:/state"):
             page.get_by_role("button", name="Add value").first.click()
             page.keyboard.type(name)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ...engine.source import Source
 
 #: What a person has arranged that is of use to others.
-_OF_USE = ("version", "plots", "pins", "fieldLayers", "coordinates")
+_OF_USE = ("version", "plots", "pins", "fieldLayers", "fieldRobot", "coordinates")
 #: The number of curves that are suggested where the person has arranged no plot.
 _SUGGESTED = 3
 

@@ -16,6 +16,7 @@ const DEFAULTS = {
   plots: {},
   pins: [],
   fieldLayers: {},
+  fieldRobot: "", // the path of the pose that is the robot of a log, if another one than pyfrc takes
   dashboard: "", // the name of the one that is shown
   coordinates: "", // how places on the field are written; as the project says unless chosen
   keyboard: { chosen: null, own: [] },

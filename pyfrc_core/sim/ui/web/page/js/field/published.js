@@ -111,7 +111,19 @@ export function fieldObjects(values, field) {
     if (folder && name === "Robot" && poses.length === 1 && isCorner(poses[0], field)) continue;
     if (poses.length) objects.push({ name, path, poses, isPath: isTrajectory(poses) });
   }
-  return objects;
+  const names = objects.map(({ name }) => name);
+  return objects.map((object) => (names.filter((name) => name === object.name).length > 1 ? { ...object, name: shortest(object, objects) } : object));
+}
+
+// The name of an object with as many of its tables as tell it apart from the others.
+function shortest({ path }, objects) {
+  const parts = path.replace(/^nt:/, "").split("/");
+  const others = objects.filter((other) => other.path !== path);
+  for (let count = 2; count < parts.length; count++) {
+    const end = parts.slice(-count).join("/");
+    if (!others.some((other) => `/${other.path.replace(/^nt:/, "")}`.endsWith(`/${end}`))) return end;
+  }
+  return parts.join("/");
 }
 
 // The four states of swerve modules, front left first: { path, wanted, states: [{ speed in m/s, angle in radians }] }.

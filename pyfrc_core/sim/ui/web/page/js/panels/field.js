@@ -68,10 +68,14 @@ export class FieldPanel extends Drawn {
 
   // bare: without the line below; only: the beginning of the paths of the only objects to show
   render({ bare, only }) {
-    const { robot, values, station } = model.shown;
+    const { values, station } = model.shown;
+    const objects = fieldObjects(values, model.hello.field);
+    const chosen = model.isDriven ? undefined : objects.find(({ path, poses }) => path === settings.get("fieldRobot") && poses.length === 1);
+    const robot = chosen ? chosen.poses[0] : model.shown.robot;
     this.robots = {
+      chosen: chosen?.path,
       robot,
-      now: model.past && !model.isOver && model.robot, // behind the robot of the moment that is shown
+      now: !chosen && model.past && !model.isOver && model.robot, // behind the robot of the moment that is shown
       compared: compared.poseAt(model.past?.t ?? model.t),
       alliance: station.alliance ?? model.station.alliance ?? "",
     };
@@ -79,8 +83,13 @@ export class FieldPanel extends Drawn {
     this.swerve = robot ? swerveStates(values) : [];
     /** @type {any[]} */
     const layers = LAYERS.map(([layer, text]) => this.layer(layer, text));
-    this.objects = fieldObjects(values, model.hello.field).filter(({ path }) => !only || path === only || path.startsWith(`${only}/`));
+    this.objects = objects.filter((one) => one !== chosen && (!only || one.path === only || one.path.startsWith(`${only}/`)));
     if (this.objects.length) layers.push({ separator: true }, ...this.objects.map(({ path, name }) => this.layer(path, name)));
+    const mayBe = model.isDriven ? [] : objects.filter(({ poses }) => poses.length === 1);
+    if (mayBe.length) {
+      const choice = (path, text) => ({ text, checked: path === (chosen?.path ?? ""), act: () => settings.set("fieldRobot", path) });
+      layers.push({ separator: true }, choice("", "Robot: as found by pyfrc"), ...mayBe.map(({ path, name }) => choice(path, `Robot: ${name}`)));
+    }
     const { coordinates } = this;
     const pose = robot && written(robot, model.hello.field, coordinates, this.robots.alliance);
     const choices = Object.entries(COORDINATES).map(([name, text]) => ({ text, checked: name === coordinates, act: () => settings.set("coordinates", name) }));
@@ -132,7 +141,7 @@ export class FieldPanel extends Drawn {
     if (coordinates !== "pyfrc") draw.drawOrigin(context, view, field, origin);
     if (this.shows("tags")) draw.drawTags(context, view, field.tags);
     if (this.shows("former")) draw.drawTrail(context, view, model.formerTrail, "former", 2, [7, 5]);
-    if (this.shows("trail")) {
+    if (this.shows("trail") && !this.robots.chosen) { // it is that of the other pose
       context.globalAlpha = model.past ? 0.35 : 1;
       draw.drawTrail(context, view, model.trail, "accent", 2.5);
       context.globalAlpha = 1;
