@@ -8,6 +8,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+import pytest
 from sim_robots import PATIENCE
 from web_pages import served_source
 
@@ -20,6 +21,7 @@ from pyfrc_core.sim.engine.scene import Scene
 from pyfrc_core.sim.engine.snapshot import Snapshot, Status
 from pyfrc_core.sim.engine.source import Abilities, ChangeFeed, FedReader, Source
 from pyfrc_core.sim.engine.value_history import ValueHistory
+from pyfrc_core.sim.ui.web import page_client
 
 
 class Elsewhere:
@@ -120,6 +122,21 @@ def test_a_robot_elsewhere_is_not_driven_but_its_values_can_be_set(tmp_path: Pat
             assert (curve["t"], curve["v"]) == ([1.0], [0.5])
         with robot.reports:
             assert robot.reports.wait_for(lambda: robot.people == 0, 30)
+
+
+def test_a_page_hears_of_its_server_while_an_answer_takes_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page_client, "_SIGN_INTERVAL", 0.001)
+    goes_on = threading.Event()
+
+    class Slow(Elsewhere):
+        def write(self, values: Mapping[str, object]) -> None:
+            assert goes_on.wait(PATIENCE)
+
+    with served_source(Slow(tmp_path, Abilities("robot", writes=True))) as there, there.page() as page:
+        page.socket.send('{"type": "command", "name": "write", "values": {"nt:/kP": 0.25}, "id": 1}')
+        page.until_type("working")
+        goes_on.set()
+        page.until_type("answer")
 
 
 def test_what_is_over_is_all_there_at_once(tmp_path: Path) -> None:

@@ -121,7 +121,7 @@ class Page:
             if message["type"] == "update":
                 self._take(message)
             else:
-                assert message["type"] == "answer", message
+                assert message["type"] in ("answer", "working"), message
 
     def ask(self, **message: Any) -> dict[str, Any]:
         """Send a message, and return its answer."""
@@ -133,9 +133,9 @@ class Page:
                 return found
             self._take(found)
 
-    def until_error(self) -> None:
-        """Take updates until an error comes, which belongs to no question."""
-        while (message := self._receive())["type"] != "error":
+    def until_type(self, kind: str) -> None:
+        """Take updates until a message of this type comes."""
+        while (message := self._receive())["type"] != kind:
             self._take(message)
 
     def command(self, name: str, **arguments: Any) -> dict[str, Any]:

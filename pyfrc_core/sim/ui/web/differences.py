@@ -106,6 +106,7 @@ class FirstDifference:
                 both = (value if is_number(value) else clean(str(value)) for value in self.values[path])
                 others.append((path, time, *differing_texts(*both)))
             answer["slight"] = self.sorted_slight()[:_MOST_OTHERS]
+            answer["until"] = self.end
         return answer
 
     def compare(self, one: ValueHistory, other: ValueHistory, path: str) -> None:

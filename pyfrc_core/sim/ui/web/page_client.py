@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from concurrent.futures import Executor
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: The shortest interval of updates, in seconds: somewhat less than a packet; and of those that bring only a later time.
 _INTERVAL, _TIME_INTERVAL = 0.014, 0.2
+#: The interval of signs of life while an answer takes long, in seconds: a page whose server is silent connects again.
+_SIGN_INTERVAL = 1.0
 #: The longest error, in characters: it may quote what the page has sent.
 _MOST_ERROR = 300
 #: The most points of one curve.
@@ -79,7 +81,7 @@ class PageClient:
         try:
             message = read_message(text)
             number = {} if message.id is None else {"id": message.id}
-            answer = await self._answer(message)
+            answer = await self._with_signs(self._answer(message))
         except CommandError as wrong:
             await self._send({"type": "error", **number, "message": str(wrong)[:_MOST_ERROR]})
             return
@@ -89,6 +91,16 @@ class PageClient:
     async def close(self) -> None:
         """Say that the simulation was closed."""
         await self._send({"type": "closed"})
+
+    async def _with_signs(self, answering: Coroutine[Any, Any, dict[str, Any]]) -> dict[str, Any]:
+        """Return an answer, and let the page know meanwhile that the server is there: it gets its answers in order."""
+        task = asyncio.create_task(answering)
+        try:
+            while not (await asyncio.wait((task,), timeout=_SIGN_INTERVAL))[0]:
+                await self._send({"type": "working"})
+            return task.result()
+        finally:
+            task.cancel()
 
     async def _send(self, message: dict[str, Any]) -> None:
         text = json_text(message)

@@ -12,7 +12,7 @@ class Compared {
   pose = { t: [], v: [] };
   offset; // of the branch that was asked for
   difference; // the first moment at which the branch differs from the present run; null: none, undefined: not known
-  found = null; // where a log that drives this run differs: { t, paths, others, sensors }
+  found = null; // where a log that drives this run differs: { t, paths, others, sensors, until }
   #compared = ""; // how far the run was when it was compared
   #waits = false;
 

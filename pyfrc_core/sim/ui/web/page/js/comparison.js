@@ -24,7 +24,7 @@ export function FirstDifference({ difference, found }) {
     return html`<button class="quiet" onClick=${() => goTo(difference)} title="The first moment at which the branch differs from this run">
       Differs at ${clock(difference)}</button>`;
   }
-  const text = difference === null ? "No difference" : `Differs first at ${clock(difference)}, in ${nameOf(found.paths[0])}`;
+  const text = difference === null ? `No difference up to ${clock(found.until)}` : `Differs first at ${clock(difference)}, in ${nameOf(found.paths[0])}`;
   return html`<button class="quiet first-difference" disabled=${difference === null} onClick=${() => goTo(difference)}
       title="The first moment at which the log differs from what the code does now"><span>${text}</span></button>`;
 }

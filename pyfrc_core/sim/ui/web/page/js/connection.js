@@ -101,6 +101,7 @@ function receive(message) {
     else onMessage({ type: "problem", text: message.message });
     return;
   }
+  if (message.type === "working") return; // it ends the silence
   if (message.type === "closed") {
     finished = true;
     onState("closed");
