@@ -155,8 +155,7 @@ def run() -> None:
         sys.exit(2)
     except click.ClickException as error:
         if isinstance(error, click.NoSuchOption):
-            nearest = difflib.get_close_matches(error.option_name, error.possibilities or (), n=1)
-            nearest = [] if _remedy(error) else nearest
+            nearest = difflib.get_close_matches(error.option_name, error.possibilities or (), n=1, cutoff=0.7)
             error = click.NoSuchOption(error.option_name, possibilities=nearest, ctx=error.ctx)
         error.show()
         if remedy := _remedy(error):

@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from written_logs import BOOT, SECOND, Written, a_match
 
+from pyfrc_core.errors import UsageError
 from pyfrc_core.sim.engine.past_run import PastRun
 from pyfrc_core.sim.logs import LogError, open_log
 from pyfrc_core.sim.logs.align import moment_of, offset_of
@@ -288,10 +289,10 @@ def test_what_is_no_log_is_said_in_a_sentence(tmp_path: Path, name: str, content
 
 
 def test_a_directory_names_its_newest_logs(tmp_path: Path) -> None:
-    with pytest.raises(LogError, match="There are no logs in it"):
+    with pytest.raises(UsageError, match="There are no logs in it"):
         open_log(tmp_path, HEIGHT)
     a_match().save(tmp_path / "a.wpilog")
-    with pytest.raises(LogError, match=r"this is a directory, not a log\n  Its newest logs: a\.wpilog"):
+    with pytest.raises(UsageError, match=r"this is a directory, not a log\n  Its newest logs: a\.wpilog"):
         open_log(tmp_path, HEIGHT)
 
 

@@ -153,7 +153,7 @@ def _project_elsewhere() -> ProjectError | None:
     found = below[0].as_posix()
     return ProjectError(
         f"there is no {MAIN_FILE} here, but there is one in ./{found}",
-        remedy="“What would my code have done?” needs it. To have it, end this, and start pyfrc view there: "
+        remedy='"What would my code have done?" needs it. To have it, end this, and start pyfrc view there: '
         f"cd {quoted(found)}",
     )
 
