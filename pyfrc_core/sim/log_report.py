@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 _MOST_NAMED = 8
 #: A log is of another robot if the code publishes less than half of its values; of fewer values, nothing is said.
 _FEWEST = 10
+#: A name of a time that code takes, which may differ in each run.
+_DURATION = re.compile(r"time|duration|latency|elapsed|period|(^|[^a-z])(ms|dt|fps)($|[^a-z])", re.IGNORECASE)
 _SOURCES = {
     "log": "sensors from the log, whatever today's code does",
     "physics": "sensors from physics",
@@ -96,8 +99,7 @@ class LogReport:
         yield f"differs first at {clock(time)}, in {name_of(path)}: {there} in {log.name}, {here} here"
         if others:
             yield self._listed("then in", self._moments(found, others))
-        if path.startswith(VALUE) and is_number(found.values[path][0]):
-            name = name_of(path)
+        if path.startswith(VALUE) and is_number(found.values[path][0]) and _DURATION.search(name := name_of(path)):
             yield f"if {name} differs in each run, such as a time that code took: --ignore {quoted(name)}"
         if until := self._until():
             yield f"compared{until}"
