@@ -129,6 +129,7 @@ def test_new_code_comes_with_a_saved_file(make_project) -> None:
     made = make_project(FILES)
     with simulating(made, "--ui", "web", "--watch") as running, running.page() as page:
         assert page.hello["options"]["watch"] is True
+        page.until(lambda: page.status["state"] == "running")  # a page may come before the robot has started
         page.command("enable")
         page.command("axis", stick=0, axis=1, value=-1.0)
         page.until(lambda: page.values.get("pwm[0].value") == 1)

@@ -217,12 +217,16 @@ def test_the_wheel_scrolls_a_low_panel_and_zooms_with_ctrl(person: Seen) -> None
     page = person.page
     person.choose("Layout", "Tuning")
     page.evaluate(ADD, ["sim.pose[0]"])
+    page.get_by_label("Settings of sim.pose[0]").wait_for()
     follow, chart = person.button("Follow again"), page.locator(f"{PLOT} .u-over")
+    person.drawn()  # then the chart is no longer another one
     chart.hover()
     page.mouse.wheel(0, -200)  # nothing scrolls
     follow.click()
     page.evaluate(ADD, ["sim.mode", "dio[3].value", "alliance_station"])
     page.set_viewport_size({"width": 1366, "height": 700})
+    page.get_by_label("Settings of alliance_station").wait_for()
+    person.drawn()
     page.locator(f"{PLOT} .plot-bands").hover()
     page.mouse.wheel(0, 400)
     scrolled = f"() => document.querySelector({PLOT + ' .plot'!r}).scrollTop"
