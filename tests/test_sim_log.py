@@ -694,6 +694,7 @@ def test_the_page_gets_the_first_difference_and_what_moves_the_sensors(recorded:
     with page_with(recorded, "match.wpilog") as server, server.page() as page:
         (branch,) = page.parts["branches"]
         assert (branch["name"], branch["offset"], branch["compared"]) == ("match.wpilog", 0.0, True)
+        page.until(lambda: page.time > 3.49)  # what is compared comes after the simulation has paused
         found = page.ask(type="first_difference", branch=branch["id"], paths=None)
         assert found["until"] == pytest.approx(3.5, abs=0.001)
         assert (found["t"], found["paths"][:2]) == (2.5, ["nt:/SmartDashboard/Elevator/setpoint", "pwm[1].value"])
