@@ -73,8 +73,9 @@ def check_outputs(context: click.Context, project: Project | None) -> None:
             if any(_is_same(path, file.parent) for file in code):
                 raise cannot_write(option, path, "your robot's code is in it")
             continue
-        if (missing := path.absolute().parent) and not (missing.exists() or _is_near(missing, project)):
-            raise cannot_write(option, path, f"there is no directory {missing}")
+        directory = path.absolute().parent
+        if not (directory.exists() or _is_near(directory, project)):
+            raise cannot_write(option, path, f"there is no directory {directory}")
         for file in _written_with(path, kind):
             check_writable(option, file)
             if any(_is_same(file, each) for each in read):

@@ -59,8 +59,9 @@ def wrapped_command(context: click.Context, words: Sequence[str], wrappable: Seq
         raise click.UsageError(
             f"{name!r} is not a command that can be measured. These can: {', '.join(known)}.", context
         )
-    refuse_repeated_options(loaded(name), name, arguments, context)
-    inner = loaded(name).make_context(name, arguments, parent=context)
+    command = loaded(name)
+    refuse_repeated_options(command, name, arguments, context)
+    inner = command.make_context(name, arguments, parent=context)
     options = inner.params
     with inner.scope(cleanup=False):
         project = chosen_project(options["directory"], options["main"], options["robot_class"])

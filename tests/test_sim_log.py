@@ -181,7 +181,7 @@ def test_what_differs_is_named_anew_after_each_enabling_and_shortly(make_project
     (line,) = re.findall(r"^  name 11 \(.*", said, re.MULTILINE)
     assert re.search(r": \.\.\..{,20} before in match.wpilog, \.\.\..{,20} after here$", line)
     assert "in match.wpilog only:\n  Elevator/setpoint (0:01.00)\nhere only:\n" in said
-    assert said.count("pwm[1].value (0:05.00)") == 1  # it was equal until then, so it is not named anew
+    assert said.count("pwm[1].value (0:05.00)") == 1  # it was equal until then, so it is not named again
 
 
 def test_sensors_measure_what_they_measured_in_the_log(recorded: RobotProject) -> None:
@@ -417,7 +417,7 @@ def test_the_log_of_a_robot_is_shown_on_the_times_of_the_simulation(played: Robo
     assert [step.at_us for step in script.steps if step.writes.get("mode") == "teleop"] == [5_020_000]
     assert 11.0 <= script.end_us / 1e6 <= 11.1
     said = log_of(played, "match.wpilog", "--record", "again.jsonl")
-    # Where the robot is, it has not been told: it believes to be in a corner.
+    # Its code has not set the robot's place, so the log has it in a corner.
     assert "Field/Robot" not in (played.path / "again.jsonl").read_text("utf-8")
     # At 0.85, since 5 % of the range are 0.05.
     assert "differs first at 0:06.84, in Elevator/setpoint: 0.854 in match.wpilog, 0.8 here" in said

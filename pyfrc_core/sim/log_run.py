@@ -163,7 +163,7 @@ def _offset(script: InputScript, run: PastRun) -> float:
 def _placed(project: Project, script: InputScript, run: PastRun, is_own: bool) -> InputScript:
     """Return the script with the robot's place in the log, as soon as it is enabled, if that is not where it starts.
 
-    A robot that believes to be at 0, 0 in WPILib's coordinates, a corner of the field, has not been told its place.
+    Code that has not set the robot's place shows it at 0, 0 in WPILib's coordinates, a corner of the field.
     """
     network = run.histories["network"]
     moment = PACKET_US / 1_000_000 if is_own else (moment_of(network, "enabled") or 0.0) + _PLACED

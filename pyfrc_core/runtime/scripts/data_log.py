@@ -170,9 +170,11 @@ def _measured(record: Record) -> tuple[str, Any]:
 def _of_kit(log: DataLog) -> Iterator[Record]:
     """Yield what AdvantageKit or PyKit has logged, under WPILib's names, if WPILib has not logged it itself."""
     names = {entry.name for entry in log.entries}
+    if any(name.startswith("DS:") for name in names):
+        return
     buttons = {name: names for names in kit_names.BUTTONS for name in names[:2]}
     for prefix in kit_names.PREFIXES:
-        if any(name.startswith("DS:") for name in names) or prefix + kit_names.ENABLED not in names:
+        if prefix + kit_names.ENABLED not in names:
             continue
         latest: dict[str, Any] = {}
         read = tuple(prefix + table for table in kit_names.READ)
