@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -61,6 +61,11 @@ ROBOT = """
     """
 
 CAMPAIGN = ("--seed", "101", "--runs", "16")
+
+
+def _pairs(options: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Yield each option with its value."""
+    return zip(options[::2], options[1::2], strict=True)
 
 
 def start(program: str, arguments: list[str], directory: Path, env: Mapping[str, str] | None = None) -> StartedCommand:
@@ -194,8 +199,10 @@ def _everywhere(project: Any, result: Any) -> tuple[dict[str, bytes], str]:
 def test_a_cluster_finds_what_one_process_finds(cluster: Cluster, alone, make_shared_project) -> None:
     cluster.add_worker()
     project = copy(make_shared_project)
-    options = [cluster.address if each.startswith("tcp://") else each for each in FUZZ[2:]]
-    result = project.run("fuzz", *options, *CAMPAIGN)
+    values = {"--scheduler": cluster.address, **dict(_pairs(CAMPAIGN))}
+    options = [word for name, _ in _pairs(FUZZ[2:]) for word in (name, values.pop(name))]
+    assert not values
+    result = project.run("fuzz", *options)
     assert result.code == 1, result.output
     assert _everywhere(project, result) == alone
     assert "missing.txt" in result.stdout
