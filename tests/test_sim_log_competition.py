@@ -135,4 +135,5 @@ def test_a_robot_whose_devices_are_simulated_in_real_time_is_compared_by_what_it
         assert "Elevator/Goal" not in log_of(project, name)
     change(project, "constants.py", "SCORE_HIGH = 0.0, 0.05, 0.45, 1.1", "SCORE_HIGH = 0.0, 0.05, 0.45, 0.9")
     for name in logs:
-        assert re.search(r"in .*Elevator/Goal \(0:03\.\d\d\)", log_of(project, name))
+        said = log_of(project, name)
+        assert re.search(r"in .*Elevator/Goal \(0:03\.\d\d\)", said), said
