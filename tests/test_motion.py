@@ -22,20 +22,25 @@ def test_it_moves_at_its_motors_speed_and_counts_ticks() -> None:
     assert motion.compute(0, 10) == 360
 
 
-def test_it_does_not_go_below_zero_unless_told_that_it_may() -> None:
-    assert LinearMotion("Elevator", 2, 360).compute(-1, 1) == 0
-    assert LinearMotion("Elevator", 2, 360, min_position=None).compute(-1, 1) == -720
-    assert LinearMotion("Elevator", 2, 360, max_position=None, min_position=-1).compute(-1, 1) == -360
+def test_it_has_limits_only_with_an_upper_one_as_in_2019() -> None:
+    """An encoder on a wheel runs backwards, too; `min_position` is 0 by default, since that was documented."""
+    assert LinearMotion("Wheel", 2, 360).compute(-1, 1) == -720
+    assert LinearMotion("Wheel", 2, 360, min_position=None).compute(-1, 1) == -720
+    assert LinearMotion("Wheel", 2, 360, max_position=None, min_position=-1).compute(-1, 1) == -720
+    assert LinearMotion("Wheel", 2, 360, min_position=3).position_ft == 0
+    assert LinearMotion("Elevator", 2, 360, max_position=6).compute(-1, 1) == 0
+    assert LinearMotion("Elevator", 2, 360, max_position=6, min_position=None).compute(-1, 1) == -720
     assert LinearMotion("Elevator", 2, 360, max_position=0, min_position=-1).compute(1, 1) == 0
+    assert LinearMotion("Elevator", 2, 360, max_position=6, min_position=3).position_ft == 3
     assert LinearMotion("Elevator", 2, 360).compute(1, 1000) == 720_000
 
 
 def test_a_tick_counts_when_it_is_complete() -> None:
-    motion = LinearMotion("Elevator", 10, 360, min_position=None)
+    motion = LinearMotion("Elevator", 10, 360)
     assert motion.compute(0.55, 0.03) == 59  # 59.4
     motion.compute(0.55, 0.03)  # 118.8
     assert motion.position_ticks == 118
-    assert LinearMotion("Elevator", 10, 360, min_position=None).compute(-0.55, 0.03) == -59
+    assert LinearMotion("Elevator", 10, 360).compute(-0.55, 0.03) == -59
 
 
 @given(
@@ -50,7 +55,10 @@ def test_it_never_leaves_its_limits_nor_exceeds_its_speed(
     for motor, time in moves:
         before = motion.position_ft
         assert motion.compute(motor, time) == motion.position_ticks
-        assert (-math.inf if lower is None else lower) <= motion.position_ft <= (math.inf if upper is None else upper)
+        if upper is not None:
+            assert (-math.inf if lower is None else lower) <= motion.position_ft <= upper
+        else:
+            assert motion.position_ft == pytest.approx(before + 3 * max(-1.0, min(motor, 1.0)) * time)
         assert abs(motion.position_ft - before) <= 3 * time + 1e-9
 
 
@@ -122,11 +130,12 @@ def test_the_documented_example_in_robot_time(make_project: MakeProject) -> None
 
                     control.set_operator_control(enabled=True)
                     control.run_test(step)
-                    assert shown[:2] == ["0.00", "0.00"], shown
-                    assert shown[-1] == "6.00", shown
+                    assert shown[:2] == [0.0, 0.0], shown
+                    assert shown[-1] == 6.0, shown
+                    assert {type(each) for each in shown} == {float}
                     assert hal_data["encoder"][0]["value"] == 6 * 360
                     # At 2 ft/s, from the first packet on.
-                    moving = [float(text) for text in shown if 0 < float(text) < 6]
+                    moving = [feet for feet in shown if 0 < feet < 6]
                     steps = {round(after - before, 2) for before, after in zip(moving, moving[1:])}
                     assert steps == {0.04}, steps
                 """,

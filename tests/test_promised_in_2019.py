@@ -377,7 +377,7 @@ CONFIG = """
                "pwm": {"8": "Lift"}, "joysticks": {"0": {"axes": {"x": "Turn"}}}}}
 """
 
-TESTS = """
+TESTS = r"""
     import threading
 
     import pytest
@@ -432,17 +432,67 @@ TESTS = """
                 control.run_test(controller)
 
 
+    class WithoutSelf:
+        def on_step(tm):
+            return True
+
+
+    class NeedsMore:
+        def __init__(self, speed):
+            self.speed = speed
+
+        def on_step(self, tm):
+            return True
+
+
+    def test_what_cannot_be_called_with_the_time_is_a_value_error(control, fake_time):
+        wrong = {
+            "lambda": (lambda: True, lambda tm, speed: True, lambda *, tm: True),
+            "WithoutSelf.on_step": (WithoutSelf, WithoutSelf()),
+            "NeedsMore": (NeedsMore,),
+        }
+        for name, controllers in wrong.items():
+            for controller in controllers:
+                with pytest.raises(ValueError, match=rf"run_test\(controller\): .*{name}.*\("):
+                    control.run_test(controller)
+        control.run_test(lambda tm, speed=1: tm < 1)  # the robot can still run
+        assert fake_time.get() == 1
+
+
+    @pytest.mark.parametrize("controller", [[].append, lambda *times: False, NeedsMore(1)])
+    def test_what_can_be_called_with_the_time(control, fake_time, controller):
+        fake_time.set_time_limit(1)
+        try:
+            control.run_test(controller)
+        except TestRanTooLong:
+            assert isinstance(controller, NeedsMore)
+
+
     def test_time_limits(control, fake_time):
         assert fake_time.time_limit == 500
         fake_time.set_time_limit(None)
         assert fake_time.time_limit is None
         fake_time.increment_time_by(600)
-        fake_time.increment_time_by(-1)
+        fake_time.increment_time_by(0)
         assert fake_time.get() == 600
         fake_time.time_limit = 601
         with pytest.raises(TestRanTooLong):
             fake_time.increment_time_by(1.01)
         fake_time.reset()
+        assert (fake_time.get(), fake_time.time_limit) == (0, 500)
+
+
+    @pytest.mark.parametrize("wrong", [-1, float("nan"), float("inf"), "a", None])
+    def test_what_is_no_duration_is_a_value_error(control, fake_time, wrong):
+        with pytest.raises(ValueError, match=r"^increment_time_by\(.*\): .* seconds"):
+            fake_time.increment_time_by(wrong)
+        with pytest.raises(ValueError, match=r"^step_timing\(seconds=.*\): .* seconds"):
+            control.step_timing(seconds=wrong, autonomous=True, enabled=True, assert_alive=False)
+        if wrong is not None:
+            with pytest.raises(ValueError, match=r"^set_time_limit\(.*\): .* seconds .*, or None"):
+                fake_time.set_time_limit(wrong)
+            with pytest.raises(ValueError):
+                fake_time.time_limit = wrong
         assert (fake_time.get(), fake_time.time_limit) == (0, 500)
 
 
@@ -702,8 +752,8 @@ def outcomes(project: RobotProject) -> Result:
 
 @pytest.mark.parametrize("name", TESTS_NAMES)
 def test_in_a_project(name: str, outcomes: Result) -> None:
-    outcome = {test.rpartition("::")[2]: outcome for test, outcome in outcomes.outcomes().items()}.get(name)
-    assert outcome == "PASSED", outcomes.blocks().get(name, outcomes.output)
+    of_name = [each for test, each in outcomes.outcomes().items() if test.rpartition("::")[2].partition("[")[0] == name]
+    assert set(of_name) == {"PASSED"}, outcomes.blocks().get(name, outcomes.output)
 
 
 def test_the_simulator_shows_numbers_as_numbers(project: RobotProject) -> None:

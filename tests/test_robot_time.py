@@ -74,7 +74,8 @@ def test_fake_time(make_project) -> None:
             fake_time.increment_time_by(400)
 
         def test_time_cannot_go_back(fake_time, control, robot):
-            fake_time.increment_time_by(-1)
+            with pytest.raises(ValueError, match="not negative"):
+                fake_time.increment_time_by(-1)
             assert fake_time.get() == 0
             with control.run_robot():
                 with pytest.raises(RuntimeError, match="running"):

@@ -10,7 +10,9 @@ from .parameters import ParameterError, finite, not_negative, within_full_power
 class LinearMotion:
     """A mechanism such as an elevator, with an encoder coupled directly to its motor. It reacts to its motor at once.
 
-    Its position is shown in the simulator, in feet, under its name. It starts at 0, or at the nearest limit.
+    Its position in feet is in ``hal_data["custom"]``, and in the simulator, under its name. It starts at 0, or at the
+    nearest limit. Without `max_position` it has no limits, as the wheel of a drivetrain; `min_position` has no effect
+    then.
     """
 
     #: Position in feet.
@@ -30,8 +32,8 @@ class LinearMotion:
         :param name: the label in the simulator
         :param motor_ft_per_sec: speed at full power, in ft/s; negative if the motor is mounted in reverse
         :param ticks_per_feet: encoder ticks per foot; negative if the encoder counts in reverse
-        :param max_position: the upper limit, in feet; None for no limit
-        :param min_position: the lower limit, in feet; None for no limit
+        :param max_position: the upper limit, in feet; None for no limits
+        :param min_position: the lower limit, in feet, if there is an upper one; None for no lower limit
         :raises ParameterError: when a value is not a number, or the limits are in the wrong order
         """
         self.name = name
@@ -62,23 +64,18 @@ class LinearMotion:
 
     def _move(self, feet: float) -> None:
         position = self.position_ft + feet
-        if self.min_position is not None:
-            position = max(position, self.min_position)
-        if self.max_position is not None:
+        if self.max_position is not None:  # as in 2019, also for `min_position`
+            if self.min_position is not None:
+                position = max(position, self.min_position)
             position = min(position, self.max_position)
         self.position_ft = position
         # Rounded before it is truncated: many small steps add up to slightly less than the whole.
         self.position_ticks = int(round(position * self.ticks_per_feet, 6))
-        _show_label(self.name, f"{round(self.position_ft, 2) + 0.0:.2f}")
+        if patches.run is not None:  # a robot is running
+            patches.run.hal_data["custom"][self.name] = position
 
     def _time_since_last_call(self) -> float:
         now, last = timing.seconds(), self._last_call
         self._last_call = now
         # Negative when the object is used with a second robot, whose time starts at zero again.
         return 0.0 if last is None else max(0.0, now - last)
-
-
-def _show_label(label: str, value: object) -> None:
-    """Show `value` in the simulator, as text in a box with this label, if a robot is running."""
-    if patches.run is not None:
-        patches.run.hal_data["custom"][label] = value

@@ -20,7 +20,7 @@ from ..runtime.scripts.player import Player
 from ..runtime.seeds import seed_generators
 from ..wpi import station
 from ..wpi.opmodes import find_opmode
-from .fake_time import FakeTime
+from .fake_time import FakeTime, duration_us
 
 if TYPE_CHECKING:
     from ..invariants.load import Invariant
@@ -136,12 +136,13 @@ class TestController:
             run, too. In a practice match it may return None: the match decides when the run ends.
         :returns: the instance, if `controller` is a class
         :raises CalledTooLate: when called twice
-        :raises WrongController: for something that cannot be called, or nothing without `set_practice_match`
+        :raises WrongController: for something that cannot be called with the time, or nothing without
+            `set_practice_match`
         :raises RuntimeError: when called in a thread, or when the robot program ends by itself
         """
         __tracebackhide__ = True
-        self._begin("run_test")
         instance, steps = self._steps(controller)
+        self._begin("run_test")
         match = self._practice_match if controller is None else None
 
         def step(now: float) -> None:
@@ -178,6 +179,7 @@ class TestController:
     def _steps(self, controller: type[Instance] | OnStep | HasOnStep | None) -> tuple[Instance | None, list[OnStep]]:
         instance: Instance | None = None
         if inspect.isclass(controller):
+            _check_callable(controller, "without arguments")
             instance = cast("type[Instance]", controller)()
         steps: list[OnStep] = []
         if self._practice_match is not None:
@@ -189,6 +191,7 @@ class TestController:
                 raise WrongController(
                     f"run_test(controller): {controller!r} is neither a function nor a class with an on_step method"
                 )
+            _check_callable(on_step, "with one argument, the robot time in seconds", 0.0)
             steps.append(_check_result(on_step) if self._practice_match is None else _until_false(on_step))
         if not steps:
             raise WrongController("run_test() needs a function to call on each step, or set_practice_match() before it")
@@ -263,13 +266,12 @@ class TestController:
         :param mode: the mode of that opmode, if opmodes of several modes have its name
         :param assert_alive: fail when the robot program is not running, before or afterwards
         :returns: the seconds by which robot time has advanced
-        :raises ValueError: when `seconds` is negative
+        :raises ValueError: when `seconds` is negative or no finite number
         """
         __tracebackhide__ = True
         if assert_alive:
             assert self.robot_is_alive, "the robot program is not running: step inside `with control.run_robot():`"
-        if seconds < 0:
-            raise ValueError(f"time cannot go back: step_timing(seconds={seconds!r})")
+        step_us = duration_us(seconds, f"step_timing(seconds={seconds!r})")
         if (autonomous is None) == (opmode is None) or (mode and opmode is None):
             raise TypeError("step_timing() takes either autonomous, or opmode and perhaps its mode")
         if opmode is not None:
@@ -281,7 +283,7 @@ class TestController:
             self.set_operator_control(enabled)
         clock = self._run.clock
         before = clock.now_us
-        self._run.run_until(before + to_us(seconds))
+        self._run.run_until(before + step_us)
         if assert_alive:
             assert self.robot_is_alive, "the robot program has ended"
         return (clock.now_us - before) / 1_000_000
@@ -306,6 +308,24 @@ class TestController:
             )
         if self.check_invariants and self.project is not None:
             watch_invariants(self._run, self.project.files, self._invariants)
+
+
+def _check_callable(function: Callable[..., object], how: str, *arguments: object) -> None:
+    """Check that a function or class can be called in this way, before the robot runs.
+
+    :raises WrongController: if its parameters do not fit
+    """
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):  # functions in C may have none
+        return
+    try:
+        signature.bind(*arguments)
+    except TypeError as problem:
+        name = getattr(function, "__qualname__", repr(function))
+        raise WrongController(
+            f"run_test(controller): {name}{signature} is called {how}, which does not fit its parameters ({problem})"
+        ) from None
 
 
 def _until_false(on_step: OnStep) -> OnStep:

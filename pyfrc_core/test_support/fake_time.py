@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from numbers import Real
+
 from ..runtime.clock import DEFAULT_TIME_LIMIT, NO_LIMIT_US, to_us
 from ..runtime.exceptions import TestEnded, TestFroze, TestRanTooLong
 from ..runtime.robot import RobotRun
@@ -35,10 +38,10 @@ class FakeTime:
         """Increment time by this many seconds; a running robot runs during that time. Time never goes back.
 
         :raises TestRanTooLong: when time passes the time limit
+        :raises ValueError: when the time is negative or no finite number
         """
         __tracebackhide__ = True
-        if time >= 0:
-            self.run.run_until(self.run.clock.now_us + to_us(time))
+        self.run.run_until(self.run.clock.now_us + duration_us(time, f"increment_time_by({time!r})"))
 
     def initialize(self) -> None:
         """Initialize fake time: set the clock to 0, to advance only when it is incremented.
@@ -60,6 +63,8 @@ class FakeTime:
         """Set how long a robot may run, in seconds; 500 by default, None for no limit.
 
         When time passes the limit, `TestRanTooLong` is raised.
+
+        :raises ValueError: when the limit is negative or no finite number
         """
         self.time_limit = time_limit
 
@@ -71,4 +76,21 @@ class FakeTime:
 
     @time_limit.setter
     def time_limit(self, seconds: float | None) -> None:
-        self.run.clock.limit_us = NO_LIMIT_US if seconds is None else to_us(seconds)
+        __tracebackhide__ = True
+        limit_us = NO_LIMIT_US
+        if seconds is not None:
+            limit_us = duration_us(seconds, f"set_time_limit({seconds!r})", ", or None for no limit")
+        self.run.clock.limit_us = limit_us
+
+
+def duration_us(seconds: float, call: str, alternative: str = "") -> int:
+    """Return a duration in whole microseconds.
+
+    :param call: the call that it is the argument of, for the error message
+    :param alternative: what may be given instead, for the error message
+    :raises ValueError: when it is negative or no finite number
+    """
+    __tracebackhide__ = True
+    if isinstance(seconds, Real) and 0 <= seconds < math.inf:
+        return to_us(seconds)
+    raise ValueError(f"{call}: needs a number of seconds that is not negative{alternative}")

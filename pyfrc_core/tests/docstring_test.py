@@ -6,8 +6,11 @@ file in your tests directory.
 
 from __future__ import annotations
 
+import functools
 import inspect
+import re
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -15,6 +18,9 @@ from typing import Any
 from ..project.robot_files import RobotFiles
 
 __all__ = ["ignore_object", "test_docstrings"]
+
+#: ``:param speed:``, ``:param float speed:`` and ``:param *args:``
+_PARAMETER = re.compile(r":param\s+(?:[^:\n]*\s)?(?:\\?\*)*(\w+)\s*:")
 
 
 def ignore_object(o: Any, robot_path: str) -> bool:
@@ -33,42 +39,76 @@ def ignore_object(o: Any, robot_path: str) -> bool:
 
 
 def test_docstrings(robot: Any, robot_path: str) -> None:
-    """Check that all of your robot code has docstrings; ``physics.py`` does not run on the robot."""
+    """Check that all of your robot code has docstrings; ``physics.py`` does not run on the robot.
+
+    That is each module, class, function, method and property, those whose names begin with ``_`` too. Inherited
+    docstrings count. If a docstring describes parameters (``:param speed:``), it describes each of them once.
+    """
     __tracebackhide__ = True
-    missing = [
-        place
-        for module in list(sys.modules.values())
-        if isinstance(module, ModuleType) and module.__name__ != "physics" and not ignore_object(module, robot_path)
-        for place in _without_docstring(module, robot_path)
-    ]
-    missing.sort(key=_file_and_line)
-    assert not missing, "these have no docstring:\n" + "\n".join(missing)
+    found: set[tuple[str, int, str]] = set()
+    for module in list(sys.modules.values()):
+        if isinstance(module, ModuleType) and module.__name__ != "physics" and not ignore_object(module, robot_path):
+            if not module.__doc__:
+                found.add((*_place(module), f"{module.__name__} has no docstring"))
+            found |= set(_mistakes(module, module.__name__, "", robot_path, {id(module)}))
+    root = Path(robot_path).resolve()
+    lines = [f"{Path(file).relative_to(root).as_posix()}:{line}: {mistake}" for file, line, mistake in sorted(found)]
+    if lines:
+        raise AssertionError("\n".join(["docstrings are missing or wrong:", *lines]))
 
 
-def _file_and_line(place: str) -> tuple[str, int]:
-    file, _, line = place.rpartition(": ")[0].rpartition(":")
-    return file, int(line)
+def _mistakes(owner: Any, module: str, prefix: str, robot_path: str, seen: set[int]) -> Iterator[tuple[str, int, str]]:
+    """Yield file, line and mistake of each class and function in a module or class.
 
-
-def _without_docstring(module: ModuleType, robot_path: str) -> list[str]:
-    found = [] if module.__doc__ else [_place(module, module.__name__, robot_path)]
-    for name, value in vars(module).items():
-        if not (inspect.isclass(value) or inspect.isfunction(value)) or value.__module__ != module.__name__:
+    :param module: the name of the module; what it imports from others is not looked at
+    :param seen: objects that have been looked at, under another name perhaps
+    """
+    for name, value in list(vars(owner).items()):
+        function = _function(value)
+        code = value if inspect.isclass(value) else function
+        if code is None or id(code) in seen or code.__module__ != module or ignore_object(code, robot_path):
             continue
-        if ignore_object(value, robot_path):
+        seen.add(id(code))
+        if code.__name__ == "<lambda>":
             continue
-        if not value.__doc__:
-            found.append(_place(value, name, robot_path))
+        # A property and its functions have one docstring, which may be inherited.
+        documentation = code.__doc__ if inspect.isclass(value) else inspect.getdoc(value) or inspect.getdoc(code)
+        if not documentation:
+            yield *_place(code), f"{prefix}{name} has no docstring"
         if inspect.isclass(value):
-            found += [
-                _place(method, f"{name}.{method_name}", robot_path)
-                for method_name, method in vars(value).items()
-                if inspect.isfunction(method) and not method_name.startswith("_") and not inspect.getdoc(method)
-            ]
-    return found
+            yield from _mistakes(value, module, f"{prefix}{name}.", robot_path, seen)
+        else:
+            is_bound = inspect.isclass(owner) and not isinstance(value, staticmethod)
+            for mistake in _parameter_mistakes(code, is_bound):
+                yield *_place(code), f"{prefix}{name} {mistake}"
 
 
-def _place(o: Any, name: str, robot_path: str) -> str:
-    source = Path(inspect.getsourcefile(o) or "?").resolve()
+def _function(value: Any) -> Any:
+    """Return the function of a function, method or property; None for anything else."""
+    if isinstance(value, property):
+        value = value.fget
+    elif isinstance(value, functools.cached_property):
+        value = value.func
+    elif isinstance(value, staticmethod | classmethod):
+        value = value.__func__
+    value = inspect.unwrap(value) if callable(value) and not inspect.isclass(value) else value
+    return value if inspect.isfunction(value) else None
+
+
+def _parameter_mistakes(function: Any, is_bound: bool) -> Iterator[str]:
+    """Yield what is wrong with the parameters in a function's own docstring, if it has any."""
+    documented = _PARAMETER.findall(function.__doc__ or "")
+    parameters = list(inspect.signature(function).parameters)
+    required = parameters[1:] if is_bound else parameters
+    for name in dict.fromkeys(documented):
+        if name not in parameters:
+            yield f"documents {name}, which is no parameter"
+        elif documented.count(name) > 1:
+            yield f"documents {name} twice"
+    if documented:
+        yield from (f"does not document {name}" for name in required if name not in documented)
+
+
+def _place(o: Any) -> tuple[str, int]:
     line = 1 if inspect.ismodule(o) else inspect.getsourcelines(o)[1]
-    return f"{source.relative_to(Path(robot_path).resolve())}:{line}: {name}"
+    return str(Path(inspect.getsourcefile(o) or "?").resolve()), line
