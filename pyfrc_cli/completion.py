@@ -70,7 +70,7 @@ To load it whenever the shell starts, add its line:
 Exit codes: 0 printed, 2 wrong usage."""
 
 
-@click.command("completion", context_settings={"help_option_names": ["-h", "--help"]}, help=_HELP)
+@click.command("completion", help=_HELP)
 @click.argument("shell", type=click.Choice(list(SHELLS)))
 @click.pass_context
 def command(context: click.Context, shell: str) -> None:

@@ -9,24 +9,22 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .project_options import chosen_project, project_options
+from .project_options import chosen_project, project_option
 from .verbosity import hint
 
 if TYPE_CHECKING:
     from pyfrc_core.config.sim_file import LoadedSimConfig
 
-_HELP = {"help_option_names": ["-h", "--help"]}
 
-
-@click.group("config", context_settings=_HELP)
+@click.group("config")
 def command() -> None:
     """Check and show sim/config.json, which the physics and the simulator read."""
 
 
-@command.command("check", context_settings=_HELP)
-@project_options
+@command.command("check")
+@project_option
 @click.option("--strict", is_flag=True, help="Fail on warnings, for example in continuous integration.")
-def check(directory: Path | None, main: Path | None, robot_class: str | None, strict: bool) -> None:
+def check(directory: Path | None, strict: bool) -> None:
     """Check sim/config.json for mistakes, keys without effect, and implausible values.
 
     \b
@@ -35,7 +33,7 @@ def check(directory: Path | None, main: Path | None, robot_class: str | None, st
     from pyfrc_core.config.findings import MOST_TOLD
     from pyfrc_core.wording import counted
 
-    loaded = _loaded(directory, main, robot_class)
+    loaded = _loaded(directory)
     warnings = [*loaded.warnings, *loaded.lint()]
     for warning in warnings:
         click.secho(f"warning: {warning}", fg="yellow")
@@ -47,16 +45,16 @@ def check(directory: Path | None, main: Path | None, robot_class: str | None, st
     sys.exit(1 if strict and warnings else 0)
 
 
-@command.command("show", context_settings=_HELP)
-@project_options
+@command.command("show")
+@project_option
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, in the format of sim/config.json.")
-def show(directory: Path | None, main: Path | None, robot_class: str | None, as_json: bool) -> None:
+def show(directory: Path | None, as_json: bool) -> None:
     """Show all values, and where each comes from.
 
     \b
     Exit codes: 0 shown, 2 the file has mistakes, or there is no project.
     """
-    loaded = _loaded(directory, main, robot_class)
+    loaded = _loaded(directory)
     if as_json:
         click.echo(json.dumps(loaded.as_json(), indent=2))
         return
@@ -66,7 +64,7 @@ def show(directory: Path | None, main: Path | None, robot_class: str | None, as_
         click.echo(f"{path:{path_width}}  {value:{value_width}}  {source}")
 
 
-@command.command("schema", context_settings=_HELP)
+@command.command("schema")
 def schema() -> None:
     """Print the JSON Schema of sim/config.json, for completion in editors.
 
@@ -80,7 +78,7 @@ def schema() -> None:
     click.echo(sim_config_schema())
 
 
-def _loaded(directory: Path | None, main: Path | None, robot_class: str | None) -> LoadedSimConfig:
+def _loaded(directory: Path | None) -> LoadedSimConfig:
     from pyfrc_core.config.sim_file import load_sim_config
 
-    return load_sim_config(chosen_project(directory, main, robot_class).root, shown_from=Path.cwd())
+    return load_sim_config(chosen_project(directory).root, shown_from=Path.cwd())

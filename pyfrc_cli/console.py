@@ -7,8 +7,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .project_options import project_options
-from .robot_options import address_options, errors_shown, project_if_any, robot_options, user_interface
+from .project_options import project_option
+from .robot_options import (
+    address_options,
+    errors_shown,
+    nc_ds_option,
+    project_if_any,
+    robot_options,
+    user_interface,
+)
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.team import RobotChoice
@@ -22,13 +29,11 @@ def is_over_ssh() -> bool:
     return bool(controller_of(CURRENT).layout.output)
 
 
-@click.command("console", context_settings={"help_option_names": ["-h", "--help"]})
-@project_options
+@click.command("console")
+@project_option
 @(robot_options if is_over_ssh() else address_options)
-@click.option("--nc-ds", is_flag=True, help="Show the output even if no Driver Station is connected to the robot.")
-def command(
-    directory: Path | None, main: Path | None, robot_class: str | None, choice: RobotChoice, nc_ds: bool
-) -> None:
+@nc_ds_option
+def command(directory: Path | None, choice: RobotChoice, nc_ds: bool) -> None:
     """Show the robot program's output until Ctrl-C. Reconnects after a lost connection.
 
     A roboRIO sends the output only while a Driver Station is connected to it; --nc-ds imitates one. Its
@@ -41,4 +46,4 @@ def command(
     with errors_shown(choice):
         from pyfrc_core.deploy.session import show_console
 
-        show_console(project_if_any(directory, main, robot_class, choice), choice, user_interface(choice), nc_ds)
+        show_console(project_if_any(directory, choice), choice, user_interface(choice), nc_ds)

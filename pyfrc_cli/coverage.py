@@ -8,20 +8,18 @@ from pathlib import Path
 import click
 
 from .file_options import WrittenDirectory, WrittenFile
+from .shared_options import fail_under_option
 from .verbosity import verbosity
 from .wrapping import WRAPPING, wrapped_command
 
 
 @click.command("coverage", context_settings=WRAPPING)
 @click.option("--html", metavar="DIR", type=WrittenDirectory(), help="Also write the report as web pages.")
-@click.option("--xml", metavar="FILE", type=WrittenFile(), help="Also write it as Cobertura XML.")
-@click.option("--json", "as_json", metavar="FILE", type=WrittenFile(), help="Also write it as coverage.py's JSON.")
+@click.option("--xml", metavar="FILE", type=WrittenFile(), help="Also write it as XML, for GitLab or Jenkins.")
 @click.option(
-    "--fail-under",
-    metavar="PERCENT",
-    type=click.FloatRange(0, 100),
-    help="Fail when less of the project is covered.",
+    "--json", "as_json", metavar="FILE", type=WrittenFile(), help="Also write it as JSON, for other programs."
 )
+@fail_under_option
 @click.argument("command_line", metavar="COMMAND [OPTIONS]...", nargs=-1, required=True, type=click.UNPROCESSED)
 @click.pass_context
 def command(

@@ -16,7 +16,7 @@ from .verbosity import hint, verbosity
 _MOST_FAILURES, _WIDTH = 10, 150
 
 
-@click.command("create-physics", context_settings={"help_option_names": ["-h", "--help"]})
+@click.command("create-physics")
 @project_options
 def command(directory: Path | None, main: Path | None, robot_class: str | None) -> None:
     """Write a physics.py and a sim/config.json that fit the robot.

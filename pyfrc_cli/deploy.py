@@ -10,27 +10,29 @@ import click
 from pyfrc_core.processes.loading import loading
 
 from .project_options import chosen_project, project_options
-from .robot_options import errors_shown, json_option, project_if_any, robot_options, user_interface
+from .robot_options import errors_shown, json_option, nc_ds_option, project_if_any, robot_options, user_interface
+from .shared_options import builtin_option
 from .verbosity import verbosity
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.team import RobotChoice
 
 
-@click.command("deploy", context_settings={"help_option_names": ["-h", "--help"]})
+@click.command("deploy")
 @project_options
 @robot_options
-@click.option("--builtin", is_flag=True, help="Run the ready-made tests if the project has none of its own.")
+@builtin_option
 @click.option("--skip-tests", is_flag=True, help="Do not run the tests.")
 @click.option("--large", is_flag=True, help="Also upload files over 250,000 bytes.")
 @click.option(
-    "-n",
     "--no-version-check",
     is_flag=True,
     help="Also deploy to a robot with another wpilib, Python or image, or without packages that the program needs.",
 )
 @click.option("--nonstandard", is_flag=True, help="Allow a main file with another name than robot.py.")
-@click.option("--debug", is_flag=True, help="Start the program with asserts and verbose logging.")
+@click.option(
+    "--debug", is_flag=True, help="Start the program so that its assert statements run, and with more log messages."
+)
 @click.option(
     "--in-place",
     is_flag=True,
@@ -50,7 +52,7 @@ if TYPE_CHECKING:
     help="Deploy nothing. Start an earlier release: the previous one, or the given one.",
 )
 @click.option("--nc", "--netconsole", "netconsole", is_flag=True, help="Then show the program's output.")
-@click.option("--nc-ds", is_flag=True, help="The same, even if no Driver Station is connected to the robot.")
+@nc_ds_option
 @json_option
 def command(
     directory: Path | None,
@@ -96,7 +98,7 @@ def command(
         talk = user_interface(choice, as_json)
         if rollback is not None:
             release = int(rollback) if rollback else None
-            project = project_if_any(directory, main, robot_class, choice)
+            project = project_if_any(directory, choice, main, robot_class)
             address = session.rollback(project, choice, release, talk)
         else:
             project = chosen_project(directory, main, robot_class)

@@ -7,20 +7,18 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .project_options import project_options
+from .project_options import project_option
 from .robot_options import errors_shown, json_option, project_if_any, robot_options, user_interface
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.team import RobotChoice
 
 
-@click.command("deploy-info", context_settings={"help_option_names": ["-h", "--help"]})
-@project_options
+@click.command("deploy-info")
+@project_option
 @robot_options
 @json_option
-def command(
-    directory: Path | None, main: Path | None, robot_class: str | None, choice: RobotChoice, as_json: bool
-) -> None:
+def command(directory: Path | None, choice: RobotChoice, as_json: bool) -> None:
     """Show the program on the robot: who deployed it, when, from which commit; and the kept releases.
 
     \b
@@ -29,4 +27,4 @@ def command(
     with errors_shown(choice, as_json):
         from pyfrc_core.deploy.session import show_info
 
-        show_info(project_if_any(directory, main, robot_class, choice), choice, user_interface(choice, as_json))
+        show_info(project_if_any(directory, choice), choice, user_interface(choice, as_json))

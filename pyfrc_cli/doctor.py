@@ -11,22 +11,18 @@ from textwrap import indent
 import click
 
 from .project_options import project_options
-from .robot_options import refuse_option_as_value
+from .robot_options import robot_option
+from .shared_options import team_option
 from .verbosity import hint, verbosity
 
 #: In the order in which they are shown.
 _COLOURS = {"problem": "red", "hint": "cyan", "ok": "green"}
 
 
-@click.command("doctor", context_settings={"help_option_names": ["-h", "--help"]})
+@click.command("doctor")
 @project_options
-@click.option(
-    "--robot",
-    metavar="HOST[:PORT]",
-    callback=refuse_option_as_value,
-    help="The robot's address, instead of your team's addresses.",
-)
-@click.option("--team", type=click.IntRange(min=1), metavar="N", help="Your team's number.")
+@robot_option
+@team_option
 @click.option("--no-robot", is_flag=True, help="Do not check the robot.")
 @click.option("--extras", is_flag=True, help="Also show which optional packages are not installed.")
 @click.option("--json", "as_json", is_flag=True, help="For tools: print all results as one JSON object.")

@@ -18,6 +18,7 @@ from pyfrc_core.wording import counted
 
 from .file_options import ReadPath, WrittenDirectory
 from .project_options import chosen_project, from_here, project_options
+from .shared_options import isolation_option
 from .verbosity import hint, verbosity
 
 if TYPE_CHECKING:
@@ -32,16 +33,16 @@ _DEFAULT_SECONDS = 60.0
 _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
 
 
-@click.command("fuzz", context_settings={"help_option_names": ["-h", "--help"]})
+@click.command("fuzz")
 @project_options
 @click.option(
     "--time",
     "seconds",
     type=click.FloatRange(min=0, min_open=True),
     metavar="SECONDS",
-    help=f"End about then. Default: {_DEFAULT_SECONDS:g}.",
+    help=f"End after about this time. Default: {_DEFAULT_SECONDS:g}.",
 )
-@click.option("--runs", type=click.IntRange(min=1), metavar="N", help="Play this many matches instead.")
+@click.option("--runs", type=click.IntRange(min=1), metavar="N", help="Play this many matches, instead of --time.")
 @click.option(
     "--seed",
     type=click.IntRange(min=0),
@@ -59,27 +60,26 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     "--shard",
     metavar="I/N",
     callback=lambda context, option, value: _parse_shard(value),
-    help="Play only part I of N parts of the campaign: for several machines, with the same --seed and --runs.",
+    help="Share a campaign among N computers: play only the matches of computer number I. All take the same --seed and "
+    "--runs.",
 )
-@click.option("--merge", is_flag=True, help="Play nothing: copy the scripts that shards have saved, from DIRECTORIES.")
+@click.option(
+    "--merge", is_flag=True, help="Play nothing: copy what computers with --shard have saved, from DIRECTORIES."
+)
 @click.argument("directories", nargs=-1, type=ReadPath())
 @click.option(
     "-j",
     "--jobs",
     type=click.IntRange(min=1),
     metavar="N",
-    help="How many matches run at the same time. Default: the number of processors, or PYTHON_CPU_COUNT.",
+    help="How many matches run at the same time. Default: one for each processor core.",
 )
-@click.option(
-    "--isolation",
-    type=click.Choice(["auto", "fork", "reuse", "spawn"]),
-    help="Where each match runs: in a fork, in a process that is as good as new, or in a new one.",
-)
+@isolation_option("match")
 @click.option(
     "--scheduler",
     metavar="ADDRESS",
-    help=f"Run the matches on the Dask cluster with this scheduler, such as tcp://10.0.0.5:8786, instead of with -j."
-    f' Needs: pip install "{requirement("cluster")}"',
+    help="Play on other computers, instead of with -j: those of a cluster of Dask, a library for such, with this "
+    f'scheduler, such as tcp://10.0.0.5:8786. Needs: pip install "{requirement("cluster")}"',
 )
 @click.option(
     "--from",
@@ -87,13 +87,13 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     metavar="LOG",
     multiple=True,
     type=ReadPath(),
-    help="Begin with a recorded match: a WPILib data log (.wpilog) or an input script. May be repeated.",
+    help="Begin with a recorded match: a data log (.wpilog), or a recording (.jsonl). May be repeated.",
 )
 @click.option(
     "--against",
     "revision",
     metavar="REV",
-    help="Give the same inputs to the code of this git commit, and say where outputs first differ.",
+    help="Give the same inputs to the code of this git commit, such as HEAD~1, and say where outputs first differ.",
 )
 @click.option(
     "--pages",
@@ -119,10 +119,10 @@ def command(
     revision: str | None,
     pages: Path | None,
 ) -> None:
-    """Play many matches with random inputs, and save the shortest script of each failure.
+    """Play many matches with random inputs (a campaign), and save the shortest script of each failure.
 
-    A script is saved as tests/fuzz/NAME.jsonl, for pyfrc replay; tests/test_fuzz_regressions.py fails until the robot
-    is repaired.
+    A script is a list of inputs. It is saved as tests/fuzz/NAME.jsonl, for pyfrc replay;
+    tests/test_fuzz_regressions.py fails until the robot is repaired.
 
     \b
     Exit codes: 0 nothing was found; 1 a failure was found, or an earlier one is still there, or the outputs differ from

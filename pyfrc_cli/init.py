@@ -6,10 +6,12 @@ from pathlib import Path
 
 import click
 
+from pyfrc_core.errors import UsageError
 from pyfrc_core.scaffold import DEFAULT, TEMPLATES, create_project
 from pyfrc_core.shell import quoted
 
 from .file_options import WrittenDirectory
+from .shared_options import can_ask, team_option, yes_option
 from .verbosity import hint
 
 
@@ -26,7 +28,22 @@ def _show_templates(ctx: click.Context, param: click.Parameter, wanted: bool) ->
     ctx.exit()
 
 
-@click.command("init", context_settings={"help_option_names": ["-h", "--help"]})
+def _confirm(directory: Path, others: list[str]) -> None:
+    """Ask whether to create the project beside other files.
+
+    :raises UsageError: where the user cannot be asked
+    """
+    more = f" and {len(others) - 3} more" if len(others) > 3 else ""
+    what = f"{directory.resolve()} has other files: {', '.join(others[:3])}{more}"
+    if not can_ask():
+        raise UsageError(
+            f"nothing was written: {what}",
+            remedy="Name a new directory, as in: pyfrc init my-robot. To create the project beside them, add --yes.",
+        )
+    click.confirm(f"{what}.\nCreate the robot project beside them?", abort=True)
+
+
+@click.command("init")
 @click.argument("directory", type=WrittenDirectory(), default=Path())
 @click.option(
     "-t",
@@ -34,26 +51,28 @@ def _show_templates(ctx: click.Context, param: click.Parameter, wanted: bool) ->
     type=click.Choice(list(TEMPLATES)),
     default=DEFAULT,
     show_default=True,
-    help="The kind of robot.",
+    help="The kind of robot; --list describes them.",
 )
-@click.option("--team", type=int, metavar="N", help="Your team number.")
+@team_option
+@yes_option
 @click.option(
     "--list",
     is_flag=True,
     is_eager=True,
     expose_value=False,
     callback=_show_templates,
-    help="Show the templates of the installed season and their descriptions.",
+    help="Show the templates and their descriptions.",
 )
-def command(directory: Path, template: str, team: int | None) -> None:
+def command(directory: Path, template: str, team: int | None, yes: bool) -> None:
     """Create a new robot project in DIRECTORY (default: the current one), with tests and a simulation.
 
-    Existing files are not changed.
+    Existing files are not changed. If the directory has other files, you are asked first.
 
     \b
     Exit codes: 0 the project was created, 1 it cannot be written, 2 wrong usage.
     """
-    for file in create_project(directory, Path(__file__).parent, template, team):
+    confirm = None if yes else _confirm
+    for file in create_project(directory, Path(__file__).parent, template, team, confirm):
         hint(f"wrote {directory / file}")
     hint("")
     missing = TEMPLATES[template].missing

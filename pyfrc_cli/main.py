@@ -15,7 +15,7 @@ import click
 from pyfrc_core._version import __version__
 
 from . import COMPLETE_VARIABLE
-from .verbosity import QUIET, VERBOSE, Verbosity, add_options
+from .verbosity import HELP, QUIET, VERBOSE, Verbosity, add_options
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -25,14 +25,12 @@ COMMANDS = {
     "init": ("pyfrc_cli.init", "Create a new robot project from a template."),
     "fuzz": ("pyfrc_cli.fuzz", "Play matches with random inputs, and save the shortest script of each failure."),
     "replay": ("pyfrc_cli.replay", "Run the robot with the inputs of a recorded script."),
-    "sim": ("pyfrc_cli.sim", "Drive the robot on the desk: simulate it, in a window or without one."),
+    "sim": ("pyfrc_cli.sim", "Simulate the robot, on a page in your browser, and drive it there."),
     "view": ("pyfrc_cli.view", "Look at logs of a robot, or at a robot, live: values, plots, field, console."),
     "test": ("pyfrc_cli.test", "Run the robot project's tests."),
     "coverage": ("pyfrc_cli.coverage", "Measure which lines of the robot run in another command."),
     "profile": ("pyfrc_cli.profile", "Measure how long the robot's functions take in another command."),
-    "profiler": ("pyfrc_cli.profile", "The older name of: profile."),
     "add-tests": ("pyfrc_cli.add_tests", "Add the ready-made tests to the robot project."),
-    "create-tests": ("pyfrc_cli.add_tests", "The older name of: add-tests."),
     "create-physics": ("pyfrc_cli.create_physics", "Write a physics.py and sim/config.json that fit the robot."),
     "sync": ("pyfrc_cli.sync", "Download what the robot needs: its Python, and the project's packages."),
     "deploy": ("pyfrc_cli.deploy", "Deploy the robot program, and start it."),
@@ -46,6 +44,8 @@ COMMANDS = {
     "completion": ("pyfrc_cli.completion", "Print the completion script for your shell."),
 }
 
+#: Names that commands have had before. They work, and neither the help nor the completion lists them.
+OLDER_NAMES = {"profiler": "profile", "create-tests": "add-tests"}
 
 #: Names that other tools have for what pyfrc, or another tool, does; ``{robotpy}`` is how to install the season's.
 OTHER_NAMES = {
@@ -70,12 +70,11 @@ class Commands(click.Group):
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        if name not in COMMANDS:
-            return None
-        return loaded(name)
+        name = OLDER_NAMES.get(name, name)
+        return loaded(name) if name in COMMANDS else None
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
-        if args and args[0] not in COMMANDS and not args[0].startswith("-"):
+        if args and args[0] not in COMMANDS.keys() | OLDER_NAMES and not args[0].startswith("-"):
             close = difflib.get_close_matches(args[0], COMMANDS, n=1)
             hint = f" Did you mean {close[0]!r}?" if close else ""
             if args[0] in OTHER_NAMES:
@@ -127,7 +126,7 @@ def loaded(name: str) -> click.Command:
     return command
 
 
-@click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]}, params=[VERBOSE, QUIET])
+@click.command(cls=Commands, context_settings={"help_option_names": HELP}, params=[VERBOSE, QUIET])
 @click.version_option(__version__, prog_name="pyfrc")
 def cli() -> None:
     """Write, test and run FIRST Robotics Competition robot code in Python."""
@@ -171,7 +170,9 @@ def run() -> None:
 
 def _remedy(error: click.ClickException) -> str:
     """Return advice for users who are used to another tool."""
-    command = error.ctx.info_name if isinstance(error, click.UsageError) and error.ctx is not None else None
+    if not isinstance(error, click.UsageError) or error.ctx is None:
+        return ""
+    command = error.ctx.info_name
     if isinstance(error, click.NoSuchOption) and command == "test":
         return "Write options of pytest after --, for example: pyfrc test -- -k drive"
     if isinstance(error, click.NoSuchOption) and command == "sim" and "gui" in error.option_name:
@@ -183,8 +184,9 @@ def _remedy(error: click.ClickException) -> str:
             return f"To simulate the project in it: pyfrc sim --project {extra[1]}"
         if not extra[1].endswith(".py") and os.path.isfile(extra[1]):  # noqa: PTH113
             return f"To run your code with the inputs of a log: pyfrc sim --log {extra[1]}"
-    if command is not None and re.search(r"unexpected extra arguments? \(.*\.py\b", error.message):
-        return "pyfrc finds the robot's file. Use --main FILE if it is not called robot.py."
+    if re.search(r"unexpected extra arguments? \(.*\.py\b", error.message):
+        takes_main = any("--main" in parameter.opts for parameter in error.ctx.command.params)
+        return "pyfrc finds the robot's file." + " Use --main FILE if it is not called robot.py." * takes_main
     if command in ("deploy", "deploy-info", "undeploy", "console"):
         extra = re.search(r"unexpected extra argument \((\S+)\)", error.message)
         if extra is not None and (extra[1].isdecimal() or re.search(r"[.:]|^roborio", extra[1], re.IGNORECASE)):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pyfrc_core.migrate.migration import Migration
 
 
-@click.command("migrate", context_settings={"help_option_names": ["-h", "--help"]})
+@click.command("migrate")
 @project_option
 @click.option("--check", is_flag=True, help="Write nothing: report what would change, and what you must do.")
 @click.option("--diff", is_flag=True, help="Write nothing: print the changes.")
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 def command(directory: Path | None, check: bool, diff: bool, comments: bool, uncommitted: bool, as_json: bool) -> None:
     """Rewrite a robot project of 2026 for WPILib 2027.
 
-    All its Python files, pyproject.toml, requirements.txt and the workflows: names, imports, calls that mean
-    something else now. Names of your own stay. What has to be done by hand is reported with its line and what to do.
-    A second run changes nothing.
+    In all its Python files, pyproject.toml, requirements.txt and GitHub's workflows, it changes names, imports, and
+    calls that mean something else now. Names of your own stay. What has to be done by hand is reported with its line
+    and what to do. A second run changes nothing.
 
     \b
     Exit codes: 0 nothing is left to do by hand (with --check: and nothing would change), 1 something is,
@@ -66,7 +66,7 @@ def _print(done: Migration, written: bool) -> None:
     by_hand, to_check = done.report.by_hand(), done.report.to_check()
     hint(f"{'Rewrote' if written else 'Would rewrite'} {counted(count, 'file')} (Python files: {done.files}).")
     if to_check:
-        hint(f"\nRewritten, but look at them ({len(to_check)}):", bold=True)
+        hint(f"\nTo look at ({len(to_check)}; rewritten, or with another meaning in 2027):", bold=True)
         for remark in to_check:
             hint(f"  {remark}")
     if by_hand:

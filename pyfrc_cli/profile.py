@@ -20,15 +20,18 @@ from .wrapping import WRAPPING, wrapped_command
     "--outfile",
     metavar="FILE",
     type=WrittenFile(),
-    help="Also profile every call with cProfile, and write its file for pstats. Much slower.",
+    help="Also time every call, much more slowly, with Python's cProfile, and write its file, which pstats reads.",
 )
 @click.option(
     "--html",
     metavar="FILE",
     type=WrittenFile(),
-    help=f'Draw a flame graph as a web page. Needs: pip install "{requirement("profile")}"',
+    help="Draw which function called which, and for how long (a flame graph), as a web page. Needs: pip install "
+    f'"{requirement("profile")}"',
 )
-@click.option("--json", "as_json", metavar="FILE", type=WrittenFile(), help="Write all measurements as JSON.")
+@click.option(
+    "--json", "as_json", metavar="FILE", type=WrittenFile(), help="Write all measurements as JSON, for other programs."
+)
 @click.option(
     "--top",
     metavar="N",

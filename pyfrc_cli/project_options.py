@@ -1,4 +1,4 @@
-"""The options that choose the robot project; the same for every command."""
+"""The options that choose the robot project, and its robot class."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ project_option = click.option(
 
 
 def project_options(command: Function) -> Function:
-    """Add ``--project``, ``--main`` and ``--robot-class``."""
+    """Add ``--project``, ``--main`` and ``--robot-class`` to a command that loads the robot's code."""
     for option in (
         click.option(
             "--robot-class",
             metavar="NAME",
-            help="The robot class, if the file has several.",
+            help="The name of your robot class, if the file has several.",
         ),
         click.option(
             "--main",
@@ -47,7 +47,7 @@ def project_options(command: Function) -> Function:
     return command
 
 
-def chosen_project(directory: Path | None, main: Path | None, robot_class: str | None) -> Project:
+def chosen_project(directory: Path | None, main: Path | None = None, robot_class: str | None = None) -> Project:
     """Return the project that the options choose, after a check of what the command will write.
 
     :raises UsageError: when one of its files would overwrite something, or cannot be written

@@ -12,30 +12,21 @@ from pyfrc_core.processes.loading import loading
 
 from .file_options import ReadPath, WrittenFile
 from .project_options import chosen_project, project_options
+from .shared_options import TRACE, page_option, picture_option
 from .verbosity import hint, verbosity
 
 
-@click.command("replay", context_settings={"help_option_names": ["-h", "--help"]})
+@click.command("replay")
 @project_options
 @click.option("--until", type=click.FloatRange(min=0), metavar="T", help="End at this robot time, in seconds.")
 @click.option(
     "--trace",
     metavar="FILE",
     type=WrittenFile(),
-    help="Write a trace of the robot, as JSON lines with a hash at the end.",
+    help=f"Write a trace of the robot: {TRACE}",
 )
-@click.option(
-    "--picture",
-    metavar="FILE",
-    type=WrittenFile(),
-    help="Draw the robot's path on the field, for example to path.png.",
-)
-@click.option(
-    "--page",
-    metavar="FILE",
-    type=WrittenFile(),
-    help="Write the run as a page, such as run.html, for any browser.",
-)
+@picture_option
+@page_option("the run", "run.html")
 @click.argument("file", type=ReadPath())
 def command(
     directory: Path | None,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from .file_options import ReadPath
+from .shared_options import can_ask, team_option
 from .verbosity import verbosity
 
 if TYPE_CHECKING:
@@ -73,11 +73,6 @@ def _password_prompt(as_json: bool) -> Callable[[str], str] | None:
     return ask
 
 
-def can_ask() -> bool:
-    """Return whether the user can be asked."""
-    return sys.stdin.isatty() and sys.stdout.isatty()
-
-
 def address_options(command: Function) -> Function:
     """Add the options for a robot's address, which become ``choice``."""
 
@@ -99,7 +94,7 @@ _KEY_OPTIONS = (
         type=ReadPath(),
         metavar="FILE",
         callback=refuse_option_as_value,
-        help="Log in with the private key in this file.",
+        help="Log in with the private SSH key in this file.",
     ),
     click.option(
         "--robot-name",
@@ -114,15 +109,27 @@ _KEY_OPTIONS = (
         help="Accept the robot's changed key. The error message shows its fingerprint.",
     ),
 )
+robot_option = click.option(
+    "--robot",
+    metavar="HOST[:PORT]",
+    callback=refuse_option_as_value,
+    help="The robot's address, instead of your team's addresses.",
+)
+nc_ds_option = click.option(
+    "--nc-ds",
+    "--netconsole-ds",
+    "nc_ds",
+    is_flag=True,
+    help="Show the program's output even if no Driver Station is connected to the robot.",
+)
 _ADDRESS_OPTIONS = (
-    click.option("--no-resolve", is_flag=True, help="Try only addresses, no host names."),
-    click.option("--team", type=int, metavar="N", help="Your team's number."),
     click.option(
-        "--robot",
-        metavar="HOST[:PORT]",
-        callback=refuse_option_as_value,
-        help="The robot's address, instead of your team's addresses.",
+        "--no-resolve",
+        is_flag=True,
+        help="Try only addresses such as 10.12.34.2, no names such as roboRIO-1234-FRC.local.",
     ),
+    team_option,
+    robot_option,
 )
 
 
@@ -133,7 +140,7 @@ def _with_options(command: Any, options: Iterable[Callable[[Any], Any]]) -> Any:
 
 
 def project_if_any(
-    directory: Path | None, main: Path | None, robot_class: str | None, choice: RobotChoice
+    directory: Path | None, choice: RobotChoice, main: Path | None = None, robot_class: str | None = None
 ) -> Project | None:
     """Return the project, or None outside of a project if the options specify the robot.
 

@@ -12,18 +12,18 @@ import click
 from pyfrc_core.processes.loading import loading
 
 from .file_options import ReadPath, WrittenFile
-from .page_options import allow_host_option, port_option
 from .project_options import chosen_project, project_options
+from .shared_options import allow_host_option, page_option, picture_option, port_option
 from .verbosity import verbosity
 
 
-@click.command("sim", context_settings={"help_option_names": ["-h", "--help"]})
+@click.command("sim")
 @project_options
 @click.option(
     "--ui",
     type=click.Choice(["web", "tk", "wpilib", "none"]),
-    help="A page in the browser, pyfrc's window, WPILib's window, or none. Default: web; none with --mode, and in jobs "
-    "and scripts.",
+    help="web: a page in the browser; tk: pyfrc's window; wpilib: WPILib's window; or none. Default: web; none with "
+    "--mode, where CI is set, and where there is neither a browser nor a terminal.",
 )
 @click.option(
     "--mode",
@@ -38,8 +38,15 @@ from .verbosity import verbosity
     metavar="NAME",
     help="Choose this opmode of a 2027 robot for its mode; may be repeated. Default: the first of each mode.",
 )
-@click.option("--seconds", type=click.FloatRange(min=0.02), metavar="S", help="End, or pause, at this robot time.")
-@click.option("--script", type=ReadPath(), metavar="FILE", help="Replay the inputs of this script.")
+@click.option(
+    "--seconds",
+    type=click.FloatRange(min=0.02),
+    metavar="S",
+    help="End at this robot time, in seconds; on a page or in a window, pause there.",
+)
+@click.option(
+    "--script", type=ReadPath(), metavar="FILE", help="Replay the inputs of this script, such as one of --record."
+)
 @click.option(
     "--log",
     type=ReadPath(),
@@ -79,13 +86,14 @@ from .verbosity import verbosity
     type=click.FloatRange(min=0),
     default=0.0,
     metavar="T",
-    help="Replay to this robot time at once, and go on from there.",
+    help="Run to this robot time, in seconds, as fast as possible, and go on from there.",
 )
 @click.option(
     "--speed",
     type=float,
     metavar="X",
-    help="Robot seconds per second; 0: as fast as possible. Default: 1, or 0 when unattended.",
+    help="Robot seconds per second; 0: as fast as possible. Default: 1, but 0 with --ui none and an end (--mode, "
+    "--seconds, --script or --log).",
 )
 @click.option("--paused", is_flag=True, help="Begin paused.")
 @click.option("--start", "start_position", metavar="NAME", help="Start at one of start_positions in sim/config.json.")
@@ -97,39 +105,34 @@ from .verbosity import verbosity
     help="Write an input script, for pyfrc replay and tests.",
 )
 @click.option("--wpilog", type=WrittenFile(), metavar="FILE", help="Write a WPILib data log, for AdvantageScope.")
-@click.option(
-    "--picture", type=WrittenFile(), metavar="FILE", help="Draw the driven path on the field, such as path.png."
-)
-@click.option(
-    "--page",
-    type=WrittenFile(),
-    metavar="FILE",
-    help="Write the whole run as a page, such as run.html, for any browser.",
-)
+@picture_option
+@page_option("the whole run", "run.html")
 @click.option(
     "--nt-port",
     type=click.IntRange(0, 65535),
     metavar="PORT",
-    help="Serve NetworkTables to dashboards here; 0: nowhere. Default: 5810, or 0 when unattended.",
+    help="The port at which dashboards find NetworkTables; 0: none. Default: 5810, but 0 where that of --speed is 0.",
 )
 @click.option(
     "--ext",
     "extensions",
     multiple=True,
     metavar="NAME",
-    help="Load one of WPILib's simulation extensions: ds-socket, ws-server, ws-client; may be repeated.",
+    help="Load one of WPILib's simulation extensions, which connect other programs: ds-socket, ws-server, ws-client; "
+    "may be repeated.",
 )
 @click.option(
     "--share",
     type=click.Choice(["view", "drive"]),
     is_flag=False,
     flag_value="view",
-    help="Serve the page to the network, too, to look only or to drive; to drive: also NetworkTables.",
+    help="Let other computers of the network open the page, too: to look only, or to drive, also with NetworkTables. "
+    "Default: to look.",
 )
 @port_option
 @allow_host_option
 def command(directory: Path | None, main: Path | None, robot_class: str | None, **request: Any) -> None:
-    """Drive the robot on the desk: simulate it, with its physics, on a page in your browser.
+    """Simulate the robot, with its physics, on a page in your browser, and drive it there.
 
     Where no browser can be opened, pyfrc prints the page's address. With --ui none, --mode, --seconds, --script or
     --log say what to simulate, as fast as it goes; with none of them the robot runs in real time, for dashboards, until

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .file_options import ReadPath, WrittenDirectory
-from .project_options import chosen_project, from_here, project_options
+from .project_options import chosen_project, from_here, project_option
 from .verbosity import hint, verbosity
 
 if TYPE_CHECKING:
@@ -19,23 +19,28 @@ if TYPE_CHECKING:
     from pyfrc_core.sync.synchronize import Synced
 
 
-@click.command("sync", context_settings={"help_option_names": ["-h", "--help"]})
-@project_options
+@click.command("sync")
+@project_option
 @click.option("--check", is_flag=True, help="Change nothing: only report what is missing or different.")
-@click.option("--upgrade", is_flag=True, help="Find new versions, and write a new lock.")
+@click.option("--upgrade", is_flag=True, help="Find new versions, and write pyfrc-lock.toml anew.")
 @click.option("--install/--no-install", help="Install the same versions on this computer, too.  [default: no-install]")
 @click.option(
     "--to", metavar="DIR", type=WrittenDirectory(), help="Copy everything to this directory, such as a USB stick."
 )
 @click.option("--from", "source", metavar="DIR", type=ReadPath(), help="Take everything from such a directory.")
 @click.option(
-    "--find-links", metavar="PLACE", multiple=True, help="Let pip look for packages there, too; may be repeated."
+    "--find-links",
+    metavar="PLACE",
+    multiple=True,
+    help="Look for packages there, too: a directory or a web page, as for pip; may be repeated.",
 )
-@click.option("--use-certifi", is_flag=True, help="Trust the certificates of certifi instead of the system's.")
+@click.option(
+    "--use-certifi",
+    is_flag=True,
+    help="If downloads fail because of certificates: trust those of the package certifi, instead of this computer's.",
+)
 def command(
     directory: Path | None,
-    main: Path | None,
-    robot_class: str | None,
     check: bool,
     upgrade: bool,
     install: bool,
@@ -47,7 +52,8 @@ def command(
     """Download what the robot needs, while there is internet: its Python, and the packages of [tool.robotpy].
 
     The files are in the season's cache, ~/wpilib/YEAR/robotpy, and their versions and hashes in pyfrc-lock.toml, beside
-    pyproject.toml. With a lock, exactly its files are taken. Commit it. The next deploy brings them to the robot.
+    pyproject.toml. If that file exists, exactly what it names is downloaded; commit it to Git. The next deploy
+    brings the files to the robot.
 
     \b
     Exit codes: 0 everything is here, 1 something is missing or, with --check, different; 2 wrong usage or settings.
@@ -59,7 +65,7 @@ def command(
     from pyfrc_core.season import CURRENT, installed_wpilib
     from pyfrc_core.sync.synchronize import SyncOptions, differences, synchronize
 
-    project = chosen_project(directory, main, robot_class)
+    project = chosen_project(directory)
     if check:
         found = list(differences(project, CURRENT, installed_wpilib()))
         for each in found:

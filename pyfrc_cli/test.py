@@ -12,6 +12,7 @@ from pyfrc_core.processes.loading import loading
 
 from .file_options import WrittenDirectory, WrittenFile
 from .project_options import chosen_project, project_options
+from .shared_options import TRACE, builtin_option, fail_under_option, isolation_option
 from .verbosity import verbosity
 
 
@@ -24,24 +25,24 @@ def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int 
     return int(value)
 
 
-@click.command("test", context_settings={"help_option_names": ["-h", "--help"]})
+@click.command("test")
 @project_options
-@click.option("--builtin", is_flag=True, help="Run the ready-made tests if the project has none of its own.")
+@builtin_option
 @click.option(
     "-j",
     "--jobs",
     callback=_jobs,
     metavar="N",
-    help="How many tests run at a time. Default: auto, one per core (one more with phoenix6).",
+    help="How many tests run at the same time. Default: auto, one for each processor core (one more with phoenix6).",
 )
-@click.option("--seed", type=click.IntRange(min=0), help="Random seed. Default: 0.")
 @click.option(
-    "--isolation",
-    type=click.Choice(["auto", "fork", "reuse", "spawn", "none"]),
-    help="Where each test that uses the robot runs: in a fork of this process, a process that is as good as new, a new "
-    "one, or this one.",
+    "--seed",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="Random seed: the same number gives the same random numbers. Default: 0.",
 )
-@click.option("--no-isolation", is_flag=True, help="Run all tests in one process, like --isolation none.")
+@isolation_option("test with the robot", "none", note=" none: pyfrc's own, for all of them, for a debugger.")
+@click.option("--no-isolation", is_flag=True, help="The same as --isolation none.")
 @click.option("--coverage", is_flag=True, help="Measure which lines of the project the tests run, and report them.")
 @click.option(
     "--coverage-html",
@@ -53,19 +54,14 @@ def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int 
     "--coverage-xml",
     metavar="FILE",
     type=WrittenFile(),
-    help="Also write the report as Cobertura XML.",
+    help="Also write the report as XML, for programs that show coverage, such as GitLab or Jenkins.",
 )
-@click.option(
-    "--fail-under",
-    metavar="PERCENT",
-    type=click.FloatRange(0, 100),
-    help="Fail when less of the project is covered.",
-)
+@fail_under_option
 @click.option(
     "--trace",
     metavar="DIR",
     type=WrittenDirectory(),
-    help="Write a trace of the robot in each test, as JSON lines with a hash at the end.",
+    help=f"Write a trace of the robot in each test: {TRACE}",
 )
 @click.option(
     "--record",
@@ -73,7 +69,9 @@ def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int 
     type=WrittenDirectory(),
     help="Record the robot's inputs in each test, for pyfrc replay.",
 )
-@click.option("--changed", is_flag=True, help="Run only tests that a change since their last pass can have reached.")
+@click.option(
+    "--changed", is_flag=True, help="Run only the tests that can depend on what has changed since they passed."
+)
 @click.argument("pytest_args", nargs=-1, type=click.UNPROCESSED)
 def command(
     directory: Path | None,
@@ -95,7 +93,8 @@ def command(
 ) -> None:
     """Run the robot project's tests, found in its directory tests/ or in ../tests.
 
-    Anything after -- is passed on to pytest, for example: pyfrc test -- -x -k drive. So are -v and -q.
+    Anything after -- is passed on to pytest, for example: pyfrc test -- -x -k drive, which runs the tests with drive in
+    their names, and stops at the first failure. So are -v and -q.
 
     \b
     Exit codes: 0 all passed, 1 a test failed or the robot's code did,

@@ -7,32 +7,25 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .project_options import project_options
+from .project_options import project_option
 from .robot_options import errors_shown, json_option, project_if_any, robot_options, user_interface
+from .shared_options import yes_option
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.team import RobotChoice
 
 
-@click.command("undeploy", context_settings={"help_option_names": ["-h", "--help"]})
-@project_options
+@click.command("undeploy")
+@project_option
 @robot_options
 @click.option(
     "--java-cpp",
     is_flag=True,
     help="Remove programs in Java and C++ and their libraries, but not a program in Python.",
 )
-@click.option("-y", "--yes", is_flag=True, help="Do not ask.")
+@yes_option
 @json_option
-def command(
-    directory: Path | None,
-    main: Path | None,
-    robot_class: str | None,
-    choice: RobotChoice,
-    java_cpp: bool,
-    yes: bool,
-    as_json: bool,
-) -> None:
+def command(directory: Path | None, choice: RobotChoice, java_cpp: bool, yes: bool, as_json: bool) -> None:
     """Stop the robot program, and remove it from the robot with all earlier releases.
 
     \b
@@ -42,6 +35,4 @@ def command(
         from pyfrc_core.deploy import session
 
         remove = session.undeploy_other_languages if java_cpp else session.undeploy
-        remove(
-            project_if_any(directory, main, robot_class, choice), choice, user_interface(choice, as_json), confirmed=yes
-        )
+        remove(project_if_any(directory, choice), choice, user_interface(choice, as_json), confirmed=yes)

@@ -32,9 +32,10 @@ def hint(text: str, **style: Any) -> None:
 
 
 def add_options(command: click.Command) -> None:
-    """Add `-v` and `-q` to a command that does not have them."""
+    """Add `-v`, `-q` and `-h` to a command that does not have them."""
     if QUIET not in command.params:
-        command.params += [VERBOSE, QUIET]
+        command.context_settings.setdefault("help_option_names", HELP)
+        command.params += [_verbose(_ALSO.get(command.name or "", "")), QUIET]
 
 
 def _of(context: click.Context) -> Verbosity:
@@ -58,5 +59,18 @@ def _option(letter: str, name: str, help_text: str) -> click.Option:
     )
 
 
-VERBOSE = _option("v", "verbose", "Show the traceback of errors; name each test, and each difference from a log.")
+def _verbose(also: str) -> click.Option:
+    return _option("v", "verbose", f"Show the whole traceback of an error, instead of one sentence{also}.")
+
+
+#: What `-v` does in some commands besides.
+_ALSO = {
+    "test": "; print the name of each test",
+    "sim": "; with --log, print each value that differs",
+    "sync": "; print where each file is from",
+    "coverage": ", and what -v shows in the other command",
+    "profile": ", and what -v shows in the other command",
+}
+HELP = ["-h", "--help"]
+VERBOSE = _verbose("; some commands print more, too: see their -h")
 QUIET = _option("q", "quiet", "Print only results, warnings and errors.")

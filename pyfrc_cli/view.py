@@ -10,8 +10,8 @@ import click
 
 from pyfrc_core.processes.loading import loading
 
-from .file_options import ReadPath, WrittenFile, check_outputs
-from .page_options import allow_host_option, port_option
+from .file_options import ReadPath, check_outputs
+from .shared_options import allow_host_option, page_option, port_option
 from .verbosity import verbosity
 
 #: The value of ``--robot`` without an address; it can be none.
@@ -25,12 +25,13 @@ def _address(context: click.Context, option: click.Parameter, value: str | None)
     return "" if value == _PROJECTS_ROBOT else value
 
 
-@click.command("view", context_settings={"help_option_names": ["-h", "--help"]})
+@click.command("view")
 @click.option(
     "--align",
     type=click.Choice(["enabled", "match", "start"]),
     default="enabled",
-    help="By what further logs are aligned: the first enabling, the match's beginning, or the beginning of the logs.",
+    help="What further logs have at the same time as the first one: the first enabling, the match's beginning, or the "
+    "beginning of the log. Default: enabled.",
 )
 @click.option(
     "--offset",
@@ -40,18 +41,13 @@ def _address(context: click.Context, option: click.Parameter, value: str | None)
     metavar="S",
     help="Show a further log this many seconds later than its own time says; once for each of them, in their order.",
 )
-@click.option(
-    "--page",
-    type=WrittenFile(),
-    metavar="FILE",
-    help="Write the log as a page, such as match.html, for any browser, and show nothing.",
-)
+@page_option("the log", "match.html", ", and show nothing")
 @click.option(
     "--share",
     type=click.Choice(["view"]),
     is_flag=False,
     flag_value="view",
-    help="Serve the page to the network, too.",
+    help="Let other computers of the network open the page, too.",
 )
 @port_option
 @allow_host_option
@@ -69,7 +65,7 @@ def command(**request: Any) -> None:
     """Look at logs of a robot, or at a robot, on a page in your browser: values, plots, field, console, timeline.
 
     A log is a .wpilog of WPILib, AdvantageKit or PyKit, a .dslog or .dsevents of the driver station, or a recording or
-    trace of pyfrc (.jsonl). Further logs are branches of the first one: compare them. A robot is never enabled, and
+    trace of pyfrc (.jsonl). You can compare further logs with the first one. A robot is never enabled, and
     its values are set only after you have switched that on.
 
     \b

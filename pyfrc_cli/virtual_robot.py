@@ -11,7 +11,7 @@ from .file_options import WrittenDirectory
 from .verbosity import verbosity
 
 
-@click.command("virtual-robot", context_settings={"help_option_names": ["-h", "--help"]})
+@click.command("virtual-robot")
 @click.option(
     "--directory",
     type=WrittenDirectory(file_okay=False),

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pyfrc_core.project import Project
 
 #: Settings of the wrapping command: arguments after the wrapped command's name belong to that one.
-WRAPPING: dict[str, Any] = {"help_option_names": ["-h", "--help"], "allow_interspersed_args": False}
+WRAPPING: dict[str, Any] = {"allow_interspersed_args": False}
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from string import Template as Text
@@ -82,11 +82,17 @@ _NOT_ON_WINDOWS = re.compile(r'[<>:"|?*\\\x00-\x1f]|[. ]$|^(con|prn|aux|nul|com[
 
 
 def create_project(
-    directory: Path, installed: Path, template: str = DEFAULT, team: int | None = None
+    directory: Path,
+    installed: Path,
+    template: str = DEFAULT,
+    team: int | None = None,
+    confirm: Callable[[Path, list[str]], None] | None = None,
 ) -> list[PurePosixPath]:
     """Create a project from a template and return the files written, relative to `directory`.
 
     :param installed: the package that contains the templates when it is installed
+    :param confirm: called with the directory and what is in it before anything is written, if that is more than hidden
+        files and virtual environments; raises an exception to write nothing
     :raises UsageError: when a file exists already, or the directory's name or the team number is invalid; nothing is
         written then
     """
@@ -101,6 +107,9 @@ def create_project(
             where=directory,
             remedy="Name a new directory, as in: pyfrc init my-robot",
         )
+    others = sorted(each.name for each in directory.iterdir() if _is_other(each)) if directory.exists() else []
+    if others and confirm is not None:
+        confirm(directory, others)
     for target, text in texts.items():
         write_whole(directory / target, text)
     return list(texts)
@@ -184,6 +193,11 @@ def _check_name(directory: Path) -> None:
             remedy='Leave out < > : " | ? * \\ and what Windows keeps for itself; do not begin it with -, '
             "nor end it with a dot or a space.",
         )
+
+
+def _is_other(file: Path) -> bool:
+    """Return whether a file or directory has nothing to do with setting up a project."""
+    return not (file.name.startswith(".") or (file / "pyvenv.cfg").is_file())
 
 
 def _taken(directory: Path, target: PurePosixPath) -> PurePosixPath | None:

@@ -1,5 +1,7 @@
 """What tests need and not every machine has: they are skipped there, and the run ends with one line that says so.
 
+The line also counts the tests that run nightly only (those marked `slow`).
+
 In the gate, which sets ``PYFRC_NO_SKIPS``, nothing is skipped: a missing part is a failure.
 """
 
@@ -10,9 +12,10 @@ import re
 import shutil
 import sys
 from collections import Counter
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Container, Generator, Iterable, Iterator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -66,6 +69,8 @@ _OTHERWISE = {
     "phoenix6": 'pip install "phoenix6>=26.70.0a2"',
     "Python 3.11": "make test PYTHON=python3.11 VENV=.venv-3.11",
     "Linux": "run them on Linux (on Windows: in WSL)",
+    # Not with sudo: what it writes into the checkout would belong to root.
+    "root": "run them as root in a container or a virtual machine",
     "a Python with tkinter": "make test PYTHON=/usr/bin/python3 VENV=.venv-system",
     "namespaces": "run them outside of this container, or give it --privileged",
 }
@@ -101,30 +106,36 @@ def requires(tested: str, missing: Iterable[str]) -> pytest.MarkDecorator:
 
 
 def _remedies(parts: set[str]) -> Iterator[str]:
-    """Yield what brings these parts: one command, where commands can."""
-    commands = []
+    """Yield what brings these parts: one command for those that packages have."""
     if packaged := parts.intersection(*_PACKAGES.values()):
         for manager, packages in _PACKAGES.items():
             if shutil.which(manager.partition(" ")[0]):
-                commands.append(" ".join(["sudo", manager, *sorted({packages[part] for part in packaged})]))
+                yield " ".join(["sudo", manager, *sorted({packages[part] for part in packaged})])
                 break
         else:
             yield f"install {', '.join(sorted(packaged))}"
-    if "root" in parts:
-        commands.append("sudo make test")
-    if commands:
-        yield " && ".join(commands)
     yield from (_OTHERWISE[part] for part in sorted(parts & _OTHERWISE.keys()))
 
 
-def summarize(skipped: Counter[str]) -> str | None:
-    """Return the line that says what was not tested and how to test it; none when nothing was skipped.
+def summarize(skipped: Counter[str], uncounted: Container[str] = (), nightly: int = 0) -> str:
+    """Return the line that says what was not tested and how to test it; empty when all was tested.
 
     :param skipped: how many tests were skipped, by reason
+    :param uncounted: reasons for which a module was skipped that cannot be imported, so that there may be more
+    :param nightly: how many tests were left out since they run nightly
     """
-    if not skipped:
-        return None
+    sentences = []
+    if skipped:
+        sentences.append(_summarize_skipped(skipped, uncounted))
+    if nightly:
+        count = f"{nightly} test{'s' * (nightly != 1)}"
+        sentences.append(f"Left for the nightly run: {count}. To run them now: make test ARGS=--run-slow")
+    return ". ".join(sentences)
+
+
+def _summarize_skipped(skipped: Counter[str], uncounted: Container[str]) -> str:
     groups: dict[str, tuple[int, set[str]]] = {}
+    least = {reason.partition(_NEEDS)[0] for reason in skipped if reason in uncounted}
     for reason, count in skipped.items():
         tested, _, needs = reason.partition(_NEEDS)
         before, parts = groups.get(tested, (0, set()))
@@ -132,16 +143,15 @@ def summarize(skipped: Counter[str]) -> str | None:
     listed = []
     for tested, (count, parts) in sorted(groups.items(), key=lambda group: -group[1][0]):
         needs = f"; needs {', '.join(sorted(parts))}" if parts else ""
-        listed.append(f"{tested} ({count} test{'s' * (count != 1)}{needs})")
+        at_least = "at least " * (tested in least)
+        listed.append(f"{tested} ({at_least}{count} test{'s' * (count != 1)}{needs})")
     line = f"Not tested on this machine: {', '.join(listed)}."
     remedy = "; ".join(_remedies(set().union(*(parts for _, parts in groups.values()))))
     return f"{line} To test this, too: {remedy}" if remedy else line
 
 
-def _count(report: pytest.TestReport | pytest.CollectReport) -> int:
-    """Return how many tests a report speaks of: a module that is skipped has all of its own."""
-    if isinstance(report, pytest.TestReport):
-        return 1
+def _functions_of(report: pytest.CollectReport) -> int:
+    """Return how many functions of a skipped module are tests, each at least one."""
     return len(re.findall(r"^def test_", Path(report.fspath).read_text("utf-8"), re.MULTILINE))
 
 
@@ -168,15 +178,39 @@ def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest
     return report
 
 
+#: How many tests were left out since they run nightly.
+_NIGHTLY = pytest.StashKey[int]()
+
+
+def pytest_deselected(items: Sequence[pytest.Item]) -> None:
+    """Count the tests that run nightly."""
+    if slow := [item for item in items if item.get_closest_marker("slow")]:
+        stash = slow[0].config.stash
+        stash[_NIGHTLY] = stash.get(_NIGHTLY, 0) + len(slow)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """Take the number from one of xdist's workers: each collects all tests."""
+    stash = node.config.stash
+    stash[_NIGHTLY] = max(stash.get(_NIGHTLY, 0), getattr(node, "workeroutput", {}).get("nightly", 0))
+
+
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_sessionfinish(session: pytest.Session) -> Generator[None, None, None]:
     """End the run with the line, below pytest's own last one."""
+    nightly = session.config.stash.get(_NIGHTLY, 0)
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["nightly"] = nightly
     yield
     reporter = session.config.pluginmanager.get_plugin("terminalreporter")
     if reporter is None or hasattr(session.config, "workerinput"):
         return
     skipped: Counter[str] = Counter()
+    uncounted = set()
     for report in reporter.stats.get("skipped", []):
-        skipped[_reason(report)] += _count(report)
-    if (line := summarize(skipped)) is not None:
+        if isinstance(report, pytest.CollectReport):
+            uncounted.add(_reason(report))
+        skipped[_reason(report)] += 1 if isinstance(report, pytest.TestReport) else _functions_of(report)
+    if line := summarize(skipped, uncounted, session.config.stash.get(_NIGHTLY, 0)):
         reporter.write_line(line)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -15,7 +16,7 @@ import pytest
 from conftest import sampled
 
 from pyfrc_cli.completion import SHELLS
-from pyfrc_cli.main import COMMANDS, cli, run
+from pyfrc_cli.main import COMMANDS, OLDER_NAMES, cli, run
 
 HEAVY = {"wpilib", "hal", "pytest", "pydantic", "pint", "paramiko", "hypothesis", "rich", "coverage", "numpy"}
 
@@ -49,6 +50,63 @@ def test_each_command_tells_its_exit_codes_and_has_a_short_option_for_help(path:
     assert command.context_settings["help_option_names"] == ["-h", "--help"]
     for parameter in command.params:
         assert not isinstance(parameter, click.Option) or parameter.help, parameter
+
+
+def help_of(option: str) -> dict[str, str]:
+    """Return the help of an option in each command that has it."""
+    return {
+        " ".join(path): str(parameter.help)
+        for path, command in EVERY.items()
+        for parameter in command.params
+        if isinstance(parameter, click.Option) and option in parameter.opts
+    }
+
+
+def test_verbose_is_described_by_what_it_does_in_each_command() -> None:
+    also = {
+        "test": "; print the name of each test",
+        "sim": "; with --log, print each value that differs",
+        "sync": "; print where each file is from",
+        "coverage": ", and what -v shows in the other command",
+        "profile": ", and what -v shows in the other command",
+    }
+    assert help_of("--verbose") == {
+        " ".join(path): f"Show the whole traceback of an error, instead of one sentence{also.get(path[0], '')}."
+        for path in EVERY
+    }
+
+
+@pytest.mark.parametrize("option", ["--main", "--robot-class"])
+def test_a_file_and_a_class_are_chosen_where_the_robots_code_is_loaded(option: str) -> None:
+    assert set(help_of(option)) == {"create-physics", "deploy", "doctor", "fuzz", "replay", "sim", "test"}
+
+
+#: Options that mean something else in each command.
+OF_EACH_COMMAND = {
+    *("--verbose", "--seed", "--jobs", "--isolation", "--from", "--trace", "--page", "--record", "--share", "--port"),
+    *("--robot", "--html", "--json", "--check"),
+}
+
+
+def test_an_option_that_means_the_same_has_the_same_help_everywhere() -> None:
+    names = {name for command in EVERY.values() for each in command.params for name in each.opts if name[:2] == "--"}
+    assert {name for name in names if len(set(help_of(name).values())) > 1} == OF_EACH_COMMAND
+
+
+def test_no_help_has_words_that_only_pyfrcs_developers_know() -> None:
+    texts = [command.get_help(click.Context(command, terminal_width=10_000)) for command in EVERY.values()]
+    for word in (r"Cobertura", r"as good as new", r"in a fork\b", r"\bshards?\b(?<!--shard)", r"unattended"):
+        assert not [text for text in texts if re.search(word, text)], word
+    assert "a cluster of Dask, a library" in help_of("--scheduler")["fuzz"]
+
+
+@pytest.mark.parametrize(("older", "name"), OLDER_NAMES.items())
+def test_an_older_name_of_a_command_works_and_is_not_listed(older: str, name: str) -> None:
+    context = click.Context(cli)
+    assert cli.get_command(context, older) is cli.get_command(context, name)
+    assert older not in cli.list_commands(context)
+    assert f"  {older}" not in cli.get_help(context)
+    assert older not in [each.value for each in cli.shell_complete(context, "")]
 
 
 def test_the_same_option_is_of_the_same_kind_everywhere() -> None:
@@ -214,12 +272,12 @@ def test_bash_completes_by_the_script(make_project) -> None:
     command.chmod(0o755)
     program = f"""
 {project.run("completion", "bash").stdout}
-COMP_WORDS=(pyfrc create-) COMP_CWORD=1
-_pyfrc_completion {str(command)!r} create- pyfrc
+COMP_WORDS=(pyfrc co) COMP_CWORD=1
+_pyfrc_completion {str(command)!r} co pyfrc
 printf '%s\\n' "${{COMPREPLY[@]}}"
 """
     done = subprocess.run([bash, "-c", program], capture_output=True, text=True, stdin=subprocess.DEVNULL)
-    assert done.stdout.split() == ["create-tests", "create-physics"], done.stderr
+    assert done.stdout.split() == ["coverage", "console", "config", "completion"], done.stderr
 
 
 @pytest.mark.parametrize("words", ["pyfrc\nde", "pyfrc\ntest\n--cov"])

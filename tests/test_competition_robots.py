@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 from conftest import MakeProject, RobotProject, sampled
-from skips import require
+from skips import requires
 
-require("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"])
+pytestmark = requires("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"])
 
 ROBOTS = Path(__file__).parent / "robots" / "competition"
 NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())

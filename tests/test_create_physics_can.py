@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 from conftest import MakeProject, RobotProject
-from skips import require
+from skips import requires
 
 COMPETITION = Path(__file__).parent / "robots" / "competition"
 
-require("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"])
+pytestmark = requires("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"])
 
 
 def create(project: RobotProject) -> str:

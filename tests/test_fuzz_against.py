@@ -6,9 +6,9 @@ import subprocess
 from typing import Any
 
 import pytest
-from skips import missing_programs, require
+from skips import missing_programs, requires
 
-require("comparing with another commit", missing_programs("git"))
+pytestmark = requires("comparing with another commit", missing_programs("git"))
 
 ROBOT = """
     import wpilib

@@ -16,10 +16,10 @@ from typing import Any
 
 import pytest
 from conftest import MakeProject, Result
-from skips import require
+from skips import requires
 from started_commands import StartedCommand, start_command
 
-require("campaigns on a cluster", [] if find_spec("distributed") else ["Dask"])
+pytestmark = requires("campaigns on a cluster", [] if find_spec("distributed") else ["Dask"])
 
 DOCS = (Path(__file__).parents[1] / "docs/fuzzing.md").read_text("utf-8")
 _ON_A_CLUSTER = DOCS.partition("### On a cluster")[2].partition("\n## ")[0]

@@ -12,9 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from skips import missing_programs, require
+from skips import missing_programs, requires
 
-require("the exam of pyfrc fuzz", ["Python 3.11"] if sys.version_info < (3, 11) else missing_programs("patch"))
+pytestmark = requires(
+    "the exam of pyfrc fuzz", ["Python 3.11"] if sys.version_info < (3, 11) else missing_programs("patch")
+)
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
 fuzz_exam: Any = importlib.import_module("fuzz_exam")

@@ -169,9 +169,41 @@ def test_a_file_where_a_directory_has_to_be_is_in_the_way(make_project: MakeProj
 def test_other_files_in_the_directory_are_left_alone(make_project: MakeProject) -> None:
     project = make_project({"notes.txt": "mine\n", "tests/notes.txt": "mine too\n"})
     before = files_in(project.path)
-    result = project.run("init", "--template", "timed")
+    result = project.run("init", "--template", "timed", "--yes")
     assert result.code == 0, result.output
     assert before.items() <= files_in(project.path).items()
+
+
+def test_beside_other_files_it_writes_nothing_where_it_cannot_ask(make_project: MakeProject) -> None:
+    project = make_project({"b.txt": "mine\n", "letters/a.txt": "", "1.txt": "", "2.txt": ""})
+    before = files_in(project.path)
+    result = project.run("init")
+    assert result.code == 2
+    assert result.first_error == (
+        f"nothing was written: {project.path} has other files: 1.txt, 2.txt, b.txt and 1 more"
+    )
+    assert "pyfrc init my-robot. To create the project beside them, add --yes." in result.stderr
+    assert files_in(project.path) == before
+    assert project.run("init", "new").code == 0
+
+
+@pytest.mark.parametrize(("typed", "code", "written"), [("y\n", 0, True), ("n\n", 1, False)])
+def test_beside_other_files_it_asks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, typed: str, code: int, written: bool
+) -> None:
+    from pyfrc_cli import init
+
+    monkeypatch.setattr(init, "can_ask", lambda: True)
+    (tmp_path / "essay.txt").touch()
+    done = CliRunner().invoke(init.command, [str(tmp_path)], input=typed)
+    assert done.exit_code == code
+    assert f"{tmp_path} has other files: essay.txt.\nCreate the robot project beside them? [y/N]" in done.output
+    assert (tmp_path / "robot.py").exists() == written
+
+
+def test_hidden_files_and_environments_are_no_other_files(make_project: MakeProject) -> None:
+    project = make_project({".git/config": "", ".wpilib/x.json": "{}", "venv/pyvenv.cfg": ""})
+    assert project.run("init").code == 0
 
 
 def test_every_file_that_is_there_is_named(make_project: MakeProject) -> None:

@@ -13,6 +13,8 @@ from skips import missing_programs, require
 
 pytest.importorskip("libcst")
 
+from pyfrc_core.migrate.migration import migrate
+
 ROBOT = """
     # The robot of team 1234.
     import wpilib
@@ -191,6 +193,33 @@ def test_line_ends_tabs_and_encoding_stay(make_project: MakeProject) -> None:
     (project.path / "robot.py").write_bytes("\r\n".join(lines).encode())
     project.run("migrate")
     assert (project.path / "robot.py").read_bytes() == "\r\n".join(lines).replace("P", "_p", 1).encode()
+
+
+def test_links_out_of_the_project_are_named(project: RobotProject) -> None:
+    """Their code is not read, so it cannot be said that nothing is left to do."""
+    beside = project.temporary / "lib"
+    beside.mkdir()
+    (beside / "arm.py").write_text("import wpilib.drive\n")
+    (project.temporary / "pictures").mkdir()
+    for name, target in (
+        ("lib", beside),
+        ("pictures", project.temporary / "pictures"),
+        ("again", project.path / "subsystems"),
+        ("subsystems/arm.py", beside / "arm.py"),
+        (".hidden", beside),
+    ):
+        (project.path / name).symlink_to(target)
+    project.write({"robot.py": ROBOT.replace("wpilib.Relay(1)", "1")})
+    report = migrate(project.path).report
+    assert [(each.file, each.line) for each in report.by_hand()] == [("lib", 0), ("subsystems/arm.py", 0)]
+    assert str(report.by_hand()[0]) == (
+        f"lib: This is a link to {beside.as_posix()}, which is not followed, so the code there stays as it is. "
+        "Replace the link by what it leads to, and migrate."
+    )
+    result = project.run("migrate")
+    assert result.code == 1
+    assert "Nothing is left to do" not in result.stdout
+    assert (beside / "arm.py").read_text() == "import wpilib.drive\n"
 
 
 @pytest.mark.slow

@@ -152,8 +152,8 @@ def test_failures_are_told(project: RobotProject) -> None:
         said, failure = words(failed.stdout)
         assert said == "the robot's words"
         assert "ValueError: not that button" in failure
-    wrong = project.run("-q", "config", "show", "--main", "none.py")
-    assert (wrong.code, wrong.first_error) == (2, "there is no file none.py")
+    wrong = project.run("-q", "config", "show", "--project", "none")
+    assert (wrong.code, wrong.first_error) == (2, "there is no directory none")
 
 
 # -- on a robot --------------------------------------------------------------------------------------------------------

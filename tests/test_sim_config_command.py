@@ -121,9 +121,9 @@ def test_a_file_in_the_wrong_place_is_told(make_project: MakeProject, place: str
 def test_a_file_beside_the_directory_of_the_code_is_told(make_project: MakeProject) -> None:
     project = make_project({"src/robot.py": ROBOT, "sim/config.json": '{"pyfrc": {}}'})
     told = "warning: sim/config.json: pyfrc does not read this file\n  Move it to src/sim/config.json\n"
-    assert told in project.run("config", "check", "--main", "src/robot.py").stdout
+    assert told in project.run("config", "check", "--project", "src").stdout
     project.write({"robot.py": ROBOT})  # whose it then is
-    assert told not in project.run("config", "check", "--main", "src/robot.py").stdout
+    assert told not in project.run("config", "check", "--project", "src").stdout
 
 
 def test_show_without_a_season_tells_whose_field_it_is(make_project: MakeProject) -> None:

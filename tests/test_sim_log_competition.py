@@ -11,10 +11,12 @@ from typing import Any
 
 import pytest
 from conftest import MakeProject, RobotProject
-from skips import require
+from skips import requires
 
-require("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"])
-pytestmark = pytest.mark.slow
+pytestmark = [
+    pytest.mark.slow,
+    requires("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"]),
+]
 
 ROBOTS = Path(__file__).parent / "robots" / "competition"
 SIM = ("sim", "--ui", "none")

@@ -14,9 +14,9 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
     shared_server,
 )
 from playwright.sync_api import expect
-from skips import require
+from skips import requires
 
-require("the page of pyfrc sim in a browser", missing_browser())
+pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
 
 PADS = """
     window.fakePads = [];

@@ -14,10 +14,10 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`
     shared_browser,
 )
 from playwright.sync_api import expect
-from skips import require
+from skips import requires
 from web_pages import served
 
-require("the page of pyfrc sim in a browser", missing_browser())
+pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
 
 #: A robot with a device of each kind that the page draws in its own way, and with what has a card on the dashboard.
 ROBOT = {

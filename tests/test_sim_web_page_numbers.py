@@ -12,9 +12,9 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
     shared_browser,
     shared_server,
 )
-from skips import require
+from skips import requires
 
-require("the page of pyfrc sim in a browser", missing_browser())
+pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
 
 KP = "nt:/SmartDashboard/kP"
 

@@ -16,12 +16,12 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
     shared_server,
 )
 from conftest import sampled
-from skips import require
+from skips import requires
 from web_pages import served
 
 from pyfrc_core.sim.ui.web.runs import Runs
 
-require("the page of pyfrc sim in a browser", missing_browser())
+pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
 
 #: How much text stands out from what is behind it, as the Web Content Accessibility Guidelines compute it.
 CONTRASTS = """() => {

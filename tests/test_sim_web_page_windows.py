@@ -16,10 +16,10 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`
     shared_server,
 )
 from conftest import sampled
-from skips import require
+from skips import requires
 from web_pages import Served
 
-require("the page of pyfrc sim in a browser", missing_browser())
+pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
 
 
 def saved_layout(server: Served) -> Any:

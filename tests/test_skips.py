@@ -31,6 +31,11 @@ TESTS = """
 
     def test_all_there():
         require("robots", [])
+
+    @pytest.mark.slow
+    @pytest.mark.parametrize("number", range(2))
+    def test_slow(number):
+        pass
 """
 
 WINDOWS = """
@@ -48,7 +53,7 @@ WINDOWS = """
 
 def run(directory: Path, *args: str, **env: str) -> subprocess.CompletedProcess[str]:
     environment = {name: value for name, value in os.environ.items() if name != "PYFRC_NO_SKIPS"}
-    command = [sys.executable, "-m", "pytest", "-p", "skips", "-p", "no:cacheprovider", *args]
+    command = [sys.executable, "-m", "pytest", "-p", "skips", "-p", "no:cacheprovider", "-m", "not slow", *args]
     return subprocess.run(
         command,
         cwd=directory,
@@ -71,10 +76,18 @@ def test_everything_that_was_skipped_is_in_the_last_line_by_kind_and_counted(sui
     assert done.returncode == 0, done.stdout + done.stderr
     last = done.stdout.splitlines()[-1]
     assert last.startswith(
-        "Not tested on this machine: robots (3 tests; needs root, sshd), windows (2 tests; needs Xvfb),"
+        "Not tested on this machine: robots (3 tests; needs root, sshd), windows (at least 2 tests; needs Xvfb),"
         " there are no whistles (1 test). To test this, too: "
     )
-    assert last.endswith("sudo make test")
+    assert last.endswith(". Left for the nightly run: 2 tests. To run them now: make test ARGS=--run-slow")
+    assert "sudo make" not in last
+
+
+def test_what_runs_nightly_is_in_the_last_line_where_nothing_else_is_missing() -> None:
+    assert skips.summarize(Counter(), nightly=1) == (
+        "Left for the nightly run: 1 test. To run them now: make test ARGS=--run-slow"
+    )
+    assert skips.summarize(Counter()) == ""
 
 
 def test_in_the_gate_each_is_a_failure(suite: Path) -> None:
@@ -83,7 +96,7 @@ def test_in_the_gate_each_is_a_failure(suite: Path) -> None:
     assert "Not tested" not in done.stdout
     assert "1 error" in done.stdout  # the module
     done = run(suite, "test_robots.py", PYFRC_NO_SKIPS="1")
-    assert "3 failed, 1 passed, 1 error" in done.stdout
+    assert re.search("^=+ 3 failed, 1 passed, .*1 error in ", done.stdout, re.MULTILINE)
 
 
 REASONS = Counter({"robots: needs root, sshd": 7, "windows: needs Xvfb, tkinter, xdotool": 5})
@@ -92,10 +105,10 @@ REASONS = Counter({"robots: needs root, sshd": 7, "windows: needs Xvfb, tkinter,
 @pytest.mark.parametrize(
     ("manager", "command"),
     [
-        ("apt-get", "sudo apt-get install openssh-server python3-tk xdotool xvfb && sudo make test"),
-        ("dnf", "sudo dnf install openssh-server python3-tkinter xdotool xorg-x11-server-Xvfb && sudo make test"),
-        ("pacman", "sudo pacman -S openssh tk xdotool xorg-server-xvfb && sudo make test"),
-        ("none", "install Xvfb, sshd, tkinter, xdotool; sudo make test"),
+        ("apt-get", "sudo apt-get install openssh-server python3-tk xdotool xvfb"),
+        ("dnf", "sudo dnf install openssh-server python3-tkinter xdotool xorg-x11-server-Xvfb"),
+        ("pacman", "sudo pacman -S openssh tk xdotool xorg-server-xvfb"),
+        ("none", "install Xvfb, sshd, tkinter, xdotool"),
     ],
 )
 def test_the_one_command_is_of_the_systems_package_manager(
@@ -103,9 +116,8 @@ def test_the_one_command_is_of_the_systems_package_manager(
 ) -> None:
     (tmp_path / manager).touch(0o755)
     monkeypatch.setenv("PATH", str(tmp_path))
-    line = skips.summarize(REASONS)
-    assert line is not None
-    assert line.rpartition(": ")[2] == command
+    remedy = skips.summarize(REASONS).rpartition(": ")[2]
+    assert remedy == f"{command}; run them as root in a container or a virtual machine"
 
 
 def test_no_test_is_skipped_by_a_guard_of_its_own() -> None:

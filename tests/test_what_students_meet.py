@@ -142,7 +142,7 @@ def test_a_wrong_value_is_reported_at_its_own_tables_line(make_project: MakeProj
 @pytest.mark.parametrize(
     ("files", "args", "said", "remedy"),
     [
-        ({"main.py": ROBOT}, "test", "but a robot class in main.py", "--main main.py"),
+        ({"main.py": ROBOT}, "test", "but a robot class in main.py", '[tool.pyfrc]: main = "main.py"'),
         (
             {"robot.py": ROBOT, **TESTS},
             "robot.py",

@@ -108,7 +108,7 @@ def test_outside_of_a_project_there_is_a_remedy(make_project: MakeProject) -> No
     result = project.run("test")
     assert result.code == 2
     assert f"there is no robot.py in or above {project.path}" in result.first_error
-    for remedy in ("--project", "--main", "pyfrc init"):
+    for remedy in ("--project", "pyfrc init"):
         assert remedy in result.stderr
 
 
@@ -140,7 +140,8 @@ def test_a_wrong_option_is_told(make_project: MakeProject, args: list[str], mess
         ("console 10.12.34.2", "Write: pyfrc console --robot 10.12.34.2"),
         ("sim tests", "To simulate the project in it: pyfrc sim --project tests"),
         ("sim tests/a.wpilog", "To run your code with the inputs of a log: pyfrc sim --log tests/a.wpilog"),
-        ("sim robot.py", "pyfrc finds the robot's file."),
+        ("sim robot.py", "pyfrc finds the robot's file. Use --main FILE if it is not called robot.py."),
+        ("sync robot.py", "pyfrc finds the robot's file."),
         ("view --log a.wpilog", "To look at a log: pyfrc view FILE. To run your code with its inputs: pyfrc sim --log"),
         ("deploy everything", "unexpected extra argument (everything)"),
         ("download", "There is no command 'download'. To download what the robot needs: pyfrc sync"),

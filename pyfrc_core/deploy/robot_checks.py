@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .agent.layout import Layout
     from .facts import RobotFacts
 
-NO_CHECK = "To deploy without this check: -n (--no-version-check)."
+NO_CHECK = "To deploy without this check: --no-version-check."
 
 
 def refuse_unfit_robot(facts: RobotFacts, controller: ControllerKind, where: str, check_versions: bool) -> None:

@@ -89,7 +89,13 @@ def migrate(
     names = table()
     version = load_robot_packages(root / "pyproject.toml").version
     first_time = version is None or not version.startswith("2027")
-    sources = [Source(file, file.relative_to(root).as_posix(), file.read_bytes()) for file in python_files(root)]
+    files, links = python_files(root)
+    sources = [Source(file, file.relative_to(root).as_posix(), file.read_bytes()) for file in files]
+    for link in links if first_time else ():
+        what = (
+            f"This is a link to {link.readlink().as_posix()}, which is not followed, so the code there stays as it is."
+        )
+        report.add(link.relative_to(root).as_posix(), 0, what, "Replace the link by what it leads to, and migrate.")
     home = "" if code is None or code == root else code.relative_to(root).as_posix() + "/"
     rewritten = rewrite_all(
         sources, names, report, home=home, first_time=first_time, progress=progress, comments=comments
@@ -112,9 +118,12 @@ def migrate(
     return Migration(root, before, after, report, len(sources))
 
 
-def python_files(root: Path) -> list[Path]:
-    """Return the Python files of a project, without those of virtual environments and hidden directories."""
-    found = []
+def python_files(root: Path) -> tuple[list[Path], list[Path]]:
+    """Return the Python files of a project, without those of virtual environments and hidden directories.
+
+    :returns: the files; and the links to other files, and to directories with some, which are not followed
+    """
+    found, links = [], []
     for directory, directories, files in os.walk(root):
         here = Path(directory)
         directories[:] = [
@@ -122,8 +131,17 @@ def python_files(root: Path) -> list[Path]:
             for each in sorted(directories)
             if not each.startswith(".") and each not in _NOT_OURS and not is_environment(here / each)
         ]
-        found += [here / each for each in sorted(files) if each.endswith(".py") and not (here / each).is_symlink()]
-    return found
+        python = [here / each for each in sorted(files) if each.endswith(".py")]
+        found += [file for file in python if not file.is_symlink()]
+        links += [each for each in (*python, *(here / name for name in directories)) if _leads_outside(each, root)]
+    return found, links
+
+
+def _leads_outside(link: Path, root: Path) -> bool:
+    """Return whether a link leads to Python code outside the project, which is not read."""
+    if not link.is_symlink() or link.resolve().is_relative_to(root.resolve()):
+        return False
+    return link.is_file() or next(link.resolve().rglob("*.py"), None) is not None
 
 
 def refuse_uncommitted(root: Path) -> None:

@@ -10,8 +10,8 @@ class Remark:
     """One remark.
 
     :param file: relative to the project, with `/`
-    :param line: of the file as it was, from 1
-    :param done: the code was rewritten, and should be checked; else it must be changed by hand
+    :param line: of the file as it was, from 1; 0 for the whole file
+    :param done: the code was rewritten or has another meaning, and should be checked; else it must be changed by hand
     """
 
     file: str
@@ -21,7 +21,8 @@ class Remark:
     done: bool = False
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}: {self.what}{' ' if self.remedy else ''}{self.remedy}"
+        place = f"{self.file}:{self.line}" if self.line else self.file
+        return f"{place}: {self.what}{' ' if self.remedy else ''}{self.remedy}"
 
 
 @dataclass
@@ -39,5 +40,5 @@ class Report:
         return sorted(each for each in self.remarks if not each.done)
 
     def to_check(self) -> list[Remark]:
-        """Return what was rewritten and should be checked."""
+        """Return what should be checked: it was rewritten, or has another meaning."""
         return sorted(each for each in self.remarks if each.done)

@@ -78,13 +78,12 @@ def _nothing_found(directory: Path, how: str) -> ProjectError:
     if nearly is None and other is not None:
         return ProjectError(
             f"no robot project found: there is no {MAIN_FILE} {how} {directory}, but a robot class in {other}",
-            remedy=f"Rename {other} to {MAIN_FILE}, or name it with --main {other}",
+            remedy=f'Rename {other} to {MAIN_FILE}, or write in pyproject.toml, under [tool.pyfrc]: main = "{other}"',
         )
     return ProjectError(
         f"no robot project found: there is no {MAIN_FILE} {how} {directory}"
         + (f" (but a {nearly}: rename it)" if nearly else ""),
-        remedy="Go to your project's directory, name it with --project DIR, name the file with --main FILE, "
-        "or make a new project with: pyfrc init",
+        remedy="Go to your project's directory, name it with --project DIR, or make a new project with: pyfrc init",
     )
 
 

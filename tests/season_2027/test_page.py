@@ -12,13 +12,13 @@ from browser_pages import (  # noqa: F401 - `browser`
 )
 from conftest import MakeProject
 from playwright.sync_api import Browser, expect
-from skips import require
+from skips import requires
 from web_pages import served
 
 from .test_dashboards import ROBOT as TUNABLE
 from .test_simulator import MOTOR, ROBOT
 
-require("the page of pyfrc sim in a browser", missing_browser())
+pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
 
 
 def opened(browser: Browser, server: Any) -> Seen:

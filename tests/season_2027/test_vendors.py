@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 from conftest import MakeProject
-from skips import require
+from skips import requires
 
-require(
+pytestmark = requires(
     "vendors' devices of 2027",
     [name for name in ("robotpy-rev", "phoenix6") if not find_spec(name.removeprefix("robotpy-"))],
 )
