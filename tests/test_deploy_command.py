@@ -373,7 +373,7 @@ def test_the_second_model_s_image_is_accepted() -> None:
     ids=["wpilib", "image"],
 )
 def test_versions_are_not_checked_with_the_option(how, new_robot, make_project) -> None:
-    result = deploy(make_project(program()), new_robot(**how), "-n")
+    result = deploy(make_project(program()), new_robot(**how), "--no-version-check")
     assert result.code == 0, result.output
 
 

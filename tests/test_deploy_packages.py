@@ -342,7 +342,7 @@ def test_deploying_all_the_same(roborio: Roborio, make_project) -> None:
     )
     assert code == 3, shown  # it has ended at once
     project.write({"robot.py": ROBOT.format(imports="import commands2 as c")})
-    done = deploy(project, roborio, "-n")
+    done = deploy(project, roborio, "--no-version-check")
     assert done.code == 3, done.output
     assert "warning: robot.py:2: import commands2" in done.stdout
 
@@ -355,14 +355,14 @@ def test_the_robots_python_is_the_seasons(roborio: Roborio, make_project) -> Non
     assert refused.code == 1
     assert f"the robot has Python 3.99.0, but wpilib {OURS} is for Python 3.14 there" in refused.output
     assert not (roborio.home / ".pyfrc").exists()
-    assert deploy(project, roborio, "-n").code == 0
+    assert deploy(project, roborio, "--no-version-check").code == 0
 
 
 def test_a_file_that_the_robots_python_cannot_compile(roborio: Roborio, make_project) -> None:
     project = make_project({"robot.py": ROBOT.format(imports="import arm"), "arm.py": "SPEED = 1\n"})
     assert deploy(project, roborio).code == 0
     project.write({"arm.py": "SPEED = 1\nprint 'fast'\n"})
-    refused = deploy(project, roborio, "-n")
+    refused = deploy(project, roborio, "--no-version-check")
     assert refused.code == 1
     assert "arm.py:2" in refused.output
     assert (roborio.home / "py/arm.py").read_text() == "SPEED = 1\n"

@@ -29,7 +29,7 @@ class MyRobot(wpilib.TimedRobot):
 
 def write_and_deploy(project, name: str, robot: Roborio, *options: str):
     project.write({"robot.py": ROBOT.format(name=name)})
-    return project.run("deploy", "--skip-tests", "-n", "--robot", robot.where, *options)
+    return project.run("deploy", "--skip-tests", "--no-version-check", "--robot", robot.where, *options)
 
 
 def programs_on(robot: Roborio) -> list[str]:
