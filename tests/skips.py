@@ -90,7 +90,7 @@ def missing_tkinter() -> list[str]:
 
 
 def require(tested: str, missing: Iterable[str]) -> None:
-    """Skip the test, or at the top of a module all of its tests, when anything is missing.
+    """Skip the test, or at the top of a module that cannot be imported then all of its tests, when anything is missing.
 
     :param tested:  what is not tested then, the same for all tests of one kind
     :param missing: the parts that this machine lacks
@@ -100,7 +100,7 @@ def require(tested: str, missing: Iterable[str]) -> None:
 
 
 def requires(tested: str, missing: Iterable[str]) -> pytest.MarkDecorator:
-    """Return the same as a mark, for tests whose fixtures need the parts, too."""
+    """Return the same as a mark, for tests whose fixtures need the parts, too, and for all tests of a module."""
     parts = list(missing)
     return pytest.mark.skipif(bool(parts), reason=tested + _NEEDS + ", ".join(parts))
 
