@@ -31,16 +31,15 @@ def _show_templates(ctx: click.Context, param: click.Parameter, wanted: bool) ->
 def _confirm(directory: Path, others: list[str]) -> None:
     """Ask whether to create the project beside other files.
 
-    :raises UsageError: where the user cannot be asked
+    :raises UsageError: if the user does not want that, or cannot be asked
     """
     more = f" and {len(others) - 3} more" if len(others) > 3 else ""
     what = f"{directory.resolve()} has other files: {', '.join(others[:3])}{more}"
-    if not can_ask():
+    if not (can_ask() and click.confirm(f"{what}.\nCreate the robot project beside them?")):
         raise UsageError(
             f"nothing was written: {what}",
             remedy="Name a new directory, as in: pyfrc init my-robot. To create the project beside them, add --yes.",
         )
-    click.confirm(f"{what}.\nCreate the robot project beside them?", abort=True)
 
 
 @click.command("init")
