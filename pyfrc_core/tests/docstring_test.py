@@ -47,10 +47,12 @@ def test_docstrings(robot: Any, robot_path: str) -> None:
     __tracebackhide__ = True
     found: set[tuple[str, int, str]] = set()
     for module in list(sys.modules.values()):
-        if isinstance(module, ModuleType) and module.__name__ != "physics" and not ignore_object(module, robot_path):
+        if not isinstance(module, ModuleType) or getattr(module, "__file__", None) is None:
+            continue
+        if module.__name__ != "physics" and not ignore_object(module, robot_path):
             if not module.__doc__:
                 found.add((*_place(module), f"{module.__name__} has no docstring"))
-            found |= set(_mistakes(module, module.__name__, "", robot_path, {id(module)}))
+            found |= set(_mistakes(module, module.__name__, "", robot_path, set()))
     root = Path(robot_path).resolve()
     lines = [f"{Path(file).relative_to(root).as_posix()}:{line}: {mistake}" for file, line, mistake in sorted(found)]
     if lines:
