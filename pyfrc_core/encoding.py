@@ -6,6 +6,8 @@ import codecs
 from dataclasses import dataclass
 from pathlib import Path
 
+from .file_hash import open_file
+
 _BYTE_ORDER_MARKS = {
     codecs.BOM_UTF32_LE: "UTF-32",  # begins like that of UTF-16
     codecs.BOM_UTF32_BE: "UTF-32",
@@ -32,11 +34,16 @@ class WrongEncoding:
 
 
 def find_wrong_encoding(file: Path) -> WrongEncoding | None:
-    """Return what is wrong with the encoding of `file`; None if it is UTF-8 or does not exist."""
+    """Return what is wrong with the encoding of `file`; None if it is UTF-8 or cannot be read."""
     try:
-        content = file.read_bytes()
+        with open_file(file) as stream:
+            return why_not_utf8(stream.read())
     except OSError:
         return None
+
+
+def why_not_utf8(content: bytes) -> WrongEncoding | None:
+    """Return why this is not the text of a file in UTF-8; None if it is."""
     for mark, name in _BYTE_ORDER_MARKS.items():
         if content.startswith(mark):
             return WrongEncoding(None, f"this file is in {name}, and Python reads UTF-8", _SAVE_AS_UTF_8)

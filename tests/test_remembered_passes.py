@@ -88,6 +88,7 @@ NUMBERS = """
     def double(number):
         return 2 * number
 """
+SMALL = "import wpilib\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
 FILES = {
     "robot.py": ROBOT,
     "parts/__init__.py": "",
@@ -134,7 +135,8 @@ def edit(made, name: str, old: str, new: str) -> None:
 def test_without_a_change_nothing_runs(project) -> None:
     result = project.run("test", "--changed")
     assert result.code == 0
-    assert "4 tests passed before, and nothing that they ran or read has changed since" in result.output
+    expected = "4 tests passed before; the files that they depend on, Python and packages have not changed since"
+    assert expected in result.output
 
 
 def test_a_change_runs_what_depends_on_the_file(project) -> None:
@@ -217,9 +219,46 @@ def test_a_spoiled_memory_is_ignored(project) -> None:
         assert ran(project) == ALL
 
 
+LOGS = """
+    import wpilib
+    from pathlib import Path
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            wpilib.DataLogManager.start(str(Path(__file__).with_name("logs")), "robot.wpilog")
+"""
+
+
+def test_logs_of_the_robot_are_no_changes(make_project) -> None:
+    test = "def test_a(control, robot):\n    with control.run_robot():\n        control.step_timing(seconds=0.1)\n"
+    test = test.replace("seconds=0.1", "seconds=0.1, autonomous=True, enabled=True")
+    made = make_project({"robot.py": LOGS, "tests/test_a.py": test})
+    assert ran(made) == {"a"}
+    log = made.path / "logs" / "robot.wpilog"
+    assert log.is_file()
+    assert ran(made) == set()
+    edit(made, "tests/test_a.py", "0.1", "0.2")
+    assert ran(made) == {"a"}, "it has written the log again"
+    assert ran(made) == set()
+    log.write_bytes(b"")
+    assert ran(made) == {"a"}
+
+
+def test_what_a_test_imports_late_from_outside_the_project_counts(make_project, tmp_path: Path) -> None:
+    (tmp_path / "latelib.py").write_text("SPEED = 1\n")
+    test = f"import sys\n\ndef test_a(robot):\n    sys.path.append({str(tmp_path)!r})\n    import latelib\n"
+    made = make_project({"robot.py": SMALL, "tests/test_a.py": test})
+    assert ran(made) == {"a"}
+    assert ran(made) == set()
+    (tmp_path / "latelib.py").write_text("SPEED = 20\n")
+    assert ran(made) == {"a"}
+
+
 # -- deploys ---------------------------------------------------------------------------------------------------------
 
-PASSED_ALREADY = re.compile(r"^tests +passed at \d\d:\d\d; nothing has changed since ", re.MULTILINE)
+PASSED_ALREADY = re.compile(
+    r"^tests +passed at \d\d:\d\d; the project's files, Python and packages have not changed since ", re.MULTILINE
+)
 NO_ROBOT = ("deploy", "--robot", "127.0.0.1:1")
 
 
@@ -236,7 +275,6 @@ def test_a_deploy_after_tests_that_passed_does_not_run_them_again(make_project) 
     assert PASSED_ALREADY.search(made.run(*NO_ROBOT).output), "its tests count, too"
 
 
-SMALL = "import wpilib\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
 #: Tests during which a file is saved, by the user or by the tests.
 SAVES = """
     from pathlib import Path

@@ -98,7 +98,7 @@ def prepare(project: Project, options: DeployOptions, talk: UserInterface) -> Ch
             importing = ImportCheck(project)
         elif (since := _passed_already(project, options.builtin)) is not None:
             with progress.phase("tests") as phase:
-                phase.detail = f"passed at {since}; nothing has changed since"
+                phase.detail = f"passed at {since}; the project's files, Python and packages have not changed since"
         else:
             passed, before = _run_tests(project, options.builtin, talk), manifest
             manifest = read()

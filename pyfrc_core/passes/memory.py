@@ -15,20 +15,30 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from functools import cache
 from hashlib import sha256
+from itertools import chain, islice
 from pathlib import Path, PurePath
 
 from .._version import __version__
 from ..config.settings import DEFAULT_SEED
 from ..file_hash import hash_file
 from ..project import TEST_FILES, Project
-from ..project.environments import is_environment
 from ..project.loaded_modules import PACKAGES, loaded_modules
+from ..project.walk import SourceError, files_below, read_source
 from ..text_files import keep_out_of_version_control, write_whole
 
-#: Directories and files that the robot, its tests or other tools write, and no test reads.
-_DIRECTORIES_WRITTEN = {"__pycache__", "build", "ctre_sim", "dist", "htmlcov"}
-_FILES_WRITTEN = {"coverage.xml", "networktables.json", "networktables.json.bck", "simgui-ds.json", "simgui.json"}
-_SUFFIXES_WRITTEN = (".hoot", ".pyc", ".rrd", ".wpilog")
+#: Where pytest looks for settings and fixtures in the directories above the project.
+_READ_ABOVE = (
+    *("conftest.py", "pytest.ini", ".pytest.ini", "pytest.toml", ".pytest.toml"),
+    *("pyproject.toml", "tox.ini", "setup.cfg"),
+)
+#: The variables with which a user changes how Python and pytest run, and their values where they are not set.
+_VARIABLES = dict.fromkeys(("PYTEST_ADDOPTS", "PYTEST_PLUGINS", "PYTEST_DISABLE_PLUGIN_AUTOLOAD"), "")
+_VARIABLES |= dict.fromkeys(("PYTHONPATH", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "TZ"), "")
+_VARIABLES["PYTHONHASHSEED"] = "0"  # so `pyfrc test` sets it
+#: In a project with more files than this, as when a home directory is one, no passes are kept.
+MOST_FILES = 10_000
+#: Of a larger file, in bytes, the size and the times count, and not the content.
+_LARGE = 1 << 20
 #: The length of a hash, in hexadecimal.
 _HASH_LETTERS = 24
 
@@ -50,50 +60,32 @@ class Contents:
         return sorted(path for path in mine.keys() | others.keys() if mine.get(path) != others.get(path))
 
 
-def read_contents(project: Project, written: Iterable[Path] = ()) -> Contents:
-    """Return the project's current contents. Hidden files, environments and what runs write are left out.
-
-    :param written: further directories that runs write
-    """
-    left_out = {path.absolute() for path in written}
+def read_contents(project: Project) -> Contents:
+    """Return the project's current contents, with what pytest reads above it: of at most `MOST_FILES` and one more."""
     contents = Contents({}, {})
-    for file in project_files(project, left_out):
+    above = (directory / name for directory in project.root.parents for name in _READ_ABOVE)
+    for file in islice(chain(filter(Path.is_file, above), project_files(project)), MOST_FILES + 1):
         kind = contents.sources if file.suffix == ".py" else contents.others
         kind[Path(os.path.relpath(file, project.root)).as_posix()] = hash_of_file(file)
     return contents
 
 
-def project_files(project: Project, left_out: Collection[Path] = ()) -> Iterator[Path]:
-    """Yield the project's files. Hidden files, environments and what runs write are left out.
-
-    :param left_out: absolute directories that are left out, too
-    """
+def project_files(project: Project) -> Iterator[Path]:
+    """Yield the files of a project: below it and beside it, except those that `project.walk` leaves out."""
     beside = project.test_directories[1]
-    yield from _files_below(project.root, left_out)
-    if not beside.is_relative_to(project.root) and beside.is_dir():
-        yield from _files_below(beside, left_out)
+    yield from files_below(project.root)
+    if not beside.is_relative_to(project.root):
+        yield from files_below(beside)
     if project.pyproject.parent != project.root and project.pyproject.is_file():
         yield project.pyproject
-
-
-def _files_below(directory: Path, left_out: Collection[Path]) -> Iterator[Path]:
-    for place, directories, files in os.walk(directory):
-        directories[:] = sorted(
-            name
-            for name in directories
-            if not name.startswith(".")
-            and name not in _DIRECTORIES_WRITTEN
-            and not is_environment(Path(place, name))
-            and Path(place, name) not in left_out
-        )
-        for name in files:
-            if not name.startswith(".") and name not in _FILES_WRITTEN and not name.endswith(_SUFFIXES_WRITTEN):
-                yield Path(place, name)
 
 
 def hash_of_file(file: Path) -> str:
     """Return a hash of the file's content; of a file that cannot be read, one that no content has."""
     try:
+        status = file.stat()
+        if status.st_size > _LARGE:
+            return f"{status.st_size} {status.st_mtime_ns} {status.st_ctime_ns}"
         return hash_file(file)[0][:_HASH_LETTERS]
     except OSError:
         return "unreadable"
@@ -117,12 +109,13 @@ def hash_of(content: bytes) -> str:
 
 
 def environment() -> str:
-    """Return a hash of Python, pyfrc's version and the installed packages.
+    """Return a hash of Python, its settings in the environment, pyfrc's version and the installed packages.
 
     A package that is installed again counts as changed, also with the same version. The files of editable packages
     count as `loaded_from_elsewhere`.
     """
     facts = [sys.version, platform.machine(), platform.system(), __version__]
+    facts += [os.environ.get(name, otherwise) for name, otherwise in _VARIABLES.items()]
     for place in sys.path:
         if place.endswith(PACKAGES):
             try:
@@ -137,16 +130,16 @@ def environment() -> str:
     return hash_of("\n".join(facts).encode())
 
 
-def loaded_from_elsewhere(project: Project) -> set[str]:
+def loaded_from_elsewhere(project: Project, with_pyfrc: bool = True) -> set[str]:
     """Return the source files that this process has imported from outside the project, Python and its packages."""
     is_ours = project.files.is_project_file
     files = {str(module.__file__) for module in loaded_modules.look() if module.__name__ != "__main__"}
-    return {file for file in files if not is_ours(file)}.union(loaded_modules.files_of_pyfrc())
+    return {file for file in files if not is_ours(file)}.union(loaded_modules.files_of_pyfrc() if with_pyfrc else ())
 
 
 #: In the robot project, and out of version control.
 _FILE = Path(".pyfrc", "passes.json")
-_FORMAT = 2
+_FORMAT = 3
 
 
 @dataclass
@@ -159,6 +152,7 @@ class _Kept:
     :param green: a hash of all that the last run of all tests read, if all passed
     :param green_at: when that was, in ISO 8601
     :param left_over: what a test of the last run has left, so that the next ones needed new interpreters
+    :param written: the files that pyfrc has written in runs, such as robots' data logs, with the content that they got
     """
 
     basis: str = ""
@@ -167,6 +161,7 @@ class _Kept:
     green: str = ""
     green_at: str = ""
     left_over: str = ""
+    written: dict[str, str] = field(default_factory=dict)
     format: int = _FORMAT
 
 
@@ -175,32 +170,48 @@ class Passes:
 
     :param seed: the random seed of the run
     :param builtin: whether the ready-made tests run if the project has none
-    :param written: directories that the run writes
     """
 
-    def __init__(
-        self, project: Project, seed: int = DEFAULT_SEED, builtin: bool = False, written: Iterable[Path] = ()
-    ) -> None:
+    def __init__(self, project: Project, seed: int = DEFAULT_SEED, builtin: bool = False) -> None:
         self._project = project
-        self._written = list(written)
         self._file = project.root / _FILE
-        self._begin = read_contents(project, self._written)
-        rules = {project.files.relative(str(file)) for file in project.invariant_files}
-        conditions = [seed, builtin, project.main_file.name, project.class_name]
-        self._basis = _basis_of(self._begin, conditions, rules)
+        self._begin = read_contents(project)
+        self._rules = {project.files.relative(str(file)) for file in project.invariant_files}
+        self._conditions = [environment(), seed, builtin, project.main_file.name, project.class_name]
+        self._is_whole = len(self._begin.sources) + len(self._begin.others) <= MOST_FILES
+        kept = _load(self._file)
+        #: The files that earlier runs have written, and that are still the same: no test needs them.
+        self._written = {path for path, content in kept.written.items() if self._begin.others.get(path) == content}
+        self._basis = self._basis_without(self._written)
         self._version_elsewhere = cache(version_of_file)
-        self._kept = replace(_load(self._file), left_over="")
+        self._kept = replace(kept, left_over="")
         # Files from elsewhere are known only after a run has imported them.
         if self._kept.basis != self._basis or any(
             self._version_elsewhere(file) != known for file, known in self._kept.elsewhere.items()
         ):
             self._kept = _Kept(self._basis)
+        #: Whether all tests have passed with the present content.
+        self._green = self._kept.green == self._green_hash()
+
+    def _basis_without(self, written: Collection[str]) -> str:
+        """Return a hash of what every test depends on: packages, conditions, and all files that are no tests.
+
+        A test file that another file names counts, too: it may be imported there. So do a team's rules, wherever.
+
+        :param written: files that do not count
+        """
+        every = self._begin.sources
+        tests = [path for path in every if any(map(PurePath(path).match, TEST_FILES)) and path not in self._rules]
+        shared = _named_elsewhere(self._project.root, tests, every)
+        sources = [each for each in sorted(every.items()) if each[0] not in tests or each[0] in shared]
+        others = [each for each in sorted(self._begin.others.items()) if each[0] not in written]
+        return hash_of(json.dumps([*self._conditions, sorted(self._rules), sources, others]).encode())
 
     # -- single tests ----------------------------------------------------------------------------------------------
 
     def is_valid(self, test: str, file: Path) -> bool:
         """Return whether a test in this file has passed, and no file that it depends on has changed since."""
-        return self._kept.tests.get(test) == self._hash_of(file)
+        return self._is_whole and self._kept.tests.get(test) == self._hash_of(file)
 
     def record(self, test: str, file: Path) -> None:
         """Keep that a test in this file has passed."""
@@ -222,32 +233,45 @@ class Passes:
 
     def set_green(self, passed: bool) -> None:
         """Keep whether all tests of the project have passed."""
-        self._kept.green = self._green_hash() if passed else ""
+        self._green = passed
         self._kept.green_at = datetime.now().astimezone().isoformat(timespec="seconds")
 
     def green_since(self) -> datetime | None:
-        """Return when all tests of the project passed, if nothing that they read has changed since."""
-        if self._kept.green != self._green_hash():
-            return None
-        return datetime.fromisoformat(self._kept.green_at)
+        """Return when all tests of the project passed, if nothing that they depend on has changed since."""
+        return datetime.fromisoformat(self._kept.green_at) if self._green and self._is_whole else None
 
     def _green_hash(self) -> str:
         return hash_of(json.dumps([self._basis, sorted(self._begin.sources.items())]).encode())
 
-    def save(self, elsewhere: Iterable[str]) -> list[str]:
+    def save(self, elsewhere: Iterable[str], written: Iterable[str] = ()) -> str:
         """Write the passes to the project.
 
+        A file that the run has written counts as changed only if it was there before, with other content than the last
+        run has given it: a test may have read that.
+
         :param elsewhere: the files that the run has imported from outside the project
-        :return: files that have changed during the run, for which nothing is kept
+        :param written: the files that pyfrc has written in this run
+        :return: why nothing is kept, such as a file that has changed during the run; or an empty text
         """
         self._kept.elsewhere |= {file: self._version_elsewhere(file) for file in sorted(elsewhere)}
-        changed = self._begin.differences(read_contents(self._project, self._written))
-        if changed:
+        before, end = self._begin.others, read_contents(self._project)
+        mine = {Path(os.path.relpath(file, self._project.root)).as_posix() for file in written} & end.others.keys()
+        expected = {path for path in mine if path not in before or path in self._written}
+        changed = [path for path in self._begin.differences(end) if path not in expected]
+        same = {path for path in self._written if end.others.get(path) == before[path]}
+        why_not = f"{changed[0]} changed during the run" if changed else ""
+        if not self._is_whole:
+            why_not = f"the project has more than {MOST_FILES} files"
+        if why_not:
             self._kept = _Kept(left_over=self._kept.left_over)
+        else:
+            self._basis = self._kept.basis = self._basis_without(mine | same)
+            self._kept.green = self._green_hash() if self._green else ""
+        self._kept.written = {path: end.others[path] for path in mine | same}
         with suppress(OSError):  # the next run runs everything
             write_whole(self._file, [json.dumps(vars(self._kept))])
             keep_out_of_version_control(self._file.parent)
-        return changed
+        return why_not
 
 
 def left_over(project: Project) -> str:
@@ -255,18 +279,14 @@ def left_over(project: Project) -> str:
     return str(_load(project.root / _FILE).left_over)
 
 
-def _basis_of(contents: Contents, conditions: list[object], rules: set[str]) -> str:
-    """Return a hash of what every test depends on: packages, conditions, and all files that are no tests.
-
-    :param rules: files with a team's rules, which concern all tests, also where they are tests
-    """
-    sources = [
-        (path, content)
-        for path, content in sorted(contents.sources.items())
-        if path in rules or not any(map(PurePath(path).match, TEST_FILES))
-    ]
-    facts = [environment(), *conditions, sorted(rules), sources, sorted(contents.others.items())]
-    return hash_of(json.dumps(facts).encode())
+def _named_elsewhere(root: Path, tests: Collection[str], sources: Iterable[str]) -> set[str]:
+    """Return the test files whose names occur in another source, which may import or read them."""
+    found = set()
+    for path in sources if tests else ():
+        with suppress(SourceError):
+            text = read_source(root / path)
+            found |= {test for test in tests if test != path and PurePath(test).stem in text}
+    return found
 
 
 def _load(file: Path) -> _Kept:

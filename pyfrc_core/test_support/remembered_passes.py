@@ -10,6 +10,7 @@ import pytest
 
 from ..compat.unrepeatable import real_time_libraries
 from ..passes.memory import Passes, loaded_from_elsewhere
+from ..passes.written import written_files
 from ..project import Project
 from ..wording import counted
 from .options import TestOptions
@@ -33,8 +34,10 @@ class RememberedPasses:
     def __init__(self, project: Project, options: TestOptions, args: Sequence[str], builtin: bool = False) -> None:
         self._project = project
         self._only_changed = options.only_changed
-        written = [each for each in (options.trace_directory, options.record_directory) if each is not None]
-        self._passes = Passes(project, options.seed, builtin, written)
+        self._passes = Passes(project, options.seed, builtin)
+        #: What the tests' processes have imported from outside the project, and what pyfrc has written there.
+        self._elsewhere: set[str] = set()
+        self._written: set[str] = set()
         self._runs_all = all(argument.startswith(_HARMLESS) for argument in args)
         self._valid = 0
         #: The file of each test.
@@ -47,6 +50,11 @@ class RememberedPasses:
     def record_real_time(self, libraries: Sequence[str]) -> None:
         """Note that a test's process has libraries that simulate devices in real time: its pass may be chance."""
         self._why_not = f"{libraries[0]} simulates devices in real time, so this robot does not repeat exactly"
+
+    def record_files(self, elsewhere: set[str], written: set[str]) -> None:
+        """Note what a test's process has imported from outside the project, and what pyfrc has written in it."""
+        self._elsewhere |= elsewhere
+        self._written |= written
 
     def record_left_over(self, reason: str) -> None:
         """Note what a test has left, for which the next one needed a new interpreter."""
@@ -86,12 +94,12 @@ class RememberedPasses:
             self._passes.set_green(False)
         elif self._runs_all:
             self._passes.set_green(True)
-        if changed := self._passes.save(loaded_from_elsewhere(self._project)):
-            self._why_not = f"{changed[0]} changed during the run"
+        self.record_files(loaded_from_elsewhere(self._project), written_files)
+        self._why_not = self._passes.save(self._elsewhere, self._written) or self._why_not
 
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:
         if self._valid:
-            passed = f"{counted(self._valid, 'test')} passed before"
-            terminalreporter.write_line(f"{passed}, and nothing that they ran or read has changed since")
+            passed = f"{counted(self._valid, 'test')} passed before; the files that they depend on"
+            terminalreporter.write_line(f"{passed}, Python and packages have not changed since")
         if self._only_changed and self._why_not:
             terminalreporter.write_line(f"pyfrc: the passes are not remembered, because {self._why_not}", yellow=True)

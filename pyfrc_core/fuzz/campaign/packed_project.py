@@ -11,6 +11,8 @@ from ...errors import PyfrcError
 from ...passes.memory import project_files
 from ...project import Project
 
+_LOGS = (".hoot", ".rrd", ".wpilog")
+
 
 @dataclass(frozen=True)
 class PackedProject:
@@ -48,7 +50,9 @@ def pack(project: Project) -> PackedProject:
     """Read the files of a project that its matches may need: logs, hidden files and environments are left out."""
     files = {}
     for file in {*project_files(project), project.main_file}:
-        if file.is_file() and os.access(file, os.R_OK):
+        name = Path(os.path.relpath(file, project.root)).as_posix()
+        is_hidden = any(part.startswith(".") for part in name.split("/") if part != "..")
+        if not is_hidden and file.suffix not in _LOGS and file.is_file() and os.access(file, os.R_OK):
             content = file.read_bytes()
-            files[Path(os.path.relpath(file, project.root)).as_posix()] = content, sha256(content).hexdigest()
+            files[name] = content, sha256(content).hexdigest()
     return PackedProject(replace(project), dict(sorted(files.items())))

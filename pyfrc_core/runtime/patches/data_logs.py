@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from ...disk_space import check_disk_space
+from ...passes.written import note_written
 from ...processes.exit import before_sudden_exit
 from ...processes.lent_streams import print_error
 from ...text_files import keep_out_of_version_control
@@ -240,9 +241,10 @@ class DataLogs:
             print_error(f"data log: {log.file} is not complete: {why}")
             return
         log.writer.stop()
+        note_written(log.file)
         if log.renamed:
             with suppress(OSError):
-                log.file.replace(log.file.with_name(log.renamed))
+                note_written(log.file.replace(log.file.with_name(log.renamed)))
 
     def _stop_network(self) -> None:
         assert self._network is not None

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from ...passes.written import note_written
 from ...processes.exit import before_sudden_exit
 from ..robot import RobotRun
 from .recorder import Recorder
@@ -36,6 +37,7 @@ def traced(run: RobotRun, file: Path) -> Iterator[Trace]:
             before_sudden_exit.pop("trace", None)  # robot code may have forked this process
             trace.write_lines()
         trace.finish()
+        note_written(file)
 
 
 @contextmanager
@@ -58,3 +60,4 @@ def recorded(run: RobotRun, file: Path, robot: str, seed: int) -> Iterator[None]
             yield
         finally:
             recorder.script(robot, seed, trace.digest()).save(file)
+            note_written(file)

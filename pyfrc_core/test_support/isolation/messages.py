@@ -13,7 +13,10 @@ import pytest
 
 from ...compat.pytest_private import run_test_protocol
 from ...compat.unrepeatable import real_time_libraries
+from ...passes.memory import loaded_from_elsewhere
+from ...passes.written import written_files
 from ...processes.worker import Send
+from ...project import Project
 from ..remembered_passes import PASSES
 
 Message = tuple[str, Any]
@@ -22,8 +25,9 @@ Message = tuple[str, Any]
 class ReportSender:
     """Runs one test in its own process and sends everything that a report needs."""
 
-    def __init__(self, send: Send) -> None:
+    def __init__(self, send: Send, project: Project) -> None:
         self._send = send
+        self._project = project
         self._listening = False
 
     def run(self, item: pytest.Item, shares: bool = True) -> None:
@@ -45,6 +49,9 @@ class ReportSender:
             self.send("stop", item.session.shouldstop)
         if libraries := real_time_libraries():
             self.send("real time", libraries)
+        elsewhere = loaded_from_elsewhere(self._project, with_pyfrc=False)
+        if elsewhere or written_files:
+            self.send("files", (elsewhere, written_files))
         self.send("done", None)
 
     def send(self, kind: str, content: object) -> None:
@@ -97,10 +104,12 @@ def replay(item: pytest.Item, message: Message) -> pytest.TestReport | None:
                 "location": location,
             }
         )
-    elif kind == "real time":
+    elif kind in ("real time", "files"):
         passes: Any = item.config.pluginmanager.getplugin(PASSES)
-        if passes is not None:  # a plain `pytest` has none
+        if passes is not None and kind == "real time":  # a plain `pytest` has none
             passes.record_real_time(content)
+        elif passes is not None:
+            passes.record_files(*content)
     elif kind == "exit":
         raise pytest.exit.Exception(content[0], content[1])
     elif kind == "interrupted":

@@ -136,4 +136,4 @@ def _run_in_fork(
         output.connect_this_process()
     plugin.crash_log = log
     log.enable_fault_handler()  # pytest has one of its own
-    ReportSender(send).run(item)
+    ReportSender(send, plugin.project).run(item)

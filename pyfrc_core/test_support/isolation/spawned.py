@@ -78,7 +78,7 @@ class OnlyOneTest:
         self._log.enable_fault_handler()  # pytest has one of its own
         for item in session.items:
             if item.nodeid == self._job.nodeid:
-                ReportSender(self._send).run(item, shares=False)
+                ReportSender(self._send, self._job.project).run(item, shares=False)
         return True
 
 

@@ -1,0 +1,101 @@
+"""One walk over a project's files for everything that looks at them, and one way to read a Python file.
+
+What is left out cannot matter: version control, environments, caches of tools, and what pyfrc writes itself.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from importlib.util import decode_source
+from pathlib import Path
+
+from ..encoding import why_not_utf8
+from ..errors import PyfrcError
+from ..file_hash import open_file
+from .environments import is_environment
+
+#: Version control, installed packages, state and caches of tools, and `.pyfrc`, which is pyfrc's own.
+LEFT_OUT = frozenset(
+    {".git", ".hg", ".jj", ".svn", "node_modules", ".pyfrc"}
+    | {"__pycache__", ".hypothesis", ".idea", ".mypy_cache", ".nox", ".pytest_cache", ".ruff_cache", ".tox"}
+)
+
+
+class SourceError(PyfrcError):
+    """A Python file cannot be read."""
+
+
+def files_below(top: Path) -> Iterator[Path]:
+    """Yield all files below a directory, through links too, and directories whose name is that of a Python file.
+
+    Each directory is read once, under its own name if it has one here, so that a circle of links ends. What cannot be
+    read, and links to nothing, are among the files.
+    """
+    directories, links, seen = [top], list[Path](), set[tuple[int, int]]()
+    while directories or links:
+        directory = directories.pop() if directories else links.pop(0)
+        try:
+            status = directory.stat()
+            if (status.st_dev, status.st_ino) in seen:
+                continue
+            seen.add((status.st_dev, status.st_ino))
+            with os.scandir(directory) as entries:
+                found = sorted(entries, key=lambda each: each.name)
+        except OSError:  # nothing in it can be read
+            continue
+        for entry in found:
+            path = Path(entry.path)
+            is_directory = path.is_dir()
+            if not is_directory or path.suffix == ".py":
+                yield path
+            if is_directory and entry.name not in LEFT_OUT and not is_environment(path):
+                (links if entry.is_symlink() else directories).append(path)
+
+
+def python_files(top: Path) -> list[Path]:
+    """Return what is called ``*.py`` below a directory, sorted, and not in hidden directories or installed packages."""
+    found = (each for each in files_below(top) if each.suffix == ".py")
+    return sorted(each for each in found if not _is_out_of_sight(each.relative_to(top).parts))
+
+
+def _is_out_of_sight(parts: tuple[str, ...]) -> bool:
+    return any(each.startswith(".") for each in parts) or "site-packages" in parts
+
+
+def read_source(file: Path) -> str:
+    """Return the text of a Python file, as Python reads it.
+
+    :raises SourceError: if it cannot be read, with the reason
+    """
+    try:
+        if file.is_dir():
+            raise SourceError("this is a directory, with the name of a Python file", where=file, remedy="Rename it.")
+        with open_file(file) as stream:
+            content = stream.read()
+    except OSError as error:
+        if file.is_symlink() and not file.exists():
+            gone = f"this is a link to {os.readlink(file)}, which does not exist"  # noqa: PTH115 - as it is written
+            raise SourceError(gone, where=file, remedy="Remove it, or correct it.") from None
+        remedy = "Check its owner and permissions, or remove it."
+        raise SourceError(f"this cannot be read: {error.strerror}", where=file, remedy=remedy) from None
+    try:
+        text = decode_source(content)  # an encoding may be named in its first line
+        if "\0" not in text:
+            return text
+    except (SyntaxError, UnicodeDecodeError):
+        pass
+    wrong = why_not_utf8(content)
+    if wrong is None:
+        raise SourceError("this is not in the encoding that its first line names", where=file)
+    raise SourceError(wrong.message, where=f"{file}:{wrong.line}" if wrong.line else file, remedy=wrong.remedy)
+
+
+def unreadable_sources(files: Iterator[Path] | list[Path], base: Path) -> Iterator[SourceError]:
+    """Yield an error for each Python file that cannot be read, with its path relative to a directory."""
+    for file in files:
+        try:
+            read_source(file)
+        except SourceError as error:
+            where = str(error.where).removeprefix(f"{base}{os.sep}")
+            yield SourceError(error.message, where=Path(where).as_posix(), remedy=error.remedy)

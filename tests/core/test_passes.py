@@ -1,0 +1,243 @@
+"""What counts as a change of a project: each file that a test may open, and nothing that a run writes itself."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from pyfrc_core.passes import memory
+from pyfrc_core.passes.memory import Passes
+from pyfrc_core.project import Project
+from pyfrc_core.project.walk import LEFT_OUT
+
+needs_links = pytest.mark.skipif(sys.platform == "win32", reason="links need a privilege there")
+
+TEST = "tests/test_robot.py"
+
+
+def make(root: Path, *names: str) -> Project:
+    for name in ("robot.py", TEST, *names):
+        file = root / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(b"# content\n")
+    return Project(root / "robot.py")
+
+
+def all_passed(project: Project, run: Callable[[], object] = lambda: None, written: Iterable[Path] = ()) -> str:
+    """Keep that all tests have passed; return why that is not kept.
+
+    :param run: what happens meanwhile
+    :param written: the files that pyfrc has written in it
+    """
+    passes = Passes(project)
+    run()
+    passes.record("test_a", project.root / TEST)
+    passes.set_green(True)
+    return passes.save([], map(str, written))
+
+
+def stands(project: Project) -> bool:
+    passes = Passes(project)
+    green, test = passes.green_since() is not None, passes.is_valid("test_a", project.root / TEST)
+    assert green == test
+    return green
+
+
+# -- every file counts -------------------------------------------------------------------------------------------------
+
+PLACES = [
+    ".",
+    "dist",
+    "build",
+    "deploy",
+    "logs",
+    "htmlcov",
+    "ctre_sim",
+    "venv",
+    ".config",
+    ".wpilib",
+    "tests/data",
+    "../tests",
+]
+NAMES = [
+    ".hidden",
+    "match.wpilog",
+    "a.hoot",
+    "x.pyc",
+    "speeds.json",
+    "sensor.py",
+    "networktables.json",
+    "coverage.xml",
+    "no_end",
+]
+LETTERS = st.characters(codec="utf-8", exclude_characters='/\0\\:*?<>|"', exclude_categories=["C", "Z"])
+ANY_NAME = st.text(LETTERS, min_size=1, max_size=12).filter(lambda name: name.strip(".") and name not in LEFT_OUT)
+
+
+def write_as_long(file: Path) -> None:
+    file.write_bytes(b"# CONTENT\n")
+
+
+def append(file: Path) -> None:
+    file.write_bytes(file.read_bytes() + b"\n")
+
+
+def add_another(file: Path) -> None:
+    file.with_name(f"{file.name}2").write_bytes(b"")
+
+
+EDITS = [write_as_long, append, Path.unlink, add_another]
+
+
+@given(st.sampled_from(PLACES), st.sampled_from(NAMES) | ANY_NAME, st.sampled_from(EDITS))
+@example("dist", "sensor.py", write_as_long)
+@example("tests", "match.wpilog", write_as_long)
+def test_any_edit_of_any_file_that_a_test_opens_is_noticed(
+    place: str, name: str, edit: Callable[[Path], object]
+) -> None:
+    with TemporaryDirectory() as directory:
+        root = Path(directory, "project")
+        project = make(root, f"{place}/{name}")
+        assert all_passed(project) == ""
+        assert stands(project)
+        edit(root / place / name)
+        assert not stands(project)
+
+
+@needs_links
+@pytest.mark.parametrize("link", ["data.json", "linked", "tests/linked"])
+def test_what_links_lead_to_counts(tmp_path: Path, link: str) -> None:
+    project = make(tmp_path / "project", "data/a.json")
+    make(tmp_path / "elsewhere", "b.json")
+    here = project.root / link
+    here.symlink_to(tmp_path / "elsewhere" / ("b.json" if "." in link else ""))
+    (project.root / "data" / "circle").symlink_to(project.root)
+    all_passed(project)
+    assert stands(project)
+    write_as_long(tmp_path / "elsewhere/b.json")
+    assert not stands(project)
+
+
+@needs_links
+def test_a_link_to_nothing_counts_when_it_leads_somewhere(tmp_path: Path) -> None:
+    project = make(tmp_path / "project")
+    (project.root / "deploy.json").symlink_to(tmp_path / "later.json")
+    all_passed(project)
+    assert stands(project)
+    (tmp_path / "later.json").write_bytes(b"1")
+    assert not stands(project)
+
+
+@pytest.mark.parametrize("name", ["conftest.py", "pytest.ini", "tox.ini", "setup.cfg", "pyproject.toml"])
+def test_what_pytest_reads_above_the_project_counts(tmp_path: Path, name: str) -> None:
+    project = make(tmp_path / "repository" / "project")
+    all_passed(project)
+    assert stands(project)
+    (tmp_path / name).write_bytes(b"")
+    assert not stands(Project(project.main_file))
+
+
+@pytest.mark.parametrize("name", ["PYTEST_ADDOPTS", "PYTHONPATH", "PYTHONOPTIMIZE", "TZ"])
+def test_variables_that_change_a_run_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    monkeypatch.delenv(name, raising=False)
+    project = make(tmp_path)
+    all_passed(project)
+    assert stands(project)
+    monkeypatch.setenv(name, "1")
+    assert not stands(project)
+
+
+def test_a_large_file_counts_by_its_times(tmp_path: Path) -> None:
+    project = make(tmp_path)
+    video = tmp_path / "video.bin"
+    video.write_bytes(bytes(2 << 20))
+    all_passed(project)
+    assert stands(project)
+    with video.open("r+b") as stream:
+        stream.write(b"1")
+    os.utime(video, ns=(0, 0))
+    assert not stands(project)
+
+
+def test_what_cannot_matter_does_not_count(tmp_path: Path) -> None:
+    project = make(tmp_path, ".venv/pyvenv.cfg")
+    all_passed(project)
+    for name in (
+        "__pycache__/x.pyc",
+        ".git/index",
+        ".pytest_cache/v/x",
+        ".mypy_cache/x",
+        ".pyfrc/logs/x",
+        ".venv/x.py",
+    ):
+        make(tmp_path, name)
+    assert stands(project)
+
+
+def test_a_test_file_that_another_one_names_counts_for_all(tmp_path: Path) -> None:
+    project = make(tmp_path, "tests/test_other.py", "tests/test_more.py")
+    (tmp_path / TEST).write_text("from test_other import helper\n")
+    all_passed(project)
+    write_as_long(tmp_path / "tests/test_more.py")
+    assert Passes(project).is_valid("test_a", tmp_path / TEST)
+    write_as_long(tmp_path / "tests/test_other.py")
+    assert not Passes(project).is_valid("test_a", tmp_path / TEST)
+
+
+def test_a_home_directory_as_a_project_is_not_remembered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(memory, "MOST_FILES", 20)
+    project = make(tmp_path, *(f"photos/{number}" for number in range(30)))
+    assert all_passed(project) == "the project has more than 20 files"
+    assert not stands(project)
+
+
+# -- what a run writes itself ------------------------------------------------------------------------------------------
+
+
+def test_a_log_that_a_run_creates_changes_nothing(tmp_path: Path) -> None:
+    project, log = make(tmp_path), tmp_path / "logs" / "robot.wpilog"
+    for number in range(3):
+
+        def run(text: str = f"log {number}") -> None:
+            log.parent.mkdir(exist_ok=True)
+            log.write_text(text)
+
+        assert all_passed(project, run, [log]) == ""
+        assert stands(project)
+    log.unlink()
+    assert stands(project), "it is as before the first run"
+    run()
+    assert stands(project)
+    log.write_text("ours")
+    assert not stands(project), "written by another, and a test may read it"
+
+
+def test_a_log_that_was_there_before_the_run_counts_once(tmp_path: Path) -> None:
+    project, log = make(tmp_path, "robot.wpilog"), tmp_path / "robot.wpilog"
+    assert all_passed(project, lambda: log.write_text("1"), [log]) == "robot.wpilog changed during the run"
+    assert not stands(project)
+    assert all_passed(project, lambda: log.write_text("2"), [log]) == ""
+    assert stands(project)
+
+
+@pytest.mark.parametrize("name", ["new.json", "parts/new.py"])
+def test_what_another_saves_during_the_run_counts(tmp_path: Path, name: str) -> None:
+    project = make(tmp_path)
+    assert all_passed(project, lambda: make(tmp_path, name)) == f"{name} changed during the run"
+    assert not stands(project)
+
+
+def test_a_part_of_the_tests_keeps_what_all_have_passed_with(tmp_path: Path) -> None:
+    project, log = make(tmp_path), tmp_path / "logs.wpilog"
+    all_passed(project)
+    part = Passes(project)
+    log.write_text("a log")
+    assert part.save([], [str(log)]) == ""
+    assert stands(project)
