@@ -61,7 +61,11 @@ def chosen_project(directory: Path | None, main: Path | None = None, robot_class
     project = find_project(directory, main, robot_class)
     refuse_hidden_libraries(project.root, project.main_file)
     refuse_other_season(installed_wpilib(), load_season_settings(project.pyproject))
-    check_outputs(click.get_current_context(), project)
+    context = click.get_current_context()
+    check_outputs(context, project)
+    if context.info_name != "test":  # its summary has them, where they are seen
+        for unreadable in project.unreadable_sources():
+            click.secho(f"warning: {unreadable}", fg="yellow", err=True)
     return project
 
 

@@ -45,6 +45,8 @@ def check_project(
     yield from _asked_for(project, installed, None if refused else wpilib)
     program = [] if refused else [*_robot_class(project)]
     yield from program
+    for unreadable in project.unreadable_sources():
+        yield hint("project", f"{unreadable.where}: {unreadable.message}", unreadable.remedy or "")
     yield from _sim_config(project)
     yield from _dashboards(project)
     yield from _physics(project, imports=not refused and all(each.status != "problem" for each in program))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import glob
 import json
 import sys
 import tempfile
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import UsageError
 from ..project import Project
+from ..project.walk import python_files, why_unreadable
 from ..text_files import write_whole
 from ..wording import counted
 from .processes import announced, is_announced
@@ -85,7 +87,9 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
         settings: dict[str, Any] = {
             "data_file": str(Path(directory) / "data"),
             "source": [str(project.root)],
-            "omit": [*(f"{tests}/*" for tests in project.test_directories), "*/site-packages/*"],
+            "omit": [*(f"{glob.escape(str(tests))}/*" for tests in project.test_directories), "*/site-packages/*"]
+            # It would wait for a pipe.
+            + [glob.escape(str(file)) for file in python_files(project.root) if why_unreadable(file)],
             "config_file": str(project.pyproject) if project.pyproject.is_file() else False,
         }
         try:

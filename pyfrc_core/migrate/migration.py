@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import os
 import shutil
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ from tempfile import NamedTemporaryFile
 
 from ..config.robotpy import load_robot_packages
 from ..errors import UsageError
-from ..project.environments import is_environment
+from ..project import walk
 from ..project.git import git_output
 from ..season.season_2027 import SEASON_2027
 from .names.table import table
@@ -20,7 +19,6 @@ from .project import Progress, Source, rewrite_all
 from .report import Report
 from .settings import Settings
 
-_NOT_OURS = {"node_modules", "site-packages", "build", "dist", "__pycache__", "venv", "env"}
 _GIT_SECONDS = 60
 
 
@@ -89,8 +87,15 @@ def migrate(
     names = table()
     version = load_robot_packages(root / "pyproject.toml").version
     first_time = version is None or not version.startswith("2027")
+    sources = []
     files, links = python_files(root)
-    sources = [Source(file, file.relative_to(root).as_posix(), file.read_bytes()) for file in files]
+    for file in files:
+        name, wrong = file.relative_to(root).as_posix(), walk.why_unreadable(file)
+        if wrong is None:
+            sources.append(Source(file, name, file.read_bytes()))
+        else:
+            what = f"{wrong.message[0].upper()}{wrong.message[1:]}. The file stays as it is."
+            report.add(name, wrong.line or 0, what, wrong.remedy or "")
     for link in links if first_time else ():
         what = (
             f"This is a link to {link.readlink().as_posix()}, which is not followed, so the code there stays as it is."
@@ -121,27 +126,16 @@ def migrate(
 def python_files(root: Path) -> tuple[list[Path], list[Path]]:
     """Return the Python files of a project, without those of virtual environments and hidden directories.
 
-    :returns: the files; and the links to other files, and to directories with some, which are not followed
+    :returns: the files, with what only has the name of one; and the links to code outside the project
     """
-    found, links = [], []
-    for directory, directories, files in os.walk(root):
-        here = Path(directory)
-        directories[:] = [
-            each
-            for each in sorted(directories)
-            if not each.startswith(".") and each not in _NOT_OURS and not is_environment(here / each)
-        ]
-        python = [here / each for each in sorted(files) if each.endswith(".py")]
-        found += [file for file in python if not file.is_symlink()]
-        links += [each for each in (*python, *(here / name for name in directories)) if _leads_outside(each, root)]
-    return found, links
-
-
-def _leads_outside(link: Path, root: Path) -> bool:
-    """Return whether a link leads to Python code outside the project, which is not read."""
-    if not link.is_symlink() or link.resolve().is_relative_to(root.resolve()):
-        return False
-    return link.is_file() or next(link.resolve().rglob("*.py"), None) is not None
+    found, links = [], set()
+    for file in walk.python_files(root):
+        link = next((each for each in (file, *file.parents) if each != root and each.is_symlink()), None)
+        if link is None or not link.is_relative_to(root) or not link.exists():
+            found.append(file)
+        elif not link.resolve().is_relative_to(root.resolve()):
+            links.add(link)
+    return found, sorted(links)
 
 
 def refuse_uncommitted(root: Path) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from ..config.settings import load_settings
 from ..errors import ProjectError
 from .project import MAIN_FILE, Project
+from .walk import text_to_search
 
 #: At most this many of the projects in subdirectories are named.
 MOST_NAMED = 5
@@ -88,10 +89,7 @@ def _nothing_found(directory: Path, how: str) -> ProjectError:
 
 
 def _defines_robot(file: Path) -> bool:
-    try:
-        return _ROBOT_CLASS.search(file.read_text("utf-8", "replace")) is not None
-    except OSError:
-        return False
+    return _ROBOT_CLASS.search(text_to_search(file)) is not None
 
 
 def projects_below(directory: Path) -> list[Path]:

@@ -14,6 +14,7 @@ from ..config.findings import SettingsWarning, settings_error
 from ..config.settings import Settings, load_settings
 from ..season import CURRENT
 from .robot_files import RobotFiles
+from .walk import SourceError, python_files, text_to_search, why_unreadable
 
 if TYPE_CHECKING:
     from ..config.sim import SimConfig
@@ -115,24 +116,28 @@ class Project:
         """The files among the project's tests that may have rules (`pyfrc.invariant`)."""
         tests = self.find_tests()
         directories = self.test_directories if tests is None else (tests,)
-        found = (tuple(filter(_may_have_rules, sorted(directory.rglob("*.py")))) for directory in directories)
+        found = (tuple(filter(_may_have_rules, python_files(directory))) for directory in directories)
         return next(filter(None, found), ())
 
     def find_tests(self) -> Path | None:
         """Return the directory of the project's tests, or None if there are no test files."""
         for directory in self.test_directories:
-            if any(any(directory.rglob(pattern)) for pattern in TEST_FILES):
+            if any(file.is_file() and any(map(file.match, TEST_FILES)) for file in python_files(directory)):
                 return directory
         return None
 
+    def unreadable_sources(self) -> list[SourceError]:
+        """Return an error for each Python file of the project that cannot be read."""
+        beside = self.test_directories[1]
+        places = [self.root] if beside.is_relative_to(self.root) else [self.root, beside]
+        errors = (why_unreadable(file) for place in places for file in python_files(place))
+        return [error.within(self.files) for error in errors if error is not None]
 
-_PYFRCS_NAME = re.compile(rb"@\s*pyfrc\s*\.|from\s+pyfrc\s+import")
+
+_PYFRCS_NAME = re.compile(r"@\s*pyfrc\s*\.|from\s+pyfrc\s+import")
 
 
 def _may_have_rules(file: Path) -> bool:
-    try:
-        text = file.read_bytes()
-    except OSError:
-        return False
+    text = text_to_search(file)
     # Any name of pyfrc's own, so that a misspelled decorator is an error of that file.
-    return (b"pyfrc" in text and b"invariant" in text) or _PYFRCS_NAME.search(text) is not None
+    return ("pyfrc" in text and "invariant" in text) or _PYFRCS_NAME.search(text) is not None

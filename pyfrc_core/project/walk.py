@@ -14,6 +14,7 @@ from ..encoding import why_not_utf8
 from ..errors import PyfrcError
 from ..file_hash import open_file
 from .environments import is_environment
+from .robot_files import RobotFiles
 
 #: Version control, installed packages, state and caches of tools, and `.pyfrc`, which is pyfrc's own.
 LEFT_OUT = frozenset(
@@ -23,7 +24,19 @@ LEFT_OUT = frozenset(
 
 
 class SourceError(PyfrcError):
-    """A Python file cannot be read."""
+    """A Python file cannot be read.
+
+    :param line: the first line that cannot be read, from 1; None when it is the whole file
+    """
+
+    def __init__(self, message: str, file: str | Path, remedy: str, line: int | None = None) -> None:
+        self.file, self.line = file, line
+        super().__init__(message, where=f"{file}:{line}" if line else file, remedy=remedy)
+
+    def within(self, files: RobotFiles) -> SourceError:
+        """Return this error with the file's path as the user sees it."""
+        path = Path(files.relative(str(self.file))).as_posix()
+        return SourceError(self.message, path, self.remedy or "", self.line)
 
 
 def files_below(top: Path) -> Iterator[Path]:
@@ -70,15 +83,16 @@ def read_source(file: Path) -> str:
     """
     try:
         if file.is_dir():
-            raise SourceError("this is a directory, with the name of a Python file", where=file, remedy="Rename it.")
+            raise SourceError("this is a directory, with the name of a Python file", file, "Rename it.")
         with open_file(file) as stream:
             content = stream.read()
     except OSError as error:
         if file.is_symlink() and not file.exists():
             gone = f"this is a link to {os.readlink(file)}, which does not exist"  # noqa: PTH115 - as it is written
-            raise SourceError(gone, where=file, remedy="Remove it, or correct it.") from None
-        remedy = "Check its owner and permissions, or remove it."
-        raise SourceError(f"this cannot be read: {error.strerror}", where=file, remedy=remedy) from None
+            raise SourceError(gone, file, "Remove it, or correct it.") from None
+        why = error.strerror or str(error)
+        message = why if why.startswith("this is") else f"this cannot be read: {why}"
+        raise SourceError(message, file, "Check its owner and permissions, or remove it.") from None
     try:
         text = decode_source(content)  # an encoding may be named in its first line
         if "\0" not in text:
@@ -87,15 +101,22 @@ def read_source(file: Path) -> str:
         pass
     wrong = why_not_utf8(content)
     if wrong is None:
-        raise SourceError("this is not in the encoding that its first line names", where=file)
-    raise SourceError(wrong.message, where=f"{file}:{wrong.line}" if wrong.line else file, remedy=wrong.remedy)
+        raise SourceError("this is not in the encoding that its first line names", file, "Save it as UTF-8.")
+    raise SourceError(wrong.message, file, wrong.remedy, wrong.line)
 
 
-def unreadable_sources(files: Iterator[Path] | list[Path], base: Path) -> Iterator[SourceError]:
-    """Yield an error for each Python file that cannot be read, with its path relative to a directory."""
-    for file in files:
-        try:
-            read_source(file)
-        except SourceError as error:
-            where = str(error.where).removeprefix(f"{base}{os.sep}")
-            yield SourceError(error.message, where=Path(where).as_posix(), remedy=error.remedy)
+def text_to_search(file: Path) -> str:
+    """Return what can be read of a Python file as UTF-8, a replacement for each wrong byte; empty if nothing can."""
+    try:
+        return file.read_text("utf-8", "replace") if file.is_file() else ""
+    except OSError:
+        return ""
+
+
+def why_unreadable(file: Path) -> SourceError | None:
+    """Return the error of `read_source`, if there is one."""
+    try:
+        read_source(file)
+    except SourceError as error:
+        return error
+    return None

@@ -18,6 +18,7 @@ from ..processes.crash_report import reported_exit
 from ..processes.lent_streams import lent_streams
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_by_any_name
+from ..project.walk import python_files, text_to_search
 from ..wpi import robots, timing
 from ..wpi.opmodes import DECORATED
 from .checks.hang_detector import importing, watching_exit
@@ -75,8 +76,8 @@ def _import_opmodes(project: Project) -> None:
     directory = project.main_file.parent / "opmodes"
     if re.search(r"\bauto_discover\s*=\s*False", project.main_file.read_text("utf-8", "replace")):
         return
-    for file in sorted(directory.rglob("*.py")):
-        if DECORATED.search(file.read_text("utf-8", "replace")):
+    for file in python_files(directory):
+        if DECORATED.search(text_to_search(file)):
             parts = file.relative_to(directory.parent).with_suffix("").parts
             name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
             _run_code(project, file, name, partial(importlib.import_module, name))
@@ -124,7 +125,7 @@ def _refuse_wrong_encoding(project: Project, file: Path, error: Exception) -> No
         return
     named = Path(getattr(error, "filename", None) or "")
     # Python does not always name the file.
-    for suspect in [named] if named.is_file() else [file, *sorted(project.root.rglob("*.py"))]:
+    for suspect in [named] if named.is_file() else [file, *python_files(project.root)]:
         if not project.files.is_robot_code(str(suspect)):
             continue
         wrong = find_wrong_encoding(suspect)

@@ -41,6 +41,7 @@ class SummaryPlugin:
         self._whole = whole
         self._collected: set[Path] = set()
         self._uncollected: list[str] = []
+        self._unreadable: list[str] = []
         self._output = LibraryOutput()
 
     def pytest_configure(self, config: pytest.Config) -> None:
@@ -69,6 +70,7 @@ class SummaryPlugin:
         mistakes = [f"{mistake}\n  {mistake.remedy}" for mistake in find_code_warnings(self._project)]
         mistakes += _take_device_warnings(terminalreporter.stats)
         _print_section(terminalreporter, "mistakes without an error", mistakes)
+        _print_section(terminalreporter, "files that cannot be read", self._unreadable)
         _print_section(terminalreporter, "files without tests", self._uncollected)
         return (yield)
 
@@ -76,6 +78,7 @@ class SummaryPlugin:
         self._collected.add(item.path)
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:
+        self._unreadable = [str(each) for each in self._project.unreadable_sources()]
         directory = self._project.find_tests() if self._whole else None
         if directory is not None and not session.testsfailed:
             patterns = session.config.getini("python_files")

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 from fnmatch import fnmatch
 from pathlib import Path
 
+from ..project.walk import SourceError, python_files, read_source
+
 _TESTS = re.compile(r"^(?:\s+|async )*def test|^class Test|^from pyfrc\.tests import", re.MULTILINE)
 _READY_MADE_OFF = re.compile(r"^\s*#\s*from pyfrc\.tests import", re.MULTILINE)
 _FUNCTION = re.compile(r"^def (\w*test\w*)\((?!.*fixture)", re.MULTILINE | re.IGNORECASE)
@@ -19,10 +21,13 @@ def find_uncollected(directory: Path, collected: set[Path], patterns: Sequence[s
     :param collected: the files of the tests that were collected
     :param patterns: pytest's patterns for the names of files with tests
     """
-    for file in sorted(directory.rglob("*.py")):
-        if file in collected or file.name in _NOT_TESTS or any(part.startswith(".") for part in file.parts):
+    for file in python_files(directory):
+        if file in collected or file.name in _NOT_TESTS:
             continue
-        text = file.read_text("utf-8", "replace")
+        try:
+            text = read_source(file)
+        except SourceError:  # reported as such
+            continue
         name = file.relative_to(directory.parent).as_posix()
         if any(fnmatch(file.name, pattern) for pattern in patterns):
             yield f"{name}: no test was found in it. {_how_to_name(text)}"

@@ -8,21 +8,18 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
+from ...passes.memory import hash_of_file
 from ...project import Project
-from ...project.environments import is_environment
+from ...project.walk import python_files
 from ...text_files import keep_out_of_version_control, write_whole
 from .stream import Shard, Stream
 
 DIRECTORY = Path(".pyfrc", "fuzz", "corpus")
-
-#: Directories without robot code.
-_NOT_SEARCHED = ("__pycache__", "node_modules", "tests", "venv")
 
 
 class KeptGuidance:
@@ -69,18 +66,10 @@ def fingerprint(project: Project) -> str:
     digest = hashlib.sha256()
     names = ("pyfrc", "wpilib")
     digest.update(repr((sys.version_info[:2], [version(name) for name in names], project.settings)).encode())
-    for file in _source_files(project.main_file.parent):
-        digest.update(f"{file.relative_to(project.main_file.parent).as_posix()}\0".encode())
-        digest.update(file.read_bytes())
+    root = project.main_file.parent
+    for file in python_files(root):
+        if "tests" in file.relative_to(root).parts:
+            continue
+        digest.update(f"{file.relative_to(root).as_posix()}\0".encode())
+        digest.update(hash_of_file(file).encode())
     return digest.hexdigest()
-
-
-def _source_files(root: Path) -> Iterator[Path]:
-    for directory, inside, files in os.walk(root):
-        inside[:] = sorted(
-            name
-            for name in inside
-            if name not in _NOT_SEARCHED and not name.startswith(".") and not is_environment(Path(directory, name))
-        )
-        found = (Path(directory, name) for name in sorted(files) if name.endswith(".py"))
-        yield from (file for file in found if file.is_file())  # not a link to nothing

@@ -92,4 +92,6 @@ def _failures(project: Project, root: Path) -> list[str]:
 
 
 def _not_needed(directory: str, names: list[str]) -> set[str]:
-    return {name for name in names if name in _LEFT_OUT or is_environment(Path(directory, name))}
+    paths = {name: Path(directory, name) for name in names}
+    copied = {name for name, path in paths.items() if path.is_symlink() or path.is_file() or path.is_dir()}  # no pipes
+    return {name for name, path in paths.items() if name in _LEFT_OUT or name not in copied or is_environment(path)}

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...project.loaded_modules import loaded_modules
+from ...project.walk import python_files, text_to_search
 from ...season import CURRENT
 from ...wpi.opmodes import DECORATORS
 from .code_warning import CodeWarning
@@ -25,8 +26,8 @@ def find_opmodes_never_run(project: Project) -> list[CodeWarning]:
         return []
     files = {Path(str(module.__file__)) for module in loaded_modules.look()}
     files = {file for file in files if project.files.is_robot_code(str(file))}
-    files |= set((project.main_file.parent / "opmodes").rglob("*.py"))  # not imported if nothing in them is decorated
-    texts = {file: file.read_text("utf-8", "replace") for file in sorted(files)}
+    files |= set(python_files(project.main_file.parent / "opmodes"))  # not imported if nothing in them is decorated
+    texts = {file: text_to_search(file) for file in sorted(files)}
     found: list[CodeWarning] = []
     places: dict[tuple[str, str], str] = {}
     for file, text in texts.items():

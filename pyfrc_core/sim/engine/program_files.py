@@ -2,34 +2,30 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
-from ...project.environments import is_environment
+from ...project.walk import files_below
 
 #: Directories without robot code.
-_NOT_OURS = {"__pycache__", "node_modules", "site-packages", "tests", "venv"}
+_NOT_OURS = {"site-packages", "tests", "venv"}
 _TWO_SECONDS = 2_000_000_000  # in nanoseconds
 
 
 def program_files(root: Path) -> dict[str, tuple[int, int]]:
     """Return the Python files and settings below a directory, each with its time (ns) and its size (bytes)."""
     found = {}
-    for directory, below, files in os.walk(root):
-        below[:] = [
-            name
-            for name in below
-            if name not in _NOT_OURS and not name.startswith(".") and not is_environment(Path(directory, name))
-        ]
-        for name in files:
-            if name.endswith(".py") or name in ("config.json", "pyproject.toml"):
-                try:
-                    status = Path(directory, name).stat()
-                except OSError:  # gone again: an editor's temporary file
-                    continue
-                found[str(Path(directory, name))] = (status.st_mtime_ns, status.st_size)
+    for file in files_below(root):
+        directories = file.relative_to(root).parts[:-1]
+        if file.suffix != ".py" and file.name not in ("config.json", "pyproject.toml"):
+            continue
+        if _NOT_OURS.intersection(directories) or any(each.startswith(".") for each in directories):
+            continue
+        with suppress(OSError):  # gone again: an editor's temporary file
+            status = file.stat()
+            found[str(file)] = (status.st_mtime_ns, status.st_size)
     return found
 
 
