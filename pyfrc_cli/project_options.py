@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+
+from pyfrc_core.wording import path_from
 
 from .file_options import ReadPath, check_outputs
 
@@ -71,7 +72,4 @@ def chosen_project(directory: Path | None, main: Path | None = None, robot_class
 
 def from_here(file: Path, here: str = ".") -> str:
     """Return the path relative to the current directory, or to another one, where that is possible."""
-    try:
-        return Path(os.path.relpath(file, here)).as_posix()
-    except ValueError:  # on Windows: on another drive
-        return str(file)
+    return Path(path_from(Path(here), file)).as_posix()

@@ -22,7 +22,7 @@ allow_host_option = click.option(
     help="Also serve the page under this host name, to which a port of this computer is forwarded; may be repeated.",
 )
 builtin_option = click.option(
-    "--builtin", is_flag=True, help="Run the ready-made tests if the project has none of its own."
+    "--builtin", is_flag=True, help="Also run the ready-made tests, unless the project imports them."
 )
 fail_under_option = click.option(
     "--fail-under",

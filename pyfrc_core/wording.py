@@ -31,6 +31,14 @@ def from_here(file: Path) -> str:
         return str(file)
 
 
+def path_from(directory: Path, file: str | Path) -> str:
+    """Return the path of a file relative to a directory, where that is possible."""
+    try:
+        return os.path.relpath(file, directory)
+    except ValueError:  # on Windows: on another drive
+        return str(file)
+
+
 def size_text(count: int) -> str:
     """Return a number of bytes with its unit."""
     if count < 10_000:

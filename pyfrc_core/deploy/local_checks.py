@@ -34,7 +34,7 @@ class DeployOptions:
     """The options of a deploy.
 
     :param choice: the robot to deploy to
-    :param builtin: run the ready-made tests if the project has none
+    :param builtin: run the ready-made tests, too, unless the project imports them
     :param skip_tests: run no tests
     :param large: also upload files over 250,000 bytes
     :param check_versions: refuse robots with another wpilib, without required packages, or with an old image

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import glob
 import json
+import os
+import re
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
@@ -87,9 +88,7 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
         settings: dict[str, Any] = {
             "data_file": str(Path(directory) / "data"),
             "source": [str(project.root)],
-            "omit": [*(f"{glob.escape(str(tests))}/*" for tests in project.test_directories), "*/site-packages/*"]
-            # It would wait for a pipe.
-            + [glob.escape(str(file)) for file in python_files(project.root) if why_unreadable(file)],
+            "omit": ["*/site-packages/*", *_patterns(project)],
             "config_file": str(project.pyproject) if project.pyproject.is_file() else False,
         }
         try:
@@ -101,6 +100,14 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
         except (CoverageException, ValueError) as error:
             where = project.pyproject.name if "config" in str(error).lower() else None
             raise UsageError(f"coverage: {error}", where=where) from error
+
+
+def _patterns(project: Project) -> Iterator[str]:
+    """Yield coverage's patterns for tests, and for what cannot be read: it would wait for a pipe."""
+    names = [f"{tests}{os.sep}*" for tests in project.test_directories]
+    names += [str(file) for file in python_files(project.root) if why_unreadable(file)]
+    # coverage has no way to write a bracket, which names of directories may have.
+    yield from (re.sub(r"[][{}]", "?", name) for name in names)
 
 
 def _report(combined: Coverage, options: CoverageOptions, as_json: Path) -> int:

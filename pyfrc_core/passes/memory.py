@@ -25,6 +25,7 @@ from ..project import TEST_FILES, Project
 from ..project.loaded_modules import PACKAGES, loaded_modules
 from ..project.walk import SourceError, files_below, read_source
 from ..text_files import keep_out_of_version_control, write_whole
+from ..wording import path_from
 
 #: Where pytest looks for settings and fixtures in the directories above the project.
 _READ_ABOVE = (
@@ -66,7 +67,7 @@ def read_contents(project: Project) -> Contents:
     above = (directory / name for directory in project.root.parents for name in _READ_ABOVE)
     for file in islice(chain(filter(Path.is_file, above), project_files(project)), MOST_FILES + 1):
         kind = contents.sources if file.suffix == ".py" else contents.others
-        kind[Path(os.path.relpath(file, project.root)).as_posix()] = hash_of_file(file)
+        kind[Path(path_from(project.root, file)).as_posix()] = hash_of_file(file)
     return contents
 
 
@@ -169,7 +170,7 @@ class Passes:
     """The passes of one project, as they are when a run of its tests begins.
 
     :param seed: the random seed of the run
-    :param builtin: whether the ready-made tests run if the project has none
+    :param builtin: whether the ready-made tests run in any case
     """
 
     def __init__(self, project: Project, seed: int = DEFAULT_SEED, builtin: bool = False) -> None:
@@ -255,7 +256,7 @@ class Passes:
         """
         self._kept.elsewhere |= {file: self._version_elsewhere(file) for file in sorted(elsewhere)}
         before, end = self._begin.others, read_contents(self._project)
-        mine = {Path(os.path.relpath(file, self._project.root)).as_posix() for file in written} & end.others.keys()
+        mine = {Path(path_from(self._project.root, file)).as_posix() for file in written} & end.others.keys()
         expected = {path for path in mine if path not in before or path in self._written}
         changed = [path for path in self._begin.differences(end) if path not in expected]
         same = {path for path in self._written if end.others.get(path) == before[path]}

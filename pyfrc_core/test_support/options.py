@@ -13,6 +13,7 @@ Jobs: TypeAlias = int | Literal["auto"]
 
 #: The package of the ready-made tests; they use this one, which imports none of them.
 READY_MADE_TESTS = "pyfrc_core.tests"
+READY_MADE_DIRECTORY = Path(__file__).parents[1] / "tests"
 
 
 @dataclass(frozen=True)

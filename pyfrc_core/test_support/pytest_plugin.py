@@ -48,7 +48,7 @@ from .controller import TestController
 from .device_misuse import warning_of_misuse
 from .fake_time import FakeTime
 from .hangs import ROBOT_FIXTURES, WatchedTests
-from .options import READY_MADE_TESTS, TestOptions
+from .options import READY_MADE_DIRECTORY, READY_MADE_TESTS, TestOptions
 from .reporting import BUG, NEVER_RUN, UNREPEATABLE, bug_of, never_ran_the_robot, put_first, seed_section
 
 if TYPE_CHECKING:
@@ -56,8 +56,6 @@ if TYPE_CHECKING:
     from ..physics.engine import Physics, PhysicsModule
     from ..processes.crash_report import CrashLog
     from ..wpi.opmodes import Opmode, OpmodeOfTests
-
-_READY_MADE_DIRECTORY = Path(__file__).parents[1] / "tests"
 
 _NOT_IN_FILE_NAMES = re.compile(r"[^\w.\[\]-]+")  # compiled before the fork, not in each test's process
 
@@ -259,7 +257,7 @@ class PyFrcPlugin(WatchedTests):
 
     def pytest_pycollect_makemodule(self, module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
         """Name the ready-made tests after the module that users import, wherever pyfrc is installed."""
-        if module_path.parent != _READY_MADE_DIRECTORY:
+        if module_path.parent != READY_MADE_DIRECTORY:
             return None
         return pytest.Module.from_parent(parent, path=module_path, nodeid="pyfrc.tests")
 

@@ -26,7 +26,7 @@ class RememberedPasses:
     """Remembers the passes of one run.
 
     :param args: the arguments that the user has given to pytest
-    :param builtin: whether the ready-made tests run if the project has none
+    :param builtin: whether the ready-made tests run in any case
     """
 
     __name__ = PASSES

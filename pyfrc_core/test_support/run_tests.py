@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 import signal
 import sys
 from collections.abc import Sequence
@@ -16,8 +18,9 @@ from ..processes.reuse import Interpreters
 from ..project import Project
 from ..runtime.threads.fork_obstacles import reasons_not_to_fork
 from ..season import CURRENT
+from ..wording import counted, path_from
 from .isolation.loop import IsolatedTests
-from .options import READY_MADE_TESTS, TestOptions
+from .options import READY_MADE_DIRECTORY, READY_MADE_TESTS, TestOptions
 from .pytest_plugin import PyFrcPlugin
 from .remembered_passes import RememberedPasses
 from .summary import SummaryPlugin, warn_of_mistakes
@@ -45,6 +48,41 @@ class _NoUnusedHypothesis:
             plugins.unregister(unused)
 
 
+class _ChangesBack:
+    """Change back to the user's directory when pytest has read its arguments."""
+
+    def __init__(self, directory: Path) -> None:
+        self._directory = directory
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_load_initial_conftests(self) -> None:
+        os.chdir(self._directory)
+
+
+class _ReadyMadeTests:
+    """Run each ready-made test once, although the project may import it, too; and print how many there were."""
+
+    def __init__(self) -> None:
+        self._text = ""
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        own = {getattr(item, "function", None) for item in items if not _is_ready_made(item)}
+        items[:] = [item for item in items if not (_is_ready_made(item) and getattr(item, "function", None) in own)]
+
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        modules = [getattr(getattr(item, "function", None), "__module__", "") for item in session.items]
+        ready_made = sum(name.startswith(READY_MADE_TESTS) for name in modules)
+        self._text = f"{counted(ready_made, 'ready-made test')} and {counted(len(modules) - ready_made, 'other test')}"
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        terminalreporter.write_line(f"--builtin: {self._text}")
+
+
+def _is_ready_made(item: pytest.Item) -> bool:
+    return item.path.parent == READY_MADE_DIRECTORY
+
+
 def run_tests(
     project: Project,
     options: TestOptions,
@@ -53,15 +91,16 @@ def run_tests(
     pytest_args: Sequence[str] = (),
     interpreters: Interpreters | None = None,
 ) -> int:
-    """Run the project's tests, or the ready-made ones, and return pytest's exit code.
+    """Run the project's tests, the ready-made ones, or both, and return pytest's exit code.
 
-    :param builtin: run the ready-made tests if the project has none
+    :param builtin: run the ready-made tests, too, unless the project imports them
     :param pytest_args: passed on to pytest
     :param interpreters: those that were started for tests that cannot be forked
     :raises NoTestsError: when the project has no tests, and `builtin` is not set
     :raises RobotCodeError: when the robot's code cannot be imported
     """
-    args = _arguments(project, builtin, pytest_args)
+    start = _start_directory(project)
+    args = _arguments(project, builtin, pytest_args, start)
     for directory in (options.trace_directory, options.record_directory):
         if directory is not None:  # an error is reported once, and not by every test
             directory.mkdir(parents=True, exist_ok=True)
@@ -85,8 +124,14 @@ def run_tests(
             SummaryPlugin(project, whole=not any(map(_selects, pytest_args))),
             _NoUnusedHypothesis(),
             passes,
+            *([_ReadyMadeTests()] if builtin else []),
         ]
-        return int(pytest.main(args, plugins=plugins))
+        here = Path.cwd()
+        os.chdir(start)
+        try:
+            return int(pytest.main(args, plugins=[*plugins, _ChangesBack(here)]))
+        finally:
+            os.chdir(here)
 
     preforked: PreforkedProcess | None = None
     if options.isolation != "none" and is_forked(options.isolation):
@@ -101,21 +146,41 @@ def run_tests(
             preforked.dismiss()
 
 
-def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str]) -> list[str]:
-    """Return the arguments for pytest."""
+#: What pytest would replace in a path, or take for a parameter or a test's name.
+_INTERPRETED = re.compile(r"\[|::|[$%]")
+
+
+def _start_directory(project: Project) -> Path:
+    """Return a directory relative to which pytest can read the project's paths: the current one, if possible.
+
+    pytest has no way to write ``[``, ``::`` or ``$`` in a path. From the project's directory, none is needed.
+    """
+    here = Path.cwd()
+    places = [path_from(here, each) for each in (project.root, project.pyproject.parent)]
+    return project.root if any(map(_INTERPRETED.search, places)) else here
+
+
+def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str], start: Path) -> list[str]:
+    """Return the arguments for pytest.
+
+    :param start: the directory that paths are relative to
+    """
     if any(not each.startswith("-") and Path(each).absolute() == project.main_file for each in pytest_args):
         remedy = "pyfrc finds it, and its tests, by itself: pyfrc test"
         raise UsageError(f"{project.main_file.name} is the robot program, and not a test file", remedy=remedy)
     unused = [f"-pno:{name}" for name in _UNUSED_PLUGINS if name not in " ".join(pytest_args)]
-    args = [*unused, *pytest_args, f"--rootdir={project.pyproject.parent}", *_configuration(project)]
-    if _names_tests(pytest_args):
+    args = [*unused, *(_moved(each, start) for each in pytest_args)]
+    args += [f"--rootdir={path_from(start, project.pyproject.parent)}", *_configuration(project, start)]
+    if any(map(_split, pytest_args)):
         return args
     directory = project.find_tests()
     if directory is not None:
-        return [*args, str(directory)]
+        args.append(os.path.join(".", path_from(start, directory)))  # noqa: PTH118 - not the name of a package
     if builtin:
         modules = ("basic", "opmode_test") if CURRENT.opmodes else ("basic",)
-        return [*args, "--pyargs", *(f"{READY_MADE_TESTS}.{module}" for module in modules)]
+        args += ["--pyargs", *(f"{READY_MADE_TESTS}.{module}" for module in modules)]
+    if directory is not None or builtin:
+        return args
     looked = " and ".join(str(path) for path in project.test_directories)
     patterns = ("test_*.py", "*_test.py")
     remedies = list(find_uncollected(project.test_directories[0], set(), patterns))
@@ -128,7 +193,7 @@ def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str]) -> l
     )
 
 
-def _configuration(project: Project) -> list[str]:
+def _configuration(project: Project, start: Path) -> list[str]:
     """Return the arguments for the project's own pytest configuration.
 
     pytest itself searches only beside the test files.
@@ -136,7 +201,7 @@ def _configuration(project: Project) -> list[str]:
     for name in ("pytest.ini", ".pytest.ini", "pyproject.toml", "tox.ini", "setup.cfg"):
         file = project.pyproject.with_name(name)
         if file.is_file():
-            return ["-c", str(file)]
+            return ["-c", path_from(start, file)]
     return []
 
 
@@ -145,6 +210,16 @@ def _selects(arg: str) -> bool:
     return arg not in ("-q", "-v", "-x", "-s")
 
 
-def _names_tests(args: Sequence[str]) -> bool:
-    """Return whether the user has named files to run."""
-    return any(not arg.startswith("-") and Path(arg.partition("::")[0]).exists() for arg in args)
+def _split(arg: str) -> tuple[str, str] | None:
+    """Return the existing path that an argument of pytest's begins with, and the test in it; None without one."""
+    parts = [] if arg.startswith("-") else arg.split("::")
+    counts = range(len(parts), 0, -1)
+    names = (("::".join(parts[:count]), "".join(f"::{each}" for each in parts[count:])) for count in counts)
+    return next((name for name in names if Path(name[0]).exists()), None)
+
+
+def _moved(arg: str, start: Path) -> str:
+    """Return an argument of pytest's as it is written in another directory."""
+    if start == Path.cwd() or (split := _split(arg)) is None:
+        return arg
+    return f"{path_from(start, Path(split[0]).absolute())}{split[1]}"

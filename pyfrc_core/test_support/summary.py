@@ -60,7 +60,9 @@ class SummaryPlugin:
         report.sections = [(name, text) for name, text in sections if text]
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
-    def pytest_terminal_summary(self, terminalreporter: Any, config: pytest.Config) -> Generator[None, object, object]:
+    def pytest_terminal_summary(
+        self, terminalreporter: Any, exitstatus: int, config: pytest.Config
+    ) -> Generator[None, object, object]:
         if not config.option.fulltrace:
             _explain_each_bug_once(terminalreporter.stats)
             if config.option.verbose <= 0:
@@ -71,7 +73,8 @@ class SummaryPlugin:
         mistakes += _take_device_warnings(terminalreporter.stats)
         _print_section(terminalreporter, "mistakes without an error", mistakes)
         _print_section(terminalreporter, "files that cannot be read", self._unreadable)
-        _print_section(terminalreporter, "files without tests", self._uncollected)
+        if exitstatus in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED, pytest.ExitCode.NO_TESTS_COLLECTED):
+            _print_section(terminalreporter, "files without tests", self._uncollected)
         return (yield)
 
     def pytest_itemcollected(self, item: pytest.Item) -> None:
