@@ -50,6 +50,7 @@ from .fake_time import FakeTime
 from .hangs import ROBOT_FIXTURES, WatchedTests
 from .options import READY_MADE_DIRECTORY, READY_MADE_TESTS, TestOptions
 from .reporting import BUG, NEVER_RUN, UNREPEATABLE, bug_of, never_ran_the_robot, put_first, seed_section
+from .reraise import THEIRS, ReraisePlugin
 
 if TYPE_CHECKING:
     from ..physics.core import PhysicsInterface
@@ -254,6 +255,8 @@ class PyFrcPlugin(WatchedTests):
 
     def pytest_configure(self, config: pytest.Config) -> None:
         config.addinivalue_line("markers", f"{opmodes.MARK}(names): run with these opmodes only")
+        if not config.pluginmanager.hasplugin(THEIRS):
+            config.pluginmanager.register(ReraisePlugin(), "pyfrc.reraise")
 
     def pytest_pycollect_makemodule(self, module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
         """Name the ready-made tests after the module that users import, wherever pyfrc is installed."""
