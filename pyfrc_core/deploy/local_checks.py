@@ -6,6 +6,7 @@ import getpass
 import socket
 import tempfile
 import threading
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -13,15 +14,17 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from ..config.robotpy import RobotPackages, load_robot_packages
-from ..errors import PyfrcError, RobotCodeError
+from ..errors import PyfrcError, RobotCodeError, text_of
+from ..explain import Explanation, explain
 from ..processes import spawn
 from ..processes.call import run_in_subprocess
 from ..project import MAIN_FILE, Project
 from ..project.git import git_output
+from ..project.walk import SourceError, read_source
 from ..wording import counted, size_text
 from .errors import RefusedError
-from .manifest import Manifest, ascii_path, build_manifest, listed, listed_paths
-from .progress import UserInterface, ask_to_continue
+from .manifest import Entry, Manifest, ascii_path, build_manifest, listed, listed_paths
+from .progress import DeployProgress, UserInterface, ask_to_continue
 from .robot_packages import ImportSearch
 from .team import RobotChoice
 
@@ -107,7 +110,41 @@ def prepare(project: Project, options: DeployOptions, talk: UserInterface) -> Ch
     with progress.phase("files") as phase:
         phase.detail = f"{counted(len(manifest.entries), 'file')}, {size_text(manifest.total_bytes)}"
     main, record, packages = project.main_file.name, _deploy_json(project.root), load_robot_packages(project.pyproject)
-    return CheckedProgram(manifest, main, record, packages, ImportSearch(manifest, project.root, main), importing)
+    imports = ImportSearch(manifest, project.root, main)
+    if options.dry_run:
+        _compile(project, manifest, imports.program(), progress)
+    return CheckedProgram(manifest, main, record, packages, imports, importing)
+
+
+def _compile(project: Project, manifest: Manifest, program: list[str], progress: DeployProgress) -> None:
+    """Compile the sources to deploy, and print which other checks a deploy makes.
+
+    :param program: the paths of those that the program imports when it starts; of others, errors are warnings
+    :raises RefusedError: if one of these cannot be compiled
+    """
+    for entry in manifest.entries:
+        wrong = _why_uncompilable(project, entry) if entry.path.endswith(".py") else None
+        if wrong is not None and entry.path in program:
+            raise wrong
+        if wrong is not None:
+            progress.warning(f"{wrong}\n  The program does not import this file when it starts.")
+    progress.note("not checked in a dry run: the tests, and whether the program can be imported")
+
+
+def _why_uncompilable(project: Project, entry: Entry) -> RefusedError | None:
+    """Return the error of a source that Python cannot compile; None if it can."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            compile(read_source(entry.file), str(entry.file), "exec", dont_inherit=True)
+    except SourceError as error:
+        wrong = error.within(project.files)
+        return RefusedError(wrong.message, where=wrong.where, remedy=wrong.remedy)
+    except SyntaxError as error:
+        explained = explain(error, project.files) or Explanation()
+        where = explained.place or f"{entry.path}:{error.lineno}"
+        return RefusedError(explained.text or text_of(error), where=where, remedy=explained.remedy or None)
+    return None
 
 
 def _refuse_other_main_files(project: Project, nonstandard: bool) -> None:
