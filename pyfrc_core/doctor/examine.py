@@ -131,6 +131,6 @@ def _project(wanted: DoctorOptions) -> tuple[Project | None, CheckResult | None]
     except (PyfrcError, OSError) as error:
         named = wanted.directory or wanted.main
         if named is None and isinstance(error, PyfrcError) and error.where is None:
-            return None, hint("project", "there is none here", "Go to your project's directory, or: pyfrc init")
+            return None, hint("project", error.message, error.remedy or "")
         return None, problem_from_error("project", error, "Correct it there.")
     return project, None

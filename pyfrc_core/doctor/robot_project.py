@@ -162,6 +162,8 @@ def _physics(project: Project, imports: bool) -> Iterator[CheckResult]:
     :param imports: whether the robot program, which it may import, can be imported
     """
     name = project.physics_file.name
+    if project.misplaced_physics is not None:
+        return  # among the mistakes of the program
     if not project.physics_file.is_file():
         yield hint("physics", f"no {name}: nothing moves in simulation", "pyfrc create-physics")
         return

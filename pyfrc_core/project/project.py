@@ -13,6 +13,7 @@ from warnings import warn_explicit
 from ..config.findings import SettingsWarning, settings_error
 from ..config.settings import Settings, load_settings
 from ..season import CURRENT
+from ..wording import path_from
 from .robot_files import RobotFiles
 from .walk import SourceError, python_files, text_to_search, why_unreadable
 
@@ -105,6 +106,19 @@ class Project:
     def physics_file(self) -> Path:
         """The path of the project's physics module, which may not exist."""
         return self.root / "physics.py"
+
+    @cached_property
+    def misplaced_physics(self) -> Path | None:
+        """A physics module elsewhere in the project, such as in ``sim``, if there is none at `physics_file`."""
+        if self.physics_file.is_file():
+            return None
+        named = [file for file in python_files(self.root) if file.name == self.physics_file.name]
+        candidates = [*named, self.root.parent / self.physics_file.name]
+        return next((file for file in candidates if "class PhysicsEngine" in text_to_search(file)), None)
+
+    def shown(self, file: Path) -> str:
+        """Return the path of a file as the user sees it: relative to the project."""
+        return Path(path_from(self.root, file)).as_posix()
 
     @property
     def test_directories(self) -> tuple[Path, Path]:

@@ -61,7 +61,7 @@ def create_physics(project: Project) -> Created:
         done.unchanged[config] = _config_error(project.root)
     if len(done.unchanged) == 2:
         return done
-    _check_places(physics, config)
+    _check_places(project, config)
     proposal = run_in_subprocess(propose, project, "while pyfrc was searching for its devices")
     texts = {physics: proposal.physics, config: proposal.config}
     if config not in done.unchanged:
@@ -84,8 +84,14 @@ def create_physics(project: Project) -> Created:
     return done
 
 
-def _check_places(physics: Path, config: Path) -> None:
+def _check_places(project: Project, config: Path) -> None:
     """Check that all names are free, before the robot is started."""
+    physics = project.physics_file
+    if (elsewhere := project.misplaced_physics) is not None:
+        raise UsageError(
+            f"there is a {project.shown(elsewhere)}, which pyfrc does not read",
+            remedy=f"Move it beside {project.main_file.name}; or rename it, to have another one written.",
+        )
     others = sorted(each.name for each in physics.parent.iterdir() if each.name.casefold() == physics.name)
     # On file systems that ignore case, the existing file has the other name.
     if others and physics.name not in others:

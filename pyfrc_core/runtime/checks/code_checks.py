@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from .code_warning import CodeWarning
 from .foreign_paths import find_foreign_paths
+from .misplaced_physics import find_misplaced_physics
 from .misspelled_methods import find_misspelled_methods
 from .opmodes_never_run import find_opmodes_never_run
 
@@ -19,4 +20,5 @@ def find_code_warnings(project: Project) -> list[CodeWarning]:
         *find_misspelled_methods(project),
         *find_opmodes_never_run(project),
         *find_foreign_paths(project),
+        *find_misplaced_physics(project),
     ]
