@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pyfrc_core._version import __version__
+from pyfrc_core.errors import PyfrcError
 
 from . import COMPLETE_VARIABLE
 from .verbosity import HELP, QUIET, VERBOSE, Verbosity, add_options
@@ -91,6 +92,22 @@ class Commands(click.Group):
             refuse_repeated_options(command, name, rest, ctx)
         return name, command, rest
 
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command. Where its output is no longer read, as by ``head -1``, its exit code is that of SIGPIPE.
+
+        click ends with 1 then, which means a failed test, and without a word, also for other broken connections.
+        """
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError as error:
+            try:
+                print(flush=True)
+            except OSError:
+                click.secho("interrupted: the output is no longer read", err=True)
+                os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # for what is printed at the end
+                sys.exit(128 + 13)
+            raise PyfrcError(f"a connection has ended: {error}") from error
+
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         from click.shell_completion import CompletionItem
 
@@ -134,7 +151,6 @@ def cli() -> None:
 
 def run() -> None:
     """Run the command line. An error that pyfrc knows is shown as one sentence, with exit code 1 or 2."""
-    from pyfrc_core.errors import PyfrcError
     from pyfrc_core.terminal_text import escape_unencodable, visible
 
     for stream in (sys.stdout, sys.stderr):

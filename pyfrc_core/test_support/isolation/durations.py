@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 
 import pytest
@@ -30,7 +31,11 @@ class Durations:
 
     def save(self) -> None:
         """Keep what was measured, and of tests that did not run what was known."""
-        if self._cache is not None and self._measured:
+        if self._cache is None or not self._measured:
+            return
+        with warnings.catch_warnings():
+            # Where nothing can be written, pytest's own cache warns of it, in the summary.
+            warnings.simplefilter("ignore", pytest.PytestCacheWarning)
             self._cache.set(_KEY, {**self.known, **{test: round(each, 3) for test, each in self._measured.items()}})
 
 

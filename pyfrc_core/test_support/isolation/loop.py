@@ -43,6 +43,7 @@ from .durations import Durations, longest_first
 from .interpreters import start_interpreters
 from .messages import replay
 from .processes import TestProcess, forked_test, spawned_test
+from .reruns import reruns_notice
 from .uncaptured import UncapturedOutput, uncaptured_output
 
 #: A test file that has anything of these in it may touch the HAL even without a fixture.
@@ -119,6 +120,8 @@ class IsolatedTests:
         if self._interpreters is not None and self._plugin.options.jobs == "auto":
             jobs = min(jobs, self._worth_starting(items))
         waiting: list[pytest.Item] = []
+        if notice := reruns_notice(session.config, filter(self._uses_robot, items)):
+            self._print(session.config, f"pyfrc: {notice}")
         if any(map(self._uses_robot, items)):
             resolve_module_files()
         gc.freeze()  # what is there now stays: a collection in a fork would copy all its memory

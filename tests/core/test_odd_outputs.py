@@ -1,0 +1,65 @@
+"""What tests print where something is missing: a reader, a place to write, or an effect of an option."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import warnings
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+
+from pyfrc_core.test_support.isolation.durations import Durations
+from pyfrc_core.test_support.isolation.reruns import reruns_notice
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes end otherwise there")
+def test_output_that_is_no_longer_read_is_no_failed_test() -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    command = [sys.executable, "-m", "pyfrc", "completion", "bash"]
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, env=environment, text=True, check=False)
+    os.close(writer)
+    assert done.returncode == 141
+    assert done.stderr == "interrupted: the output is no longer read\n"
+
+
+def test_a_project_that_cannot_be_written_is_warned_of_once(tmp_path, request: pytest.FixtureRequest) -> None:
+    cache = pytest.Cache(tmp_path / "file" / "cache", request.config, _ispytest=True)
+    (tmp_path / "file").write_text("")
+    with pytest.warns(pytest.PytestCacheWarning):
+        cache.set("a/b", 1)
+    durations = Durations(cast("Any", SimpleNamespace(cache=cache)))
+    durations.add(cast("Any", SimpleNamespace(nodeid="test_a", duration=1.0)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        durations.save()
+
+
+def config(**options: object) -> Any:
+    return SimpleNamespace(option=SimpleNamespace(**options))
+
+
+def robot_test(*marks: str) -> Any:
+    return SimpleNamespace(get_closest_marker=lambda name: name if name in marks else None)
+
+
+@pytest.mark.parametrize(
+    ("given", "tests", "expected"),
+    [
+        ({"reruns": 2}, [robot_test()], "--reruns has no effect"),
+        ({"retries": 1}, [robot_test()], "--retries has no effect"),
+        ({"force_flaky": True}, [robot_test()], "--force-flaky has no effect"),
+        ({"reruns": None}, [robot_test(), robot_test("flaky")], "the mark flaky has no effect"),
+        ({"reruns": 2}, [], ""),
+        ({"reruns": None}, [robot_test("slow")], ""),
+        ({}, [robot_test("flaky")], ""),
+    ],
+)
+def test_an_option_to_run_tests_again_is_not_silent(given: dict[str, object], tests: list[Any], expected: str) -> None:
+    notice = reruns_notice(config(**given), tests)
+    assert notice.startswith(expected)
+    assert bool(notice) == bool(expected)
