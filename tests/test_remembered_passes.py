@@ -135,7 +135,7 @@ def edit(made, name: str, old: str, new: str) -> None:
 def test_without_a_change_nothing_runs(project) -> None:
     result = project.run("test", "--changed")
     assert result.code == 0
-    expected = "4 tests passed before; the files that they depend on, Python and packages have not changed since"
+    expected = "4 tests passed before; the project's files that they depend on, Python and packages have not changed"
     assert expected in result.output
 
 
@@ -242,6 +242,12 @@ def test_logs_of_the_robot_are_no_changes(make_project) -> None:
     assert ran(made) == set()
     log.write_bytes(b"")
     assert ran(made) == {"a"}
+
+
+def test_a_report_of_the_tests_is_no_change(project) -> None:
+    for _ in range(2):
+        assert ran(project, "--", "--junitxml=report.xml") == set()
+    assert (project.path / "report.xml").is_file()
 
 
 def test_what_a_test_imports_late_from_outside_the_project_counts(make_project, tmp_path: Path) -> None:

@@ -95,11 +95,13 @@ class RememberedPasses:
         elif self._runs_all:
             self._passes.set_green(True)
         self.record_files(loaded_from_elsewhere(self._project), written_files)
+        if (report := getattr(session.config.option, "xmlpath", None)) is not None:  # pytest has written it now
+            self._written.add(str(Path(report).absolute()))
         self._why_not = self._passes.save(self._elsewhere, self._written) or self._why_not
 
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:
         if self._valid:
-            passed = f"{counted(self._valid, 'test')} passed before; the files that they depend on"
+            passed = f"{counted(self._valid, 'test')} passed before; the project's files that they depend on"
             terminalreporter.write_line(f"{passed}, Python and packages have not changed since")
         if self._only_changed and self._why_not:
             terminalreporter.write_line(f"pyfrc: the passes are not remembered, because {self._why_not}", yellow=True)
