@@ -8,6 +8,7 @@ import os
 import re
 import sys
 import traceback
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -103,7 +104,8 @@ class Commands(click.Group):
             try:
                 print(flush=True)
             except OSError:
-                click.secho("interrupted: the output is no longer read", err=True)
+                with suppress(OSError):  # as with 2>&1
+                    click.secho("interrupted: the output is no longer read", err=True)
                 os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # for what is printed at the end
                 sys.exit(128 + 13)
             raise PyfrcError(f"a connection has ended: {error}") from error

@@ -39,11 +39,13 @@ class SourceError(PyfrcError):
         return SourceError(self.message, path, self.remedy or "", self.line)
 
 
-def files_below(top: Path) -> Iterator[Path]:
+def files_below(top: Path, hidden: bool = True) -> Iterator[Path]:
     """Yield all files below a directory, through links too, and directories whose name is that of a Python file.
 
     Each directory is read once, under its own name if it has one here, so that a circle of links ends. What cannot be
     read, and links to nothing, are among the files.
+
+    :param hidden: with files and directories whose name begins with a dot
     """
     directories, links, seen = [top], list[Path](), set[tuple[int, int]]()
     while directories or links:
@@ -58,8 +60,13 @@ def files_below(top: Path) -> Iterator[Path]:
         except OSError:  # nothing in it can be read
             continue
         for entry in found:
+            if entry.name.startswith(".") and not hidden:
+                continue
             path = Path(entry.path)
-            is_directory = path.is_dir()
+            try:
+                is_directory = entry.is_dir()
+            except OSError:  # a link to itself
+                is_directory = False
             if not is_directory or path.suffix == ".py":
                 yield path
             if is_directory and entry.name not in LEFT_OUT and not is_environment(path):
@@ -67,13 +74,9 @@ def files_below(top: Path) -> Iterator[Path]:
 
 
 def python_files(top: Path) -> list[Path]:
-    """Return what is called ``*.py`` below a directory, sorted, and not in hidden directories or installed packages."""
-    found = (each for each in files_below(top) if each.suffix == ".py")
-    return sorted(each for each in found if not _is_out_of_sight(each.relative_to(top).parts))
-
-
-def _is_out_of_sight(parts: tuple[str, ...]) -> bool:
-    return any(each.startswith(".") for each in parts) or "site-packages" in parts
+    """Return what is called ``*.py`` below a directory, sorted, and is neither hidden nor in installed packages."""
+    found = (each for each in files_below(top, hidden=False) if each.suffix == ".py")
+    return sorted(each for each in found if "site-packages" not in each.relative_to(top).parts)
 
 
 def read_source(file: Path) -> str:

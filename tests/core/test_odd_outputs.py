@@ -22,9 +22,11 @@ def test_output_that_is_no_longer_read_is_no_failed_test() -> None:
     command = [sys.executable, "-m", "pyfrc", "completion", "bash"]
     environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
     done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, env=environment, text=True, check=False)
-    os.close(writer)
     assert done.returncode == 141
     assert done.stderr == "interrupted: the output is no longer read\n"
+    done = subprocess.run(command, stdout=writer, stderr=writer, env=environment, check=False)
+    assert done.returncode == 141
+    os.close(writer)
 
 
 def test_a_project_that_cannot_be_written_is_warned_of_once(tmp_path, request: pytest.FixtureRequest) -> None:

@@ -104,6 +104,13 @@ def test_links_are_followed_and_each_directory_is_read_once(tmp_path: Path) -> N
     assert names == ["library/more/a.py", "library/teamlib.py", "parts/arm.py", "robot.py"]
 
 
+@posix
+def test_a_hidden_directory_hides_nothing_that_has_another_name(tmp_path: Path) -> None:
+    make(tmp_path, ".lib/arm.py")
+    (tmp_path / "lib").symlink_to(".lib")
+    assert python_files(tmp_path) == [tmp_path / "lib" / "arm.py"]
+
+
 def test_hidden_directories_have_no_sources_but_a_project_below_one_has(tmp_path: Path) -> None:
     root = tmp_path / ".config" / "robot"
     make(root, "robot.py", ".cache/x.py", ".#robot.py", "lib/site-packages/y.py", ".venv/pyvenv.cfg", ".venv/z.py")

@@ -14,9 +14,7 @@ from tempfile import TemporaryDirectory
 from ...processes.spawn import WRITES_UTF_8
 from ...project import NO_PHYSICS, Project
 from ...project.environments import is_environment
-
-#: Directories that tests do not need.
-_LEFT_OUT = {".git", ".hg", ".pyfrc", "__pycache__", "node_modules"}
+from ...project.walk import LEFT_OUT
 
 _FAILURE = re.compile(r"(?:FAILED|ERROR) (.+)")
 
@@ -94,4 +92,4 @@ def _failures(project: Project, root: Path) -> list[str]:
 def _not_needed(directory: str, names: list[str]) -> set[str]:
     paths = {name: Path(directory, name) for name in names}
     copied = {name for name, path in paths.items() if path.is_symlink() or path.is_file() or path.is_dir()}  # no pipes
-    return {name for name, path in paths.items() if name in _LEFT_OUT or name not in copied or is_environment(path)}
+    return {name for name, path in paths.items() if name in LEFT_OUT or name not in copied or is_environment(path)}

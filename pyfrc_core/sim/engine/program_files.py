@@ -17,11 +17,10 @@ _TWO_SECONDS = 2_000_000_000  # in nanoseconds
 def program_files(root: Path) -> dict[str, tuple[int, int]]:
     """Return the Python files and settings below a directory, each with its time (ns) and its size (bytes)."""
     found = {}
-    for file in files_below(root):
-        directories = file.relative_to(root).parts[:-1]
+    for file in files_below(root, hidden=False):
         if file.suffix != ".py" and file.name not in ("config.json", "pyproject.toml"):
             continue
-        if _NOT_OURS.intersection(directories) or any(each.startswith(".") for each in directories):
+        if _NOT_OURS.intersection(file.relative_to(root).parts):
             continue
         with suppress(OSError):  # gone again: an editor's temporary file
             status = file.stat()
