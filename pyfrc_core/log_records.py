@@ -306,7 +306,8 @@ def _control_of(payload: bytes) -> _Control | None:
             return None
         texts.append(text.decode("utf-8", "replace"))
         place += 4 + size
-    return _Control(entry, texts[0], texts[1]) if entry and place == len(payload) else None
+    type_name = _FORMER_TYPES.get(texts[1], texts[1])
+    return _Control(entry, texts[0], type_name) if entry and place == len(payload) else None
 
 
 # -- values -----------------------------------------------------------------------------------------------------------
@@ -335,6 +336,8 @@ def _text_list(raw: bytes) -> tuple[str, ...] | None:
     return tuple(texts) if place == len(raw) else None
 
 
+#: What WPILib called types of entries of NetworkTables, until March 2023 and January 2024.
+_FORMER_TYPES = {"int": "int64", "int[]": "int64[]"}
 #: What reads the values of plain types; None: the bytes do not fit.
 READERS: dict[str, Callable[[bytes], Any]] = {
     "boolean": _number("?"),

@@ -16,9 +16,11 @@ from written_logs import BOOT, SECOND, Written, a_match
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.sim.engine.past_run import PastRun
+from pyfrc_core.sim.engine.value_history import MISSING
 from pyfrc_core.sim.logs import LogError, open_log
 from pyfrc_core.sim.logs.align import moment_of, offset_of
 from pyfrc_core.sim.logs.wpilog import read_wpilog
+from pyfrc_core.sim.ui.web.plots import series
 
 HEIGHT = 27.0
 
@@ -332,11 +334,33 @@ def test_the_driver_stations_log(tmp_path: Path) -> None:
     run = opened.run
     # A packet that is lost says no mode.
     assert network(run, "sim.mode") == ([0.0, 0.2, 0.4, 0.6], ["disabled", "autonomous", "teleop", "disabled"])
-    assert network(run, "nt:/DSLog/BatteryVoltage")[1] == [12.5, 6.5]
+    assert network(run, "nt:/DSLog/BatteryVoltage")[1] == [12.5, 6.5, MISSING]
     assert [each.text for each in run.happened][:3] == ["Warning: low battery", "joystick 0", "brownout"]
     events = open_log(tmp_path / "match.dsevents", HEIGHT)
     assert [each.text for each in events.run.happened][:2] == ["Warning: low battery", "joystick 0"]
     assert "cut at byte" in events.problem
+
+
+def test_no_data_of_the_driver_station_is_a_gap(tmp_path: Path) -> None:
+    """Without a robot, the voltage is 0xFFFF, about 256 V; without a power distribution, there are no currents."""
+    none = ds_record(DISABLED, 0xFFFF / 256)
+    ctre = ds_record(0, 12.0, 25, bytes(25))
+    records = [none] * 50 + [ds_record(0, 12 + step / 256) for step in range(500)] + [none] * 50 + [ctre] * 50
+    (tmp_path / "match.dslog").write_bytes(struct.pack(">i", 4) + _stamp(0) + b"".join(records))
+    run = open_log(tmp_path / "match.dslog", HEIGHT).run
+    history = run.histories["network"]
+    times, volts = network(run, "nt:/DSLog/BatteryVoltage")
+    assert times[0] == pytest.approx(1.0)
+    assert volts.index(MISSING) == 500
+    assert volts[-1] == 12.0
+    assert "nt:/DSLog/BatteryVoltage" not in history.values_at(11.5)
+    assert "nt:/DSLog/Currents/0" not in history.values_at(11.5)
+    assert history.value_at("nt:/DSLog/Currents/0", 12.5) == 0.0
+    for points in (50, 2000):
+        curve = series(history, "nt:/DSLog/BatteryVoltage", 0.0, run.end, points)
+        assert curve["kind"] == "number"
+        assert curve["v"].count(None) == 1
+        assert dict(zip(curve["t"], curve["v"], strict=True))[12.0] == 12.0  # where the gap ends
 
 
 def test_the_currents_of_both_kinds_of_power_distribution(tmp_path: Path) -> None:

@@ -27,6 +27,7 @@ from ...wording import from_here
 from ...wpi import logs
 from ..robot_time import PACKET_US
 from . import kit_names
+from .known_entries import fit_of
 from .logged_inputs import FROM_OUTSIDE, HAL, OF_STATION, LoggedInputs, as_written, target_of
 from .network_targets import NETWORK_INPUTS, data_target, parse_entry_target
 from .script import InputScript, ScriptError, Step
@@ -59,7 +60,7 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
     asked = {*(f"NT:{each}" for each in given), *_changed_from_outside(kit)}
     own = log.records(partial(_is_input, asked))
     records = [each for record in own for each in logs.as_in_2026(record) if not isinstance(each.value, bytes)]
-    records = sorted([*records, *kit], key=attrgetter("at_us"))
+    records = sorted(_fitted([*records, *kit]), key=attrgetter("at_us"))
     sent = [record for record in records if record.name.startswith("DS:")]
     if not any(record.name == _ENABLED for record in sent):
         why = f": {log.problem}" if log.problem else ""
@@ -77,7 +78,7 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
         written: dict[str, Any] = {}
         for record in together:
             if record.name == NETWORK_INPUTS:
-                written |= json.loads(record.value)
+                written |= _writes(record, name)
             else:
                 inputs.take(record)
         if writes := {**dict(inputs.changes()), **written}:
@@ -148,10 +149,27 @@ def _written_outside(records: Iterable[Record], where: str) -> Iterator[str]:
     """Yield the names of the entries that a dashboard or a script has written to, as a log has them."""
     for record in records:
         if record.name == NETWORK_INPUTS:
-            try:
-                yield from (f"NT:{parse_entry_target(target)[0]}" for target in json.loads(record.value))
-            except ValueError as malformed:
-                raise ScriptError(f"the data log cannot be read: {malformed}", where=where) from None
+            yield from (f"NT:{parse_entry_target(target)[0]}" for target in _writes(record, where))
+
+
+def _writes(record: Record, where: str) -> dict[str, Any]:
+    """Return what was written from outside.
+
+    :raises ScriptError: when the record has something else
+    """
+    try:
+        return dict(json.loads(record.value))
+    except (TypeError, ValueError, RecursionError) as malformed:
+        raise ScriptError(f"the data log cannot be read: {malformed}", where=where) from None
+
+
+def _fitted(records: Iterable[Record]) -> Iterator[Record]:
+    """Yield the records with the values that their names say, without those that have others."""
+    for record in records:
+        fit = fit_of(record.name)
+        value = record.value if fit is None else fit(record.value)
+        if value is not None:
+            yield record._replace(value=value)
 
 
 def _seen(records: Iterable[Record], begin_us: int, first_us: int, last_us: int) -> Iterator[Step]:

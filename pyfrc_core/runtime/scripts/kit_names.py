@@ -11,6 +11,8 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from .known_entries import whole
+
 #: The table of NetworkTables in which they publish what they log.
 TABLE = "/AdvantageKit"
 #: How names in a log begin if a kit has written it, or if WPILib has logged what a kit has published.
@@ -39,6 +41,7 @@ NAMES = {
     **{f"/DriverStation/Joystick{stick}/AxisValues": f"DS:joystick{stick}/axes" for stick in _STICKS},
     **{f"/DriverStation/Joystick{stick}/POVs": f"DS:joystick{stick}/povs" for stick in _STICKS},
 }
+_COUNT, _BITS = whole(0, 32), whole(-(1 << 63), 1 << 63)
 #: The number of each joystick's buttons, their bits, and WPILib's name for the list of them.
 BUTTONS = [
     (f"{table}/ButtonCount", f"{table}/ButtonValues", f"DS:joystick{stick}/buttons")
@@ -64,10 +67,10 @@ def is_of_a_kit(names: Iterable[str]) -> bool:
 def pressed(count: Any, bits: Any) -> list[bool]:
     """Return which buttons are pressed.
 
-    :param count: how many there are; None: it is not known
+    :param count: how many there are; if it is no number, that is not known
     """
-    number = 32 if count is None else min(int(count), 32)
-    return [bool(int(bits or 0) >> each & 1) for each in range(number)]
+    number, held = _COUNT(count), _BITS(bits) or 0
+    return [bool(held >> each & 1) for each in range(32 if number is None else number)]
 
 
 def entry_of(name: str, type_name: str) -> str | None:

@@ -15,6 +15,7 @@ from struct import Struct
 from typing import Any, NamedTuple
 
 from ..engine.past_run import Happened
+from ..engine.value_history import MISSING
 from .columns import Column, ReadLog
 
 _VERSIONS = (3, 4)
@@ -25,7 +26,7 @@ _PERIOD_US = 20_000
 #: them name the kind; before that, it is always that of CTRE.
 _REV, _CTRE = 33, 25
 _SIZES, _KIND_BYTES = {_REV: 33, _CTRE: 25}, 4
-#: More volts than a battery can have, as the last record may say.
+#: More volts than a battery can have: there is no data, which is 0xFFFF, or a record is wrong, as the last one may be.
 _MOST_VOLTS = 20.0
 _STATUS = {
     "Brownout": 7,
@@ -56,14 +57,10 @@ def read_ds_log(file: Path) -> ReadLog:
     rows = [_numbers(record) for record in records]
     columns: dict[str, list[Any]] = {name: [row[name] for row in rows] for name in (rows[0] if rows else ())}
     _hold_modes(columns)
-    volts = columns.get("BatteryVoltage", [])
-    for number, each in enumerate(volts):
-        if each > _MOST_VOLTS:
-            volts[number] = volts[number - 1] if number else 0.0
     channels = max((len(record.currents) for record in records), default=0)
     for channel in range(channels):
         columns[f"Currents/{channel}"] = [
-            record.currents[channel] if channel < len(record.currents) else 0.0 for record in records
+            record.currents[channel] if channel < len(record.currents) else MISSING for record in records
         ]
     for name, values in columns.items():
         found.columns[f"/DSLog/{name}"] = Column.of(moments, values)
@@ -158,12 +155,12 @@ def _currents(kind: int, data: bytes) -> tuple[float, ...]:
 
 
 def _numbers(record: _Record) -> dict[str, Any]:
-    """Return what a record says, by name: ms, V and shares from 0 to 1."""
-    status = {name: not record.status >> bit & 1 for name, bit in _STATUS.items()}
+    """Return what a record says, by name: ms, V and shares from 0 to 1; `MISSING` for what it does not have."""
+    status, volts = {name: not record.status >> bit & 1 for name, bit in _STATUS.items()}, record.volts / 256
     return {
         "TripTime": record.trip * 0.5,
         "PacketLoss": min(max(record.loss * 0.04, 0.0), 1.0),
-        "BatteryVoltage": record.volts / 256,
+        "BatteryVoltage": volts if volts <= _MOST_VOLTS else MISSING,
         "CPUUtilization": record.cpu * 0.005,
         "CANUtilization": record.can * 0.005,
         **status,

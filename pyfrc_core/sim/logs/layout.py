@@ -18,6 +18,7 @@ from ...log_records import CLOCKS, SIMULATED_BOOT, TIMES
 from ...physics.pose import METRES_PER_FOOT
 from ...runtime.robot_time import PACKET_US
 from ...runtime.scripts import kit_names
+from ...runtime.scripts.known_entries import fit_of
 from ...runtime.scripts.modes import AUTONOMOUS, ENABLED, SELECTED_BY_NUMBER, STOPPED, TEST, mode_name, selected
 from ...season import CURRENT
 from ..engine.messages import MODE, POSE, TYPE, VALUE
@@ -67,7 +68,7 @@ def run_of(log: ReadLog, name: str, height: float) -> PastRun:
     begin = _begin(log)
     columns = log.columns
     end = max([begin, *(column.moments[-1] for column in columns.values() if column.moments)])
-    known = {**dict(_of_kit(columns)), **columns}
+    known = dict(_fitted({**dict(_of_kit(columns)), **columns}))
     hal = dict(_station(known))
     for each, column in known.items():
         if each.startswith(_HAL):
@@ -130,6 +131,15 @@ def _of_kit(columns: Mapping[str, Column]) -> Iterator[tuple[str, Column]]:
         for count, bits, ours in kit_names.BUTTONS:
             if (column := columns.get(prefix + bits)) is not None:
                 yield ours, together([columns.get(prefix + count), column], kit_names.pressed)
+
+
+def _fitted(columns: Mapping[str, Column]) -> Iterator[tuple[str, Column]]:
+    """Yield the columns with the values that their names say, without those that have others."""
+    for name, column in columns.items():
+        fit = fit_of(name)
+        fitted = column if fit is None else column.fitted(fit)
+        if fit is None or any(value is not MISSING for value in fitted.values()):
+            yield name, fitted
 
 
 def together(columns: Sequence[Column | None], make: Callable[..., Any]) -> Column:
@@ -226,7 +236,7 @@ def _place(columns: Mapping[str, Column], height: float) -> Column | None:
     for pattern in _PLACES:
         named = [each for each in found if re.fullmatch(pattern, each[0].removeprefix("NT:"), re.IGNORECASE)]
         for _, moments, read in sorted(named, key=lambda each: len(each[1]), reverse=True):
-            places = {(x, y) for x, y, _ in read(0, len(moments)) if x or y}
+            places = {(x, y) for x, y, _ in read(0, len(moments)) if _are_numbers(x, y) and (x or y)}
             if len(places) > _PLACINGS:
                 return _placed(moments, read, height)
             if places and still is None:
@@ -259,7 +269,7 @@ def _place_of(columns: Mapping[str, Column], name: str) -> tuple[str, array[int]
     whole = name.removesuffix("/translation/x")
     if whole != name:
         x, y, angle = (columns.get(f"{whole}/{part}") for part in ("translation/x", "translation/y", "rotation/value"))
-        if x is None or y is None or angle is None:
+        if x is None or y is None or angle is None or not x.moments == y.moments == angle.moments:
             return None
         parts = x, y, angle
         return whole, x.moments, lambda begin, end: list(zip(*(each.decode(begin, end) for each in parts), strict=True))
@@ -277,9 +287,13 @@ def _in_radians(value: Any) -> tuple[Any, Any, Any]:
     return (value[0], value[1], math.radians(value[2])) if _is_place(value) else (MISSING,) * 3
 
 
+def _are_numbers(*values: Any) -> bool:
+    return all(isinstance(each, (int, float)) for each in values)
+
+
 def _on_field(x: Any, y: Any, angle: Any, height: float) -> Any:
     """Return a place as the field has it: feet from the top left corner, radians clockwise."""
-    if not all(isinstance(each, (int, float)) for each in (x, y, angle)):
+    if not _are_numbers(x, y, angle):
         return MISSING
     return x / METRES_PER_FOOT, height - y / METRES_PER_FOOT, -angle
 

@@ -91,9 +91,14 @@ def as_in_2026(record: Record) -> Iterable[Record]:
     """Return what a record is in logs of 2026, or in one of ours."""
     record = record._replace(name=_AS_IN_2026.get(record.name, record.name))
     if record.name == "DS:controlWord":
+        if not isinstance(record.value, bytes) or len(record.value) != wpistruct.get_size(hal.ControlWord):
+            return ()  # an entry of the team's own
         word = wpistruct.unpack(hal.ControlWord, record.value)
         return (Record(record.at_us, name, "boolean", get(word)) for name, get in _OF_CONTROL_WORD.items())
-    return (record._replace(value=[*map(angle_of, record.value)]) if _POVS.fullmatch(record.name) else record,)
+    if _POVS.fullmatch(record.name):
+        directions = record.value if isinstance(record.value, tuple) else ()
+        return (record._replace(value=[*map(angle_of, directions)]),)
+    return (record,)
 
 
 #: Logs that could not be written, kept alive: WPILib aborts the process when it closes such a log.

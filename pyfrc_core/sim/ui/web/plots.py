@@ -63,22 +63,31 @@ def series(history: ValueHistory, path: str, begin: float, end: float, points: i
 def _kind(values: list[Any]) -> str:
     kinds = {type(value) for value in values if value is not MISSING}
     if kinds <= {float, int}:
-        return "number" if MISSING not in values else "other"
+        return "number"
     return "boolean" if kinds == {bool} else "text" if kinds == {str} else "other"
 
 
-def _decimated(times: list[float], values: list[float], points: int) -> tuple[list[float], list[float]]:
-    """Keep the first point and the last, the lowest and the highest of each interval, and those that hold for long."""
+def _decimated(times: list[float], values: list[Any], points: int) -> tuple[list[float], list[Any]]:
+    """Keep the first point and the last, the lowest and the highest of each interval, and those that hold for long.
+
+    Where a value is `MISSING`, that point and the next one are kept, too.
+    """
+    gaps = [number for number, value in enumerate(values) if value is MISSING]
+    for number in gaps:  # to compare the others
+        values[number] = values[number - 1] if number else 0.0
     intervals = max(points // 3, 1)
     step = len(values) / intervals
     long = (times[-1] - times[0]) / intervals
     held = enumerate(pairwise(times))
     kept = {0, len(values) - 1, *(number for number, (begin, end) in held if end - begin >= long)}
+    kept |= {each for number in gaps for each in (number, number + 1) if each < len(values)}
     after = 1
     for number in range(1, intervals + 1):
         begin, after = after, int(number * step)
         if part := values[begin:after]:
             kept |= {begin + part.index(min(part)), begin + part.index(max(part))}
+    for number in gaps:
+        values[number] = MISSING
     chosen = sorted(kept)
     return [times[each] for each in chosen], [values[each] for each in chosen]
 
