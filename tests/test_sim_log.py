@@ -561,7 +561,8 @@ def test_a_log_of_which_the_code_publishes_little_is_of_another_robot(make_proje
     assert project.run(*SIM, "--script", "drive.jsonl", "--wpilog", "match.wpilog").code == 0
     change(project, "robot.py", "Arm/", "Claw/")
     said = log_of(project, "match.wpilog")
-    assert "\nmatch.wpilog seems to be of another robot: 12 of its 13 values are not published here\n" in said
+    little = "12 of the 14 values of match.wpilog are not set here, so it seems to be of another robot"
+    assert f"\nlittle can be compared: {little}\nwhat was compared does not differ: " in said
 
 
 def test_a_log_that_has_no_inputs_is_refused_in_a_sentence(make_project: MakeProject) -> None:
@@ -734,6 +735,20 @@ def test_a_person_sees_where_the_log_differs(recorded: RobotProject, browser: Br
         page.get_by_role("button", name="Close", exact=True).click()
         page.close()
         assert wrong == []
+
+
+@pytest.mark.slow
+def test_a_person_sees_first_what_cannot_be_compared(make_project: MakeProject, browser: Browser) -> None:
+    project = make_project({"robot.py": PUBLISHING})
+    a_match().save(project.path / "match.wpilog")
+    with page_with(project, "match.wpilog") as server:
+        page = browser.new_page(viewport={"width": 1180, "height": 820})
+        page.set_default_timeout(PATIENCE * 1000)
+        page.goto(server.address)
+        page.get_by_role("button", name="Nothing to compare up to 0:1").click()
+        limit = "match.wpilog has no joysticks from 10 s on: what follows from that cannot be compared."
+        page.locator("dialog.comparison p").first.get_by_text(limit).wait_for()
+        page.close()
 
 
 CAMERAS = """

@@ -6,9 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from ..hal.paths import format_path, parse_path
 from ..runtime.robot_time import PACKET_US
-from ..runtime.scripts.sensors import camera_of
 from ..shell import quoted
 from ..wording import counted
 from .engine.messages import VALUE
@@ -16,16 +14,15 @@ from .engine.past_run import name_of
 from .engine.source import Source
 from .logs.align import enabled_moments
 from .ui.models.wording import clock, differing_texts
+from .ui.web.differences import FirstDifference, is_number
+from .ui.web.only_in_one import device_of, is_mostly_compared, limits
 
 if TYPE_CHECKING:
     from .log_run import LogRun
     from .ui.web.collector import Collector
-    from .ui.web.differences import FirstDifference
 
 #: The most values that differ, and the most sensors, that are named.
 _MOST_NAMED = 8
-#: A log is of another robot if the code publishes less than half of its values; of fewer values, nothing is said.
-_FEWEST = 10
 #: A name of a time that code takes, which may differ in each run.
 _DURATION = re.compile(r"time|duration|latency|elapsed|period|(^|[^a-z])(ms|dt|fps)($|[^a-z])", re.IGNORECASE)
 _SOURCES = {
@@ -63,14 +60,14 @@ class LogReport:
             pass
         branch = next((each for each in runs.branches if not each.is_former), None)
         found = None if branch is None else runs.first_difference(branch.number, None)
-        if branch is None or found is None:
+        only = None if branch is None else runs.only_in_one(branch.number)
+        if branch is None or found is None or only is None:
             return
-        only = collector.runs.only_in_one(branch.number)
-        if only is not None and (count := len(only.there) + only.both) >= _FEWEST and len(only.there) > only.both:
-            what = f"{len(only.there)} of its {count} values are not published here"
-            yield f"{self._log.name} seems to be of another robot: {what}"
-        yield from self._differences(found, branch.number)
-        for where, topics in ((f"in {self._log.name} only:", only.there), ("here only:", only.here)) if only else ():
+        yield from limits(self._log.name, found, only)
+        yield from self._differences(found, branch.number, is_mostly_compared(found, only))
+        if found.never:
+            yield self._listed("in both, but never at the same time:", sorted(map(name_of, found.never)))
+        for where, topics in ((f"in {self._log.name} only:", only.there), ("here only:", only.here)):
             if topics:
                 yield self._listed(where, (_with_time((each.path, each.time)) for each in topics))
         if found.by.ignored:
@@ -80,23 +77,23 @@ class LogReport:
             if names:
                 yield self._listed(f"{_SOURCES[kind]}:", names)
 
-    def _differences(self, found: FirstDifference, branch: int) -> Iterator[str]:
-        from .ui.web.differences import is_number
-
+    def _differences(self, found: FirstDifference, branch: int, mostly: bool) -> Iterator[str]:
         log, by = self._log, found.by
         how = f"within {by.share * 100:g} % of their range" if by.share else "exactly"
         differing = self._named(found)
         if not found.compared:
-            yield f"nothing to compare: {log.name} has no value that the robot's code sets here, too"
+            yield f"nothing to compare{self._until()}: {log.name} has no value that the robot's code sets here, too"
             return
         if not differing:
             values = f"{counted(found.compared, 'value')} that {log.name} has, too, {how} the same"
-            yield f"no difference{self._until()}: {values}"
+            yield f"{'no difference' if mostly else 'what was compared does not differ'}{self._until()}: {values}"
             yield from self._slight(found)
             return
         (path, time), *others = differing
         there, here = differing_texts(*found.values[path])
         yield f"differs first at {clock(time)}, in {name_of(path)}: {there} in {log.name}, {here} here"
+        if any(since <= time for since, _ in by.limits):
+            yield "this may come from what cannot be compared"
         if others:
             yield self._listed("then in", self._moments(found, others))
         if path.startswith(VALUE) and is_number(found.values[path][0]) and _DURATION.search(name := name_of(path)):
@@ -139,7 +136,7 @@ class LogReport:
             return found.sorted()
         one_each: dict[object, tuple[str, float]] = {}
         for path, time in found.sorted():
-            one_each.setdefault((path if path.startswith(VALUE) else _device(path), time), (path, time))
+            one_each.setdefault((path if path.startswith(VALUE) else device_of(path), time), (path, time))
         return list(one_each.values())
 
     def _moments(self, found: FirstDifference, differing: Iterable[tuple[str, float]]) -> Iterator[str]:
@@ -167,15 +164,8 @@ def _with_time(moment: tuple[str, float | None]) -> str:
 def _devices_by_source(sensors: dict[str, list[str]]) -> dict[str, list[str]]:
     """Return the devices of sensors in their order; among those that nothing moves, none of which something moves."""
     found = {
-        kind: list(dict.fromkeys(paths if kind in _NAMED_ALREADY else map(_device, paths)))
+        kind: list(dict.fromkeys(paths if kind in _NAMED_ALREADY else map(device_of, paths)))
         for kind, paths in sensors.items()
     }
     moved = {*found["log"], *found["physics"]}
     return found | {"nothing": [name for name in found["nothing"] if name not in moved]}
-
-
-def _device(path: str) -> str:
-    if (camera := camera_of(path.removeprefix(VALUE))) is not None:
-        return camera
-    segments = parse_path(path)
-    return str(segments[1]) if segments[0] == "CAN" else format_path(segments[:-1] or segments)

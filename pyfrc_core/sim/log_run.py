@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from functools import partial
@@ -24,6 +25,7 @@ from ..runtime.scripts.inputs_file import is_data_log, load_inputs
 from ..runtime.scripts.network_targets import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript, Step, script_beside, trace_beside
 from ..runtime.scripts.sensors import HOLD, INFINITE, is_input, is_sensor
+from ..season import CURRENT
 from ..shell import quoted
 from ..wording import from_here
 from .engine.field import field_of, robot_at, start_named
@@ -106,9 +108,23 @@ def log_run(
     logged = () if is_own else (path.removeprefix(VALUE) for path in run.histories["network"].paths())
     replayed = tuple(sorted(kit_names.subsystems(logged)))
     ignored = (*project.settings.sim.ignore, *ignored)
-    compared = Comparison(True, share, late, frozenset(written | sensors), replayed, ignored)
     script = replace(script, problem=opened.problem)  # that of a trace, too
+    limits = tuple(_limits(script, run.name))
+    compared = Comparison(True, share, late, frozenset(written | sensors), replayed, ignored, limits)
     return LogRun(script, replace(run, offset=offset, compared=compared))
+
+
+def _limits(script: InputScript, name: str) -> Iterator[tuple[float, str]]:
+    """Yield what of a log cannot be compared, with since when a difference may come from that.
+
+    :param name: that of the log
+    """
+    for lack in script.lacks:
+        yield lack.begin_us / 1_000_000, f"{lack.sentence(name)}: what follows from that cannot be compared"
+    if script.problem:
+        yield math.inf, f"not all of {name} can be read, so its rest cannot be compared"
+    if script.year not in (None, CURRENT.year):
+        yield 0.0, f"{name} is of {script.year}: what is different since then cannot be compared"
 
 
 def _script_of(file: Path) -> Path:

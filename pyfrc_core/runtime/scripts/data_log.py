@@ -30,7 +30,7 @@ from . import kit_names
 from .known_entries import fit_of
 from .logged_inputs import FROM_OUTSIDE, HAL, OF_STATION, LoggedInputs, as_written, target_of
 from .network_targets import NETWORK_INPUTS, data_target, parse_entry_target
-from .script import InputScript, ScriptError, Step
+from .script import InputScript, Lack, ScriptError, Step
 from .sensors import HOLD, camera_of
 from .targets import MATCH_TIME, MODE, REMAINING
 
@@ -85,6 +85,7 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
             steps.append(Step(at_us, writes))
     seen = log.records(lambda entry: _is_of_camera(entry) and entry.name not in written_outside)
     first_us = PACKET_US if begin_us else 0  # what was logged before is there with the first packet
+    lacks = tuple(_lacks(steps, {record.name: record.at_us - begin_us for record in reversed(sent)}, begin_us))
     steps = [*_with_match_time(steps, last_us), *_seen(seen, begin_us, first_us, last_us)]
     return InputScript(
         tuple(sorted(steps, key=attrgetter("at_us"))),
@@ -92,6 +93,7 @@ def script_from_log(file: Path, given: Collection[str] = ()) -> InputScript:
         file=name,
         problem=log.problem,
         year=_year(log),
+        lacks=lacks,
     )
 
 
@@ -143,6 +145,29 @@ def _part(sent: list[Record], last_us: int) -> tuple[int, int]:
     is_used = any(is_on for _, is_on in enabled)
     begin_us = max(first_us, first_on - _BEFORE_US) // PACKET_US * PACKET_US
     return begin_us, min(last_us, last_off + _AFTER_US) if is_used else last_us
+
+
+def _lacks(steps: list[Step], firsts: Mapping[str, int], begin_us: int) -> Iterator[Lack]:
+    """Yield what a log does not have of the driver station while the robot is enabled.
+
+    :param firsts: when the first value of each entry was logged, in microseconds of robot time
+    :param begin_us: the beginning of what is replayed, by the log's clock
+    """
+    modes = [(step.at_us, str(step.writes[MODE])) for step in steps if MODE in step.writes]
+    enabled = [(at_us, mode) for at_us, mode in modes if not mode.startswith("disabled")]
+    if not enabled:
+        yield Lack("enabled robot", 0)
+        return
+    if begin_us and enabled[0][0] <= PACKET_US:
+        yield Lack("beginning, since the robot is enabled when it begins", 0)
+    if not firsts.keys() & {"DS:autonomous", "DS:test"}:
+        yield Lack("modes but enabled and disabled", enabled[0][0])
+    driven_us = next((at_us for at_us, mode in enabled if mode != "autonomous"), None)
+    first_us = min(
+        (at_us for name, at_us in firsts.items() if name.startswith("DS:joystick") and fit_of(name)), default=None
+    )
+    if driven_us is not None and (first_us is None or _packet(first_us) > driven_us):
+        yield Lack("joysticks", driven_us, None if first_us is None else _packet(first_us))
 
 
 def _written_outside(records: Iterable[Record], where: str) -> Iterator[str]:

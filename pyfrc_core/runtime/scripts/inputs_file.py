@@ -59,7 +59,7 @@ def load_inputs(file: Path, given: Collection[str] = ()) -> InputScript:
 
 
 def remarks(script: InputScript) -> Iterator[str]:
-    """Yield what users should know about the file of a script: that it is damaged, or of another season."""
+    """Yield what users should know about a script's file: that it is damaged, is of another season, or lacks inputs."""
     if script.problem:
         yield f"{script.file}: {script.problem}."
     if script.year not in (None, CURRENT.year):
@@ -67,3 +67,5 @@ def remarks(script: InputScript) -> Iterator[str]:
             f"{script.file} is of {script.year}, and WPILib {CURRENT.year} is installed here: the field, devices and "
             "the numbers of buttons may differ."
         )
+    for lack in script.lacks:
+        yield f"{lack.sentence(script.file)}."

@@ -39,6 +39,7 @@ class Comparison:
     :param given: the values from outside, besides those of the driver station
     :param replayed: the subsystems whose inputs the log has, which only the library that wrote it can give to the code
     :param ignored: names of values that are not compared, as reports print them; ``*`` stands for any text
+    :param limits: what cannot be compared, as sentences; each after since when differences may come from it, in seconds
     """
 
     is_log: bool = False
@@ -47,6 +48,7 @@ class Comparison:
     given: frozenset[str] = frozenset()
     replayed: tuple[str, ...] = ()
     ignored: tuple[str, ...] = ()
+    limits: tuple[tuple[float, str], ...] = ()
 
     def ignores(self, path: str) -> bool:
         """Return whether a value, or the topic or device that it is part of, is not compared."""

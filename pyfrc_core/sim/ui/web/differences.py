@@ -72,8 +72,9 @@ class FirstDifference:
     values: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     #: Of the values that differ by less than what counts, by how much at most, as a share of their range, and when.
     slight: dict[str, tuple[float, float]] = field(default_factory=dict)
-    #: How many values were compared.
+    #: How many values were compared; and of a log, those that both runs have, but never at the same time.
     compared: int = 0
+    never: set[str] = field(default_factory=set)
 
     @property
     def time(self) -> float | None:
@@ -111,13 +112,17 @@ class FirstDifference:
 
     def compare(self, one: ValueHistory, other: ValueHistory, path: str) -> None:
         """Look for a difference in this value."""
-        if self.by.is_log and (path in self.by.given or _is_from_outside(path) or self.by.ignores(path)):
+        if self.by.is_log and not is_compared(path, self.by):
             return
-        self.compared += 1
         end = self.end if self.by.is_log or self.time is None else self.time
         left = list(_changes(one, path, self.begin, end))
         shifted = _changes(other, path, self.begin - self.offset, end - self.offset)
         right = [(time + self.offset, value) for time, value in shifted]
+        if self.by.is_log and not _overlap(left, right):
+            if any(value is not MISSING for _, value in right):
+                self.never.add(path)
+            return
+        self.compared += 1
         if left == right:  # as most are
             return
         limits = self._limits(left, right)
@@ -211,14 +216,11 @@ def _apart(one: Any, other: Any, turn: float, is_log: bool) -> float:
     return 0.0 if isinstance(one, str) != isinstance(other, str) else math.inf  # data logs have lists as texts
 
 
-def is_published(path: str) -> bool:
-    """Return whether a path is of a value in NetworkTables that robot code sets, and none that describes others."""
-    return path.startswith(VALUE) and not _OF_LOGS.match(path) and not _is_from_outside(path)
-
-
-def _is_from_outside(path: str) -> bool:
-    """Return whether a value is none that robot code sets; devices that never repeat count as such, too."""
-    return bool(_GIVEN.match(path)) or is_sensor(path) or _is_of_camera(path) or in_real_time(path)
+def is_compared(path: str, by: Comparison) -> bool:
+    """Return whether a value is one that robot code sets, and compared; devices that never repeat are not."""
+    if path in by.given or _GIVEN.match(path) or _OF_LOGS.match(path) or by.ignores(path):
+        return False
+    return not (is_sensor(path) or _is_of_camera(path) or in_real_time(path))
 
 
 def _is_of_camera(path: str) -> bool:
@@ -255,6 +257,14 @@ def _apart_from(value: Any, others: list[Any], apart_of: Callable[..., float]) -
     if is_number(value) and others and all(map(is_number, others)) and min(others) <= value <= max(others):
         return 0.0
     return min((apart_of(value, other) for other in others), default=math.inf)
+
+
+def _overlap(left: list[Held], right: list[Held]) -> bool:
+    """Return whether both have a value at the same time."""
+    if left[0][1] is not MISSING and right[0][1] is not MISSING:
+        return True
+    lefts, rights = [time for time, _ in left], [time for time, _ in right]
+    return any(_at(left, lefts, time) is not MISSING is not _at(right, rights, time) for time in (*lefts, *rights))
 
 
 def _at(values: list[Held], times: list[float], time: float) -> Any:

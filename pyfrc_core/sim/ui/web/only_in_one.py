@@ -1,28 +1,34 @@
-"""The topics of NetworkTables that only one of two runs has, and when they came.
+"""The topics of NetworkTables, and the devices of `hal_data`, that only one of two runs has, and when they came.
 
 They are compared as topics: a list of structs that is still empty has no parts, and what a robot no longer publishes
-(a Sendable has one name at a time) stays in a log.
+(a Sendable has one name at a time) stays in a log. What could not be compared is said before any result: `limits`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
+from ....hal.paths import format_path, parse_path
+from ....runtime.scripts.sensors import camera_of
+from ....wording import counted
 from ...engine.messages import TYPE, VALUE
-from ...engine.past_run import Comparison
+from ...engine.past_run import Comparison, Stream
 from ...engine.value_history import MISSING, ValueHistory
-from .differences import is_published
+from .differences import FirstDifference, is_compared
 from .plots import same
 
 #: How long after the beginning a value counts as there from the start, in seconds: robotInit and the first loops.
 _START = 0.1
+#: Of fewer values, it is not said that a log is of another robot.
+_FEWEST = 10
 
 
 class OnlyThere(NamedTuple):
-    """A topic that one run has, and the other one does not.
+    """A topic or a device that one run has, and the other one does not.
 
-    :param path: of the topic, as of a value
+    :param path: of the topic, as of a value; of a device, its name
     :param time: when its value came, in seconds; if it was there from the start, when it first changed; None:
         it never did
     :param changes: how often it has changed
@@ -39,7 +45,7 @@ class OnlyThere(NamedTuple):
 
 
 class OnlyInOne(NamedTuple):
-    """The topics that only one of two runs has, in the order of `OnlyThere.order`.
+    """The topics, and the devices that move, that only one of two runs has, in the order of `OnlyThere.order`.
 
     :param both: how many both have
     """
@@ -54,40 +60,110 @@ def topics(history: ValueHistory) -> set[str]:
     return {VALUE + path.removeprefix(TYPE) for path in history.paths() if path.startswith(TYPE)}
 
 
-def only_in_one(here: ValueHistory, there: ValueHistory, begin: float, offset: float, by: Comparison) -> OnlyInOne:
-    """Return the topics that only `there` has, and those that only `here` has.
+def device_of(path: str) -> str:
+    """Return the device of a value in `hal_data`, or the camera of one in NetworkTables."""
+    if (camera := camera_of(path.removeprefix(VALUE))) is not None:
+        return camera
+    segments = parse_path(path)
+    return str(segments[1]) if segments[0] == "CAN" else format_path(segments[:-1] or segments)
+
+
+_Histories = Mapping[Stream, ValueHistory]
+
+
+def only_in_one(here: _Histories, there: _Histories, begin: float, offset: float, by: Comparison) -> OnlyInOne:
+    """Return what only `there` has, and what only `here` has.
 
     What came in `there` after the end of `here` is left out: it may still have come here.
 
     :param begin: where both runs begin, in seconds of the one that is here
     :param offset: what is added to the times of the other one
     """
-    ours, theirs = topics(here), topics(there)
-    shown = {path for path in ours | theirs if is_published(path) and not by.ignores(path)}
-    found = _only_in(there, shown & theirs - ours, begin - offset, here.end - offset)
-    found = [each if each.time is None else each._replace(time=each.time + offset) for each in found]
-    return OnlyInOne(found, _only_in(here, shown & ours - theirs, begin, here.end), len(shown & ours & theirs))
+    left: list[OnlyThere] = []
+    added: list[OnlyThere] = []
+    count = 0
+    for stream, parts_of in _PARTS.items():
+        own, other = here[stream], there[stream]
+        ours, theirs = parts_of(own, by), parts_of(other, by)
+        if theirs:  # a trace has no topics, and the log of a real robot has no outputs in hal_data
+            missing = {path: theirs[path] for path in theirs.keys() - ours.keys()}
+            new = {path: ours[path] for path in ours.keys() - theirs.keys()}
+            both = [path for path in ours.keys() & theirs.keys() if stream == "network" or _moves(other, theirs[path])]
+            left.extend(_only_in(other, missing, begin, own.end, offset))
+            added.extend(_only_in(own, new, begin, own.end, 0.0))
+            count += len(both)
+    left.sort(key=lambda only: only.order)
+    added.sort(key=lambda only: only.order)
+    return OnlyInOne(left, added, count)
 
 
-def _only_in(history: ValueHistory, found: Collection[str], begin: float, end: float) -> list[OnlyThere]:
-    start = max(begin, 0.0) + _START
-    parts: dict[str, list[str]] = {path: [] for path in found}
+def _topics_with_parts(history: ValueHistory, by: Comparison) -> dict[str, list[str]]:
+    """Return the topics that are compared, each with the paths of its values."""
+    parts: dict[str, list[str]] = {each: [] for each in topics(history) if is_compared(each, by)}
     for path in history.paths():
         topic = path
         while topic not in parts and "/" in topic:
             topic = topic.rpartition("/")[0]
         if topic in parts:
             parts[topic].append(path)
-    made = []
+    return parts
+
+
+def _devices(history: ValueHistory, by: Comparison) -> dict[str, list[str]]:
+    """Return the devices with values that are compared, each with their paths."""
+    parts: defaultdict[str, list[str]] = defaultdict(list)
+    for path in history.paths():
+        if is_compared(path, by):
+            parts[device_of(path)].append(path)
+    return parts
+
+
+_PARTS: dict[Stream, Callable[[ValueHistory, Comparison], dict[str, list[str]]]] = {
+    "network": _topics_with_parts,
+    "hal": _devices,
+}
+
+
+def _moves(history: ValueHistory, paths: Iterable[str]) -> bool:
+    return any(map(history.moves, paths))
+
+
+def _only_in(
+    history: ValueHistory, parts: Mapping[str, list[str]], begin: float, end: float, offset: float
+) -> Iterator[OnlyThere]:
+    start, end = max(begin - offset, 0.0) + _START, end - offset
     for topic, paths in parts.items():
+        if not topic.startswith(VALUE) and not _moves(history, paths):
+            continue  # a device that never does anything
         firsts = [time for path in paths if (time := _first_change(history, path, start)) is not None]
         first = min(firsts, default=None)
         if first is None or first <= end or any(history.value_at(path, end) is not MISSING for path in paths):
-            made.append(OnlyThere(topic, first, sum(map(history.change_count, paths))))
-    return sorted(made, key=lambda each: each.order)
+            yield OnlyThere(topic, None if first is None else first + offset, sum(map(history.change_count, paths)))
 
 
 def _first_change(history: ValueHistory, path: str, start: float) -> float | None:
     before = history.value_at(path, start)
     changes = zip(*history.changes(path, start), strict=True)
     return next((time for time, value in changes if not same(value, before)), None)
+
+
+# -- what that means --------------------------------------------------------------------------------------------------
+
+
+def is_mostly_compared(found: FirstDifference, only: OnlyInOne) -> bool:
+    """Return whether more was compared of what a log has than not."""
+    missing = len(only.there) + len(found.never)
+    return not missing or only.both - len(found.never) > missing
+
+
+def limits(name: str, found: FirstDifference, only: OnlyInOne) -> Iterator[str]:
+    """Yield what could not be compared with a log, as sentences without a full stop: what comes before any result.
+
+    :param name: that of the log
+    """
+    yield from (sentence for _, sentence in found.by.limits)
+    if not is_mostly_compared(found, only) and found.compared:
+        missing, total = len(only.there) + len(found.never), len(only.there) + only.both
+        are = "is" if missing == 1 else "are"
+        whose = ", so it seems to be of another robot" if total >= _FEWEST else ""
+        yield f"little can be compared: {missing} of the {counted(total, 'value')} of {name} {are} not set here{whose}"

@@ -13,7 +13,7 @@ from ...engine.past_run import EXACT, Comparison, PastRun, Stream
 from ...engine.value_history import MISSING, ValueHistory, packed
 from ..models.wording import clock
 from .differences import FirstDifference, sensors_by_source
-from .only_in_one import OnlyInOne, only_in_one, topics
+from .only_in_one import OnlyInOne, is_mostly_compared, limits, only_in_one
 from .plots import MOST_POINTS, picked, resolve, same, series
 
 #: About how much memory the values of all runs may take together.
@@ -251,7 +251,12 @@ class Runs:
         found = self.first_difference(number, paths)
         if found is None:
             return None
-        return found.plain(clean) | ({"sensors": self.sensors(number)} if found.by.is_log else {})
+        only = self.only_in_one(number) if found.by.is_log else None
+        if only is None:
+            return found.plain(clean)
+        said = [clean(sentence) for sentence in limits("the log", found, only)]
+        known = {"limits": said, "mostly": is_mostly_compared(found, only), "compared": found.compared}
+        return found.plain(clean) | known | {"sensors": self.sensors(number)}
 
     def sensors(self, number: int) -> dict[str, list[str]]:
         """Return the sensors of the present run, by where their values come from: a log that drives it, or not.
@@ -271,16 +276,15 @@ class Runs:
         return history.now.keys() | former.now.keys()
 
     def only_in_one(self, number: int) -> OnlyInOne | None:
-        """Return the topics that only a branch has, and those that only the present run has, with their times in it.
+        """Return what only a branch has, and what only the present run has, with the times in it.
 
-        None if there is no such branch, or it has nothing of NetworkTables, as a trace.
+        None if there is no such branch that is compared.
         """
         with self._lock:
             branch = self._branch(number)
-            if branch is None or not topics(there := branch.histories["network"]):
+            if branch is None or branch.compared is None:
                 return None
-            here, by = self._histories["network"], EXACT if branch.compared is None else branch.compared
-            return only_in_one(here, there, branch.begin, branch.offset, by)
+            return only_in_one(self._histories, branch.histories, branch.begin, branch.offset, branch.compared)
 
     def samples(self, paths: Iterable[str], after: Position) -> tuple[dict[str, list[Any]], Position]:
         """Return every change of some values since a position, as times and values in turn, and the next position."""

@@ -24,9 +24,18 @@ export function FirstDifference({ difference, found }) {
     return html`<button class="quiet" onClick=${() => goTo(difference)} title="The first moment at which the branch differs from this run">
       Differs at ${clock(difference)}</button>`;
   }
-  const text = difference === null ? `No difference up to ${clock(found.until)}` : `Differs first at ${clock(difference)}, in ${nameOf(found.paths[0])}`;
-  return html`<button class="quiet first-difference" disabled=${difference === null} onClick=${() => goTo(difference)}
-      title="The first moment at which the log differs from what the code does now"><span>${text}</span></button>`;
+  const { limits } = found;
+  const text = `${limits.length && found.compared ? "Partly compared. " : ""}${result(difference, found)}`;
+  const title = limits[0] ?? "The first moment at which the log differs from what the code does now";
+  return html`<button class="quiet first-difference" disabled=${difference === null && !limits.length}
+      onClick=${() => (difference === null ? showComparison() : goTo(difference))} title=${title}><span>${text}</span></button>`;
+}
+
+// What the comparison has found, up to when: "no difference" only where most of what the log has was compared.
+function result(difference, { paths, until, compared: count, mostly }) {
+  if (difference !== null) return `Differs first at ${clock(difference)}, in ${nameOf(paths[0])}`;
+  const same = count === 0 ? "Nothing to compare" : mostly ? "No difference" : "What was compared does not differ";
+  return `${same} up to ${clock(until)}`;
 }
 
 // Show all values that differ, and what moves the sensors.
@@ -41,7 +50,8 @@ export function showComparison() {
   render(
     html`<form method="dialog">
       <h2>${branch.name} and today’s code</h2>
-      ${found.others.length === 0 && html`<p>No value differs.</p>`}
+      ${found.limits.map((limit) => html`<p key=${limit}>${limit}.</p>`)}
+      ${found.others.length === 0 && html`<p>${result(null, found)}.</p>`}
       ${found.others.length > 0 && html`<table><thead><tr><th>Differs first at</th><th>Value</th><th>In the log</th><th>Here</th></tr></thead>
         <tbody>${found.others.map(([path, t, there, here]) => html`<tr key=${path}>
           <td><button type="button" class="quiet" onClick=${closeAt(t)}>${clock(t)}</button></td><td>${nameOf(path)}</td><td>${there}</td><td>${here}</td></tr>`)}</tbody></table>`}
