@@ -24,6 +24,13 @@ def test_check_tells_warnings_and_mistakes(make_project: MakeProject) -> None:
         "sim/config.json: no mistakes, but 1 warning\n"
     )
 
+    shape = '{"color": "gren", "rect": [1, 1, 2, 2]}'
+    project.write({"sim/config.json": '{"pyfrc": {"field": {"objects": [\n' + shape + "]}}}"})
+    assert project.run("config", "check").stdout == (
+        'warning: sim/config.json:2: pyfrc.field.objects[0].color = "gren": there is no such colour: '
+        "did you mean 'green'?\nsim/config.json: no mistakes, but 1 warning\n"
+    )
+
     project.write({"sim/config.json": '{"pyfrc": {"robot": {\n"w": -1}, "pwm": {\n"20": "x"}}}'})
     for subcommand in ("check", "show"):
         wrong = project.run("config", subcommand)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from PIL import ImageColor
 
 from pyfrc.sim import get_user_renderer
 from pyfrc.sim.field.user_renderer import UserRenderer
@@ -90,12 +92,40 @@ def test_a_line_in_other_coordinates(keywords: dict, expected: list, renderer: U
         ({"dashes": (4, 4)}, "did you mean 'dash'?"),
         ({"width": "thick"}, "draw_line: width='thick'"),
         ({"capstyle": "square"}, "it is one of butt, projecting, round"),
+        ({"color": "notacolour"}, "draw_line: color='notacolour': there is no such colour: give a name, such as red"),
+        ({"color": "gren"}, "did you mean 'green'?"),
+        ({"fill": "#12"}, "draw_line: fill='#12': there is no such colour"),
+        (
+            {"color": "#12", "no_such_option": 1},
+            "no such colour: give a name, such as red, or #rrggbb; draw_line: there",
+        ),
     ],
 )
 def test_options_that_are_wrong_are_named(renderer: UserRenderer, options: dict[str, object], problem: str) -> None:
-    """A front end shows it; the robot goes on."""
-    renderer.draw_line([(0, 0), (1, 1)], **options)
-    assert problem in only_line(renderer).problem
+    """The console of each front end names it, with the line of the robot's code; the robot goes on."""
+    with pytest.warns(UserWarning, match=re.escape(problem)) as by_line:
+        renderer.draw_line([(0, 0), (1, 1)], **options)
+    with pytest.warns(UserWarning, match=re.escape(problem)) as by_path:
+        renderer.draw_pathfinder_trajectory([Segment(0, 0), Segment(1, 1)], **options)
+    assert [each.filename for each in (*by_line, *by_path)] == [__file__] * 2
+    for line in renderer.drawings():
+        assert problem in line.problem
+        assert isinstance(line, Line)
+        assert line.color == "#ff0000"
+
+
+def test_a_text_with_a_wrong_option_is_named(renderer: UserRenderer) -> None:
+    with pytest.warns(UserWarning, match="draw_text: color='#12': there is no such colour") as warned:
+        renderer.draw_text("here", (1, 2), color="#12")
+    assert warned[0].filename == __file__
+
+
+@pytest.mark.parametrize("color", ["red", "LightGoldenrodYellow", "#1a2B3c", "#fff"])
+def test_colours_of_all_front_ends_are_known(renderer: UserRenderer, color: str) -> None:
+    renderer.draw_line([(0, 0), (1, 1)], color=color)
+    line = only_line(renderer)
+    assert (line.color, line.problem) == (color, "")
+    ImageColor.getrgb(color)
 
 
 def test_a_text(renderer: UserRenderer) -> None:
@@ -108,6 +138,15 @@ def test_a_text(renderer: UserRenderer) -> None:
     assert second == Text("there", 4, 2, "#0000ff", 20, TextStyle(anchor="w"))
     assert (third.x, third.y) == pytest.approx((10, 6))
     assert (fourth.x, fourth.y) == pytest.approx((8, 6))
+
+
+def test_a_line_begins_at_the_robot_and_a_text_is_beside_it(renderer: UserRenderer) -> None:
+    """As the text of 2019 says of a line: its first point is at the robot's centre, wherever the points begin."""
+    renderer.draw_line([(3, 0), (5, 0)], robot_coordinates=True)
+    renderer.draw_text("t", (3, 0), robot_coordinates=True)
+    line, text = renderer.drawings()
+    assert points(line) == [(10, 5), (10, 7)]
+    assert (text.x, text.y) == pytest.approx((10, 8))
 
 
 @dataclass
@@ -272,3 +311,27 @@ def test_a_picture_of_tags_and_on_an_image(tmp_path: Path) -> None:
     image.write_text("no picture")
     with pytest.raises(UsageError, match=r"field.png is no picture"):
         draw_picture(scene, tmp_path / "path.png")
+
+
+def test_what_is_wrong_with_a_drawing_is_in_the_console_once(make_project) -> None:
+    """It is what the robot prints, which each front end shows."""
+    project = make_project(
+        {
+            "robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n",
+            "physics.py": """
+                from pyfrc.sim import get_user_renderer
+
+                class PhysicsEngine:
+                    def __init__(self, physics_controller):
+                        self.renderer = get_user_renderer()
+
+                    def update_sim(self, hal_data, now, tm_diff):
+                        self.renderer.draw_line([(1, 1), (2, now)], nosuch=3, color="gren")
+            """,
+        }
+    )
+    result = project.run("sim", "--ui", "none", "--mode", "auto", "--seconds", "0.5")
+    assert result.code == 0, result.output
+    assert result.output.count("there is no option 'nosuch'") == 1
+    (line,) = (line for line in result.output.splitlines() if "nosuch'" in line)
+    assert "physics.py:8: UserWarning: draw_line: color='gren': there is no such colour: did you mean 'green'?; " in line

@@ -18,6 +18,7 @@ from pydantic import BaseModel, ValidationError
 
 from ..errors import nearest
 from ..season import FIELDS
+from .colors import color_problem
 from .findings import MOST_TOLD, Finding, Path, dotted, finding_at, in_order, mistakes, settings_error
 from .json_text import MOST_BYTES, JsonText
 from .pictures import field_picture
@@ -207,6 +208,10 @@ def _find_warnings(given: SimConfig, text: JsonText, directory: File) -> Iterato
     if image is not None and (why := field_picture(directory.parent, image)[1]):
         path = ("pyfrc", "field", "image")
         yield path, f"{dotted(path)} = {text.excerpt(path)}: {why}", "It is looked for in sim/."
+    for number, shape in enumerate(given.field.objects):
+        if why := color_problem(shape.color):
+            path = ("pyfrc", "field", "objects", number, "color")
+            yield path, f"{dotted(path)} = {text.excerpt(path, shape.color)}: {why}", None
     for port, joystick in text.value["pyfrc"].get("joysticks", {}).items():
         for first, again in _same_axis(joystick.get("axes", {})):
             path = ("pyfrc", "joysticks", port, "axes", again)

@@ -9,8 +9,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
+from ....config.colors import color_problem
 from ....errors import nearest
-from ..scene import LineStyle, TextStyle
+from ..scene import Line, LineStyle, Text, TextStyle
 
 #: Options that have a meaning in tkinter, and none for a drawing that stays as it is.
 _WITHOUT_EFFECT = frozenset({"tags"})
@@ -22,24 +23,26 @@ Style = TypeVar("Style", LineStyle, TextStyle)
 class Styled:
     """What keywords make of a drawing.
 
-    :param color: None: they say nothing of it
     :param size: None: they say nothing of it
-    :param problem: what is wrong with the keywords; empty: nothing
+    :param problem: what is wrong with the keywords or the colour; empty: nothing
     """
 
-    color: str | None = None
+    color: str
     size: int | None = None
     problem: str = ""
 
 
-def line_style(options: Mapping[str, object]) -> tuple[LineStyle, Styled]:
-    """Return the style of a line, with what else the keywords say."""
-    return _read("draw_line", LineStyle, _LINE, options)
+def line_style(options: Mapping[str, object], color: str) -> tuple[LineStyle, Styled]:
+    """Return the style of a line, with what else the keywords say.
+
+    :param color: the colour, if the keywords have none
+    """
+    return _read("draw_line", LineStyle, _LINE, {"color": color, **options}, Line.color)
 
 
-def text_style(options: Mapping[str, object]) -> tuple[TextStyle, Styled]:
-    """Return the style of a text, with what else the keywords say."""
-    return _read("draw_text", TextStyle, _TEXT, options)
+def text_style(options: Mapping[str, object], color: str) -> tuple[TextStyle, Styled]:
+    """Return the style of a text, likewise."""
+    return _read("draw_text", TextStyle, _TEXT, {"color": color, **options}, Text.color)
 
 
 def _one_of(*names: str) -> Callable[[Any], str]:
@@ -49,6 +52,12 @@ def _one_of(*names: str) -> Callable[[Any], str]:
         return str(value)
 
     return read
+
+
+def _color(value: object) -> str:
+    if problem := color_problem(str(value)):
+        raise ValueError(problem)
+    return str(value)
 
 
 def _dash(value: Any) -> tuple[int, ...]:
@@ -75,37 +84,39 @@ def _single(name: str, read: Callable[[Any], Any]) -> Callable[[Any], dict[str, 
 #: How each option is read, into attributes of the style, and `color` and `size`.
 _Readers = Mapping[str, Callable[[Any], dict[str, Any]]]
 _LINE: _Readers = {
+    "color": _single("color", _color),
     "width": _single("width", float),
     "dash": _single("dash", _dash),
     "smooth": _single("smooth", bool),
     "capstyle": _single("cap", _one_of("butt", "projecting", "round")),
     "joinstyle": _single("join", _one_of("bevel", "miter", "round")),
-    "fill": _single("color", str),
+    "fill": _single("color", _color),
 }
 _TEXT: _Readers = {
+    "color": _single("color", _color),
     "anchor": _single("anchor", _one_of("center", "n", "ne", "e", "se", "s", "sw", "w", "nw")),
     "angle": _single("angle", float),
     "justify": _single("justify", _one_of("left", "center", "right")),
     "width": _single("width", float),
     "font": _font,
-    "fill": _single("color", str),
+    "fill": _single("color", _color),
 }
 
 
 def _read(
-    function: str, make: Callable[..., Style], readers: _Readers, options: Mapping[str, object]
+    function: str, make: Callable[..., Style], readers: _Readers, options: Mapping[str, object], color: str
 ) -> tuple[Style, Styled]:
     found: dict[str, Any] = {}
-    problem = ""
+    problems = []
     for name, value in options.items():
         if name in _WITHOUT_EFFECT:
             continue
         if name not in readers:
-            problem = f"{function}: there is no option {name!r}: {nearest(name, list(readers))}"
+            problems.append(f"{function}: there is no option {name!r}: {nearest(name, list(readers))}")
             continue
         try:
             found |= readers[name](value)
         except (TypeError, ValueError) as wrong:
-            problem = f"{function}: {name}={value!r}: {wrong}"
-    styled = Styled(found.pop("color", None), found.pop("size", None), problem)
+            problems.append(f"{function}: {name}={value!r}: {wrong}")
+    styled = Styled(found.pop("color", color), found.pop("size", None), "; ".join(problems))
     return make(**found), styled

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Protocol
 
@@ -62,8 +63,9 @@ class UserRenderer:
 
         :param line_pts: a list of (x, y) pairs, in feet
         :param color: as a 6-digit hex color
-        :param robot_coordinates: if True, the line starts at the robot's centre and is turned as the robot is; if an
-            (x, y), it starts at that place on the robot: x feet to the right of its centre, y feet ahead
+        :param robot_coordinates: if True, the line's first point is at the robot's centre, whatever its numbers are,
+            and the line is turned as the robot is; if an (x, y), it starts at that place on the robot: x feet to the
+            right of its centre, y feet ahead
         :param relative_to_first: if True, the points are moved so that the first is (0, 0)
         :param arrow: if True, there is an arrow at the end
         :param scale: all points are multiplied by this (x, y)
@@ -101,9 +103,8 @@ class UserRenderer:
         :param kwargs: options of tkinter's `create_text`: `anchor`, `angle`, `justify`, `width`, `font`, `fill`
         """
         ((x, y),) = self._placed([_point(pt)], robot_coordinates, scale)
-        style, styled = text_style(kwargs)
-        color = styled.color or color
-        self._add(Text(str(text), x, y, color, styled.size or fontSize, style, styled.problem))
+        style, styled = text_style(kwargs, color)
+        self._add(Text(str(text), x, y, styled.color, styled.size or fontSize, style, styled.problem))
 
     def draw_pathfinder_trajectory(
         self,
@@ -154,6 +155,8 @@ class UserRenderer:
         return tuple((pose.x, pose.y) for pose in moved)
 
     def _add(self, drawing: Line | Text) -> None:
+        if drawing.problem:
+            warnings.warn(drawing.problem, stacklevel=3)  # Python shows it once for each line of the robot's code
         key = repr(drawing)
         with self._lock:
             self._drawings.pop(key, None)
@@ -170,8 +173,8 @@ def get_user_renderer() -> UserRenderer | None:
 
 
 def _line(points: tuple[Point, ...], color: str, arrow: bool, options: Mapping[str, object]) -> Line:
-    style, styled = line_style(options)
-    return Line(points, styled.color or color, arrow, style, styled.problem)
+    style, styled = line_style(options, color)
+    return Line(points, styled.color, arrow, style, styled.problem)
 
 
 def _point(value: Any) -> Point:
