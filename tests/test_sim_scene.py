@@ -334,4 +334,5 @@ def test_what_is_wrong_with_a_drawing_is_in_the_console_once(make_project) -> No
     assert result.code == 0, result.output
     assert result.output.count("there is no option 'nosuch'") == 1
     (line,) = (line for line in result.output.splitlines() if "nosuch'" in line)
-    assert "physics.py:8: UserWarning: draw_line: color='gren': there is no such colour: did you mean 'green'?; " in line
+    said = "draw_line: color='gren': there is no such colour: did you mean 'green'?; draw_line: there is no option"
+    assert f"physics.py:8: UserWarning: {said} 'nosuch'" in line

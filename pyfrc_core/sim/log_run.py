@@ -119,8 +119,8 @@ def _limits(script: InputScript, name: str) -> Iterator[tuple[float, str]]:
 
     :param name: that of the log
     """
-    for lack in script.lacks:
-        yield lack.begin_us / 1_000_000, f"{lack.sentence(name)}: what follows from that cannot be compared"
+    for since, lack in script.lacks:
+        yield since, f"{name} has {lack}: what follows from that cannot be compared"
     if script.problem:
         yield math.inf, f"not all of {name} can be read, so its rest cannot be compared"
     if script.year not in (None, CURRENT.year):

@@ -30,7 +30,7 @@ from . import kit_names
 from .known_entries import fit_of
 from .logged_inputs import FROM_OUTSIDE, HAL, OF_STATION, LoggedInputs, as_written, target_of
 from .network_targets import NETWORK_INPUTS, data_target, parse_entry_target
-from .script import InputScript, Lack, ScriptError, Step
+from .script import InputScript, ScriptError, Step
 from .sensors import HOLD, camera_of
 from .targets import MATCH_TIME, MODE, REMAINING
 
@@ -147,8 +147,8 @@ def _part(sent: list[Record], last_us: int) -> tuple[int, int]:
     return begin_us, min(last_us, last_off + _AFTER_US) if is_used else last_us
 
 
-def _lacks(steps: list[Step], firsts: Mapping[str, int], begin_us: int) -> Iterator[Lack]:
-    """Yield what a log does not have of the driver station while the robot is enabled.
+def _lacks(steps: list[Step], firsts: Mapping[str, int], begin_us: int) -> Iterator[tuple[float, str]]:
+    """Yield since when, in seconds of robot time, and what a log does not have of the driver station.
 
     :param firsts: when the first value of each entry was logged, in microseconds of robot time
     :param begin_us: the beginning of what is replayed, by the log's clock
@@ -156,18 +156,19 @@ def _lacks(steps: list[Step], firsts: Mapping[str, int], begin_us: int) -> Itera
     modes = [(step.at_us, str(step.writes[MODE])) for step in steps if MODE in step.writes]
     enabled = [(at_us, mode) for at_us, mode in modes if not mode.startswith("disabled")]
     if not enabled:
-        yield Lack("enabled robot", 0)
+        yield 0.0, "no enabled robot"
         return
     if begin_us and enabled[0][0] <= PACKET_US:
-        yield Lack("beginning, since the robot is enabled when it begins", 0)
+        yield 0.0, "no beginning, since the robot is enabled when it begins"
     if not firsts.keys() & {"DS:autonomous", "DS:test"}:
-        yield Lack("modes but enabled and disabled", enabled[0][0])
+        yield enabled[0][0] / 1e6, "no modes but enabled and disabled"
     driven_us = next((at_us for at_us, mode in enabled if mode != "autonomous"), None)
     first_us = min(
         (at_us for name, at_us in firsts.items() if name.startswith("DS:joystick") and fit_of(name)), default=None
     )
     if driven_us is not None and (first_us is None or _packet(first_us) > driven_us):
-        yield Lack("joysticks", driven_us, None if first_us is None else _packet(first_us))
+        until = "" if first_us is None else f" until {_packet(first_us) / 1e6:g} s"
+        yield driven_us / 1e6, f"no joysticks from {driven_us / 1e6:g} s on{until}"
 
 
 def _written_outside(records: Iterable[Record], where: str) -> Iterator[str]:

@@ -67,5 +67,5 @@ def remarks(script: InputScript) -> Iterator[str]:
             f"{script.file} is of {script.year}, and WPILib {CURRENT.year} is installed here: the field, devices and "
             "the numbers of buttons may differ."
         )
-    for lack in script.lacks:
-        yield f"{lack.sentence(script.file)}."
+    for _, lack in script.lacks:
+        yield f"{script.file} has {lack}."

@@ -16,26 +16,17 @@ from typing import Any
 Fit = Callable[[Any], Any]
 
 
-def whole(low: int, high: int) -> Fit:
-    """Return what converts to whole numbers of a range."""
-
-    def fit(value: object) -> int | None:
-        found = _number(value)
-        return int(found) if found is not None and low <= found <= high else None
+def _number(make: Callable[[float], Any] = float, low: float = -math.inf, high: float = math.inf) -> Fit:
+    def fit(value: object) -> Any:
+        is_number = isinstance(value, (int, float)) and math.isfinite(value)
+        return make(value) if is_number and low <= value <= high else None  # type: ignore[operator, arg-type]
 
     return fit
 
 
-def _number(value: object) -> float | None:
-    return value if isinstance(value, (int, float)) and math.isfinite(value) else None
-
-
-def _flag(value: object) -> bool | None:
-    return None if (found := _number(value)) is None else bool(found)
-
-
-def _axis(value: object) -> float | None:
-    return None if (found := _number(value)) is None else min(max(float(found), -1.0), 1.0)
+def whole(low: int, high: int) -> Fit:
+    """Return what converts to whole numbers of a range."""
+    return _number(int, low, high)
 
 
 def _text(value: object) -> str | None:
@@ -50,6 +41,7 @@ def _each(fit: Fit) -> Fit:
     return fit_all
 
 
+_flag, _axis = _number(bool), _number(lambda axis: min(max(axis, -1.0), 1.0))
 _STATION = r"NT:/(?:FMSInfo|DriverStation)/"
 _WORD = rf"(?:DS:controlWord|{_STATION}ControlWord)/"
 _HAL = r"/hal_data/"
@@ -61,7 +53,7 @@ _FITS: tuple[tuple[str, Fit], ...] = (
     (rf"{_STATION}MatchNumber|{_HAL}event\.match_number", whole(0, 65535)),
     (rf"{_STATION}(EventName|GameSpecificMessage|GameData)", _text),
     (rf"DS:opMode|{_HAL}(control\.opmode|event\.(name|game_specific_message))", _text),
-    (rf"{_HAL}time\.remaining", _number),
+    (rf"{_HAL}time\.remaining", _number()),
     (r"DS:joystick[0-5]/axes", _each(_axis)),
     (r"DS:joystick[0-5]/buttons", _each(_flag)),
     (r"DS:joystick[0-5]/povs", _each(whole(-1, 360))),

@@ -15,7 +15,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from ...errors import UsageError
 from ...season import year_of
@@ -60,24 +60,6 @@ class Step:
     line: int = field(default=0, compare=False)
 
 
-class Lack(NamedTuple):
-    """Inputs that the robot had, and a script made of its log does not have.
-
-    :param what: what is missing, such as ``joysticks``
-    :param begin_us: from when on, in microseconds of robot time; `until_us`, until when; None: the end
-    """
-
-    what: str
-    begin_us: int
-    until_us: int | None = None
-
-    def sentence(self, name: str) -> str:
-        """Return what a log does not have, without the full stop."""
-        begin = f" from {self.begin_us / 1e6:g} s on" if self.begin_us else ""
-        until = "" if self.until_us is None else f" until {self.until_us / 1e6:g} s"
-        return f"{name} has no {self.what}{begin}{until}"
-
-
 @dataclass(frozen=True)
 class InputScript:
     """The inputs of a robot in one run.
@@ -96,7 +78,7 @@ class InputScript:
     :param file: where it was read from, for errors
     :param problem: how that file is damaged, as a sentence; empty: it is whole
     :param year: the year of the WPILib with which it was recorded, if that is known
-    :param lacks: of a log, the inputs that it does not have
+    :param lacks: of a log, what inputs it does not have, such as ``no joysticks``, each after since when, in seconds
     """
 
     steps: tuple[Step, ...]
@@ -112,7 +94,7 @@ class InputScript:
     file: str = field(default="script", compare=False)
     problem: str = field(default="", compare=False)
     year: int | None = field(default=None, compare=False)
-    lacks: tuple[Lack, ...] = field(default=(), compare=False)
+    lacks: tuple[tuple[float, str], ...] = field(default=(), compare=False)
 
     def lines(self) -> Iterator[str]:
         """The text, line by line."""

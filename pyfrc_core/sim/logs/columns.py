@@ -40,15 +40,6 @@ class Column:
                 before = value
         return cls(kept, lambda begin, end: found[begin:end])
 
-    def fitted(self, fit: Callable[[Any], Any]) -> Column:
-        """Return a column whose values are converted; `fit` returns None for one that cannot be, which is `MISSING`."""
-
-        def decode(begin: int, end: int) -> Sequence[Any]:
-            found = (MISSING if value is MISSING else fit(value) for value in self.decode(begin, end))
-            return [MISSING if value is None else value for value in found]
-
-        return Column(self.moments, decode)
-
     def values(self) -> Sequence[Any]:
         """Return all values."""
         return self.decode(0, len(self.moments))

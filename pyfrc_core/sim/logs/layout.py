@@ -137,9 +137,9 @@ def _fitted(columns: Mapping[str, Column]) -> Iterator[tuple[str, Column]]:
     """Yield the columns with the values that their names say, without those that have others."""
     for name, column in columns.items():
         fit = fit_of(name)
-        fitted = column if fit is None else column.fitted(fit)
-        if fit is None or any(value is not MISSING for value in fitted.values()):
-            yield name, fitted
+        values = [] if fit is None else [MISSING if (new := fit(value)) is None else new for value in column.values()]
+        if fit is None or any(value is not MISSING for value in values):
+            yield name, Column.of(column.moments, values) if values else column
 
 
 def together(columns: Sequence[Column | None], make: Callable[..., Any]) -> Column:

@@ -6,7 +6,6 @@ The names are documented, and older than front ends without tkinter; a scene has
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from ....config.colors import color_problem
@@ -19,30 +18,14 @@ _WITHOUT_EFFECT = frozenset({"tags"})
 Style = TypeVar("Style", LineStyle, TextStyle)
 
 
-@dataclass(frozen=True)
-class Styled:
-    """What keywords make of a drawing.
-
-    :param size: None: they say nothing of it
-    :param problem: what is wrong with the keywords or the colour; empty: nothing
-    """
-
-    color: str
-    size: int | None = None
-    problem: str = ""
+def line_style(options: Mapping[str, object]) -> tuple[LineStyle, str, None, str]:
+    """Return the style of a line, its colour, no size, and what is wrong with the options; empty: nothing."""
+    return _read("draw_line", LineStyle, _LINE, options, Line.color)
 
 
-def line_style(options: Mapping[str, object], color: str) -> tuple[LineStyle, Styled]:
-    """Return the style of a line, with what else the keywords say.
-
-    :param color: the colour, if the keywords have none
-    """
-    return _read("draw_line", LineStyle, _LINE, {"color": color, **options}, Line.color)
-
-
-def text_style(options: Mapping[str, object], color: str) -> tuple[TextStyle, Styled]:
-    """Return the style of a text, likewise."""
-    return _read("draw_text", TextStyle, _TEXT, {"color": color, **options}, Text.color)
+def text_style(options: Mapping[str, object]) -> tuple[TextStyle, str, int | None, str]:
+    """Return the style of a text, its colour, its size if the options say it, and what is wrong with them."""
+    return _read("draw_text", TextStyle, _TEXT, options, Text.color)
 
 
 def _one_of(*names: str) -> Callable[[Any], str]:
@@ -105,7 +88,7 @@ _TEXT: _Readers = {
 
 def _read(
     function: str, make: Callable[..., Style], readers: _Readers, options: Mapping[str, object], color: str
-) -> tuple[Style, Styled]:
+) -> tuple[Style, str, Any, str]:
     found: dict[str, Any] = {}
     problems = []
     for name, value in options.items():
@@ -118,5 +101,5 @@ def _read(
             found |= readers[name](value)
         except (TypeError, ValueError) as wrong:
             problems.append(f"{function}: {name}={value!r}: {wrong}")
-    styled = Styled(found.pop("color", color), found.pop("size", None), "; ".join(problems))
-    return make(**found), styled
+    color, size = found.pop("color", color), found.pop("size", None)
+    return make(**found), color, size, "; ".join(problems)

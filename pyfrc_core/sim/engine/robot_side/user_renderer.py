@@ -103,8 +103,8 @@ class UserRenderer:
         :param kwargs: options of tkinter's `create_text`: `anchor`, `angle`, `justify`, `width`, `font`, `fill`
         """
         ((x, y),) = self._placed([_point(pt)], robot_coordinates, scale)
-        style, styled = text_style(kwargs, color)
-        self._add(Text(str(text), x, y, styled.color, styled.size or fontSize, style, styled.problem))
+        style, color, size, problem = text_style({"color": color, **kwargs})
+        self._add(Text(str(text), x, y, color, size or fontSize, style, problem))
 
     def draw_pathfinder_trajectory(
         self,
@@ -173,8 +173,8 @@ def get_user_renderer() -> UserRenderer | None:
 
 
 def _line(points: tuple[Point, ...], color: str, arrow: bool, options: Mapping[str, object]) -> Line:
-    style, styled = line_style(options, color)
-    return Line(points, styled.color, arrow, style, styled.problem)
+    style, color, _, problem = line_style({"color": color, **options})
+    return Line(points, color, arrow, style, problem)
 
 
 def _point(value: Any) -> Point:

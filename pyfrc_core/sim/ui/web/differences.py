@@ -31,7 +31,8 @@ _MOST_NAMED, _MOST_OTHERS = 20, 200
 #: Times that are equal but for rounding. Numbers that differ by less than this share of the largest one, or of 1, are
 #: equal where there is noise: a robot that stands turns by 1e-7 rad, in which there is no range to compare with.
 _ROUNDING, _SMALLEST = 1e-6, 1e-6
-#: Values that both runs have from outside, and those that robot code does not set.
+#: Values that both runs have from outside, and those that robot code does not set; the last ones are entries that logs
+#: add to what the robot publishes, and those that describe a table or a value.
 _GIVEN = re.compile(
     rf"joysticks\[\d\]\.(axes|buttons|povs)|control\.|event\.|alliance_station|time\."
     rf"|{VALUE}/(FMSInfo|DS|DriverStation)/|{VALUE}/Robot/ProgramStartTime"
@@ -39,11 +40,7 @@ _GIVEN = re.compile(
     rf"|{VALUE}/.*/state_descriptions$"  # docstrings, which magicbot publishes
     rf"|{VALUE}{kit_names.NOT_COMPUTED}"
     rf"|{re.escape(TYPE)}|{re.escape(MODE)}|{re.escape(POSE)}"
-)
-
-#: Entries that logs add to what the robot publishes, and those that describe a table or a value.
-_OF_LOGS = re.compile(
-    rf"{VALUE}((/(console|messages|systemTime|NTConnection|pose(/.*)?)|{NETWORK_INPUTS})$|/?(.*/)?\.[^/]+)"
+    rf"|{VALUE}((/(console|messages|systemTime|NTConnection|pose(/.*)?)|{NETWORK_INPUTS})$|/?(.*/)?\.[^/]+)"
 )
 
 #: A value that has just this range, or at most this share less, is taken for an angle: -180 and 180 are the same.
@@ -218,13 +215,10 @@ def _apart(one: Any, other: Any, turn: float, is_log: bool) -> float:
 
 def is_compared(path: str, by: Comparison) -> bool:
     """Return whether a value is one that robot code sets, and compared; devices that never repeat are not."""
-    if path in by.given or _GIVEN.match(path) or _OF_LOGS.match(path) or by.ignores(path):
+    if path in by.given or _GIVEN.match(path) or by.ignores(path):
         return False
-    return not (is_sensor(path) or _is_of_camera(path) or in_real_time(path))
-
-
-def _is_of_camera(path: str) -> bool:
-    return path.startswith(VALUE) and camera_of(path.removeprefix(VALUE)) is not None
+    is_of_camera = path.startswith(VALUE) and camera_of(path.removeprefix(VALUE)) is not None
+    return not (is_sensor(path) or is_of_camera or in_real_time(path))
 
 
 def sensors_by_source(hal: ValueHistory, network: ValueHistory, given: frozenset[str]) -> dict[str, list[str]]:

@@ -6,8 +6,7 @@ They are compared as topics: a list of structs that is still empty has no parts,
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from ....hal.paths import format_path, parse_path
@@ -38,26 +37,18 @@ class OnlyThere(NamedTuple):
     time: float | None
     changes: int
 
-    @property
-    def order(self) -> tuple[object, ...]:
-        """What puts those first that change rarely, such as a command that has run, and those last that never do."""
-        return self.time is None, self.changes, self.time or 0.0, self.path
+
+def _order(only: OnlyThere) -> tuple[object, ...]:
+    """Put those first that change rarely, such as a command that has run, and those last that never do."""
+    return only.time is None, only.changes, only.time or 0.0, only.path
 
 
 class OnlyInOne(NamedTuple):
-    """The topics, and the devices that move, that only one of two runs has, in the order of `OnlyThere.order`.
-
-    :param both: how many both have
-    """
+    """The topics, and the devices that move, that only one of two runs has; and how many both have."""
 
     there: list[OnlyThere]
     here: list[OnlyThere]
     both: int
-
-
-def topics(history: ValueHistory) -> set[str]:
-    """Return the paths of all topics that a run has had."""
-    return {VALUE + path.removeprefix(TYPE) for path in history.paths() if path.startswith(TYPE)}
 
 
 def device_of(path: str) -> str:
@@ -81,64 +72,53 @@ def only_in_one(here: _Histories, there: _Histories, begin: float, offset: float
     """
     left: list[OnlyThere] = []
     added: list[OnlyThere] = []
-    count = 0
-    for stream, parts_of in _PARTS.items():
-        own, other = here[stream], there[stream]
-        ours, theirs = parts_of(own, by), parts_of(other, by)
+    both = 0
+    for stream, own in here.items():
+        ours, theirs = _parts(own, by), _parts(other := there[stream], by)
         if theirs:  # a trace has no topics, and the log of a real robot has no outputs in hal_data
-            missing = {path: theirs[path] for path in theirs.keys() - ours.keys()}
-            new = {path: ours[path] for path in ours.keys() - theirs.keys()}
-            both = [path for path in ours.keys() & theirs.keys() if stream == "network" or _moves(other, theirs[path])]
-            left.extend(_only_in(other, missing, begin, own.end, offset))
-            added.extend(_only_in(own, new, begin, own.end, 0.0))
-            count += len(both)
-    left.sort(key=lambda only: only.order)
-    added.sort(key=lambda only: only.order)
-    return OnlyInOne(left, added, count)
+            left += _only_in(other, theirs, ours.keys(), begin, own.end, offset)
+            added += _only_in(own, ours, theirs.keys(), begin, own.end, 0.0)
+            both += sum(1 for whole in ours.keys() & theirs.keys() if _counts(other, whole, theirs[whole]))
+    return OnlyInOne(sorted(left, key=_order), sorted(added, key=_order), both)
 
 
-def _topics_with_parts(history: ValueHistory, by: Comparison) -> dict[str, list[str]]:
-    """Return the topics that are compared, each with the paths of its values."""
-    parts: dict[str, list[str]] = {each: [] for each in topics(history) if is_compared(each, by)}
+def _parts(history: ValueHistory, by: Comparison) -> dict[str, list[str]]:
+    """Return the topics and devices that are compared, each with the paths of its values."""
+    topics = (VALUE + path.removeprefix(TYPE) for path in history.paths() if path.startswith(TYPE))
+    parts: dict[str, list[str]] = {topic: [] for topic in topics if is_compared(topic, by)}
     for path in history.paths():
-        topic = path
-        while topic not in parts and "/" in topic:
-            topic = topic.rpartition("/")[0]
-        if topic in parts:
-            parts[topic].append(path)
+        whole = path
+        if path.startswith(VALUE):
+            while whole not in parts and "/" in whole:
+                whole = whole.rpartition("/")[0]
+        elif is_compared(path, by):
+            parts.setdefault(whole := device_of(path), [])
+        if whole in parts:
+            parts[whole].append(path)
     return parts
 
 
-def _devices(history: ValueHistory, by: Comparison) -> dict[str, list[str]]:
-    """Return the devices with values that are compared, each with their paths."""
-    parts: defaultdict[str, list[str]] = defaultdict(list)
-    for path in history.paths():
-        if is_compared(path, by):
-            parts[device_of(path)].append(path)
-    return parts
-
-
-_PARTS: dict[Stream, Callable[[ValueHistory, Comparison], dict[str, list[str]]]] = {
-    "network": _topics_with_parts,
-    "hal": _devices,
-}
-
-
-def _moves(history: ValueHistory, paths: Iterable[str]) -> bool:
-    return any(map(history.moves, paths))
+def _counts(history: ValueHistory, whole: str, paths: Iterable[str]) -> bool:
+    """Return whether it matters if something is there: a device that never does anything does not."""
+    return whole.startswith(VALUE) or any(map(history.moves, paths))
 
 
 def _only_in(
-    history: ValueHistory, parts: Mapping[str, list[str]], begin: float, end: float, offset: float
+    history: ValueHistory,
+    parts: Mapping[str, list[str]],
+    known: Collection[str],
+    begin: float,
+    end: float,
+    offset: float,
 ) -> Iterator[OnlyThere]:
     start, end = max(begin - offset, 0.0) + _START, end - offset
-    for topic, paths in parts.items():
-        if not topic.startswith(VALUE) and not _moves(history, paths):
-            continue  # a device that never does anything
+    for whole, paths in parts.items():
+        if whole in known or not _counts(history, whole, paths):
+            continue
         firsts = [time for path in paths if (time := _first_change(history, path, start)) is not None]
         first = min(firsts, default=None)
         if first is None or first <= end or any(history.value_at(path, end) is not MISSING for path in paths):
-            yield OnlyThere(topic, None if first is None else first + offset, sum(map(history.change_count, paths)))
+            yield OnlyThere(whole, None if first is None else first + offset, sum(map(history.change_count, paths)))
 
 
 def _first_change(history: ValueHistory, path: str, start: float) -> float | None:
