@@ -114,7 +114,11 @@ FUZZED = settings(max_examples=200, deadline=None)
 @example(an_entry("NT:/FMSInfo/FMSControlData", "double", struct.pack("<d", 33.0)))
 @example(an_entry("NT:/FMSInfo/StationNumber", "string", b"two"))
 def test_any_log_can_be_shown(tmp_path_factory: pytest.TempPathFactory, log: Written) -> None:
-    file = log.save(tmp_path_factory.getbasetemp() / "shown.wpilog")
+    assert_shown(log, tmp_path_factory.getbasetemp())
+
+
+def assert_shown(log: Written, directory: Path) -> None:
+    file = log.save(directory / "shown.wpilog")
     try:
         opened = open_log(file, HEIGHT)
     except LogError:  # of values, it has none
@@ -138,7 +142,10 @@ def test_any_log_can_be_shown(tmp_path_factory: pytest.TempPathFactory, log: Wri
 @example(an_entry("NT:/FMSInfo/FMSControlData", "double", struct.pack("<d", 33.0)))
 @example(an_entry("NT:/FMSInfo/MatchNumber", "int64", struct.pack("<q", 1 << 40)))
 def test_any_log_gives_inputs_that_can_be_written(tmp_path_factory: pytest.TempPathFactory, log: Written) -> None:
-    directory = tmp_path_factory.getbasetemp()
+    assert_written(log, tmp_path_factory.getbasetemp())
+
+
+def assert_written(log: Written, directory: Path) -> None:
     file = log.save(directory / "inputs.wpilog")
     (directory / "robot.py").touch()
     try:
@@ -156,6 +163,22 @@ def test_any_log_gives_inputs_that_can_be_written(tmp_path_factory: pytest.TempP
                     targets.write(target, value, at_us)
         finally:
             targets.close()
+
+
+@pytest.mark.parametrize("type_name", TYPES)
+@pytest.mark.parametrize("number", [1, 3])
+def test_each_name_with_each_type(type_name: str, number: int, tmp_path: Path) -> None:
+    """All names at once, with the same value, also before and beside those of a match."""
+    plain = type_name.removesuffix("[]")
+    code = {"boolean": "?", "int64": "q", "int": "q", "float": "f", "double": "d"}.get(plain)
+    payload = struct.pack(f"<{number}{code}", *[number] * number) if type_name.endswith("[]") and code else b""
+    payload = payload or (struct.pack(f"<{code}", number) if code else str(number).encode() * 24)
+    for begin in (Written, a_match):
+        log = begin()
+        for name in sorted({*NAMES} - {"/network_inputs"}):  # without it, the log would be refused
+            log.values(name, type_name, "", (0.5, payload), (12.0, payload))
+        assert_shown(log, tmp_path)
+        assert_written(log, tmp_path)
 
 
 def test_integers_of_early_2023_and_control_data_of_2022(tmp_path: Path) -> None:

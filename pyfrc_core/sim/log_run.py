@@ -225,6 +225,6 @@ def _with_sensors(script: InputScript, hal: ValueHistory, sensors: frozenset[str
     for path in sorted(sensors):
         for time, value in zip(*hal.changes(path), strict=True):
             at_us = round((time + offset) * 1_000_000)
-            if value is not MISSING and not isinstance(value, (tuple, str)) and 0 <= at_us < script.end_us:
+            if isinstance(value, (int, float)) and 0 <= at_us < script.end_us:
                 writes[at_us // PACKET_US * PACKET_US][HOLD + path] = INFINITE if value == math.inf else value
     return replace(script, steps=tuple(Step(at_us, writes[at_us]) for at_us in sorted(writes)))

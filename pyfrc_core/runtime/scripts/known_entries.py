@@ -41,15 +41,16 @@ def _each(fit: Fit) -> Fit:
     return fit_all
 
 
-_flag, _axis = _number(bool), _number(lambda axis: min(max(axis, -1.0), 1.0))
+_flag, _axis = _number(bool), _number(lambda axis: min(max(float(axis), -1.0), 1.0))
 _STATION = r"NT:/(?:FMSInfo|DriverStation)/"
 _WORD = rf"(?:DS:controlWord|{_STATION}ControlWord)/"
 _HAL = r"/hal_data/"
 _FITS: tuple[tuple[str, Fit], ...] = (
     (rf"DS:(enabled|autonomous|test|estop)|{_WORD}(enabled|eStop)|{_STATION}IsRedAlliance", _flag),
     (rf"{_HAL}control\.(enabled|autonomous|test|eStop|dsAttached|fmsAttached)", _flag),
-    (rf"{_STATION}FMSControlData|{_WORD}robotMode|{_HAL}alliance_station", whole(0, (1 << 31) - 1)),
-    (rf"{_STATION}(StationNumber|MatchType|ReplayNumber)|{_HAL}event\.(match_type|replay_number)", whole(0, 255)),
+    (rf"{_STATION}FMSControlData|{_WORD}robotMode", whole(0, (1 << 31) - 1)),
+    (rf"{_STATION}(StationNumber|MatchType)|{_HAL}event\.match_type", whole(0, 3)),
+    (rf"{_HAL}alliance_station", whole(0, 6)),
     (rf"{_STATION}MatchNumber|{_HAL}event\.match_number", whole(0, 65535)),
     (rf"{_STATION}(EventName|GameSpecificMessage|GameData)", _text),
     (rf"DS:opMode|{_HAL}(control\.opmode|event\.(name|game_specific_message))", _text),

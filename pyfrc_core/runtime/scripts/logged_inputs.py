@@ -130,22 +130,21 @@ class LoggedInputs:
         A log of a simulation has both: what the robot has made of a packet comes with a turn of its loop.
         """
         fms, ours = self._fms, self._hal
-        place = int(fms.get("StationNumber", 1)) + (0 if fms.get("IsRedAlliance", True) else 3)
-        place = int(ours.get("alliance_station", place))
-        yield "alliance_station", _named(_STATIONS, place), "red1"
+        place = fms.get("StationNumber", 1) + (0 if fms.get("IsRedAlliance", True) else 3)
+        yield "alliance_station", _STATIONS[ours.get("alliance_station", place)], "red1"
         yield "control.eStop", bool(self._sent.get("estop")), False
         fms_attached = bool(ours.get("control.fmsAttached", fms.get("FMSControlData", 0) & FMS_ATTACHED))
         yield "control.fmsAttached", fms_attached, False
         name = ours.get("event.name", fms.get("EventName", station.EVENT_NAME))
         yield "event.name", _as_sent(name), station.EVENT_NAME
-        yield "event.match_number", int(ours.get("event.match_number", fms.get("MatchNumber", 0))), 0
-        match_type = int(ours.get("event.match_type", fms.get("MatchType", 0)))
-        yield "event.match_type", _named(_MATCH_TYPES, match_type), "none"
+        yield "event.match_number", ours.get("event.match_number", fms.get("MatchNumber", 0)), 0
+        yield "event.match_type", _MATCH_TYPES[ours.get("event.match_type", fms.get("MatchType", 0))], "none"
         message = ours.get("event.game_specific_message", fms.get("GameSpecificMessage", ""))
         yield "event.game_specific_message", _as_sent(message), ""
         if (left := ours.get(REMAINING)) is not None:
             yield REMAINING, left, 0.0
-        yield OPMODE, ours.get("control.opmode", ""), ""  # of the mode that follows
+        if CURRENT.opmodes:
+            yield OPMODE, ours.get("control.opmode", ""), ""  # of the mode that follows
         yield MODE, self._mode(), "disabled"
 
     def _mode(self) -> str:
@@ -171,7 +170,3 @@ class LoggedInputs:
 def _as_sent(text: str) -> str:
     """Return a text as far as a driver station can send it: AdvantageKit has logged longer ones."""
     return text.encode("utf-8", "replace")[:_MOST_TEXT_BYTES].decode("utf-8", "ignore")
-
-
-def _named(names: tuple[str, ...], number: int) -> str:
-    return names[number] if 0 <= number < len(names) else names[0]

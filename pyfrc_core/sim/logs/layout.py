@@ -220,7 +220,7 @@ def _buttons(pressed: Any) -> Any:
 
 
 def _station_number(is_red: Any, number: Any) -> int:
-    return min(max(int(number or 1), 1), 3) + (0 if is_red else 3)
+    return (number or 1) + (0 if is_red else 3)
 
 
 # -- the robot's place ------------------------------------------------------------------------------------------------
