@@ -163,10 +163,9 @@ def _lacks(steps: list[Step], firsts: Mapping[str, int], begin_us: int) -> Itera
     if not firsts.keys() & {"DS:autonomous", "DS:test"}:
         yield enabled[0][0] / 1e6, "no modes but enabled and disabled"
     driven_us = next((at_us for at_us, mode in enabled if mode != "autonomous"), None)
-    first_us = min(
-        (at_us for name, at_us in firsts.items() if name.startswith("DS:joystick") and fit_of(name)), default=None
-    )
-    if driven_us is not None and (first_us is None or _packet(first_us) > driven_us):
+    of_sticks = [at_us for name, at_us in firsts.items() if name.startswith("DS:joystick") and fit_of(name)]
+    first_us = min(of_sticks, default=None)
+    if driven_us is not None and (first_us is None or _packet(first_us) > driven_us + PACKET_US):
         until = "" if first_us is None else f" until {_packet(first_us) / 1e6:g} s"
         yield driven_us / 1e6, f"no joysticks from {driven_us / 1e6:g} s on{until}"
 
@@ -193,8 +192,9 @@ def _fitted(records: Iterable[Record]) -> Iterator[Record]:
     """Yield the records with the values that their names say, without those that have others."""
     for record in records:
         fit = fit_of(record.name)
-        value = record.value if fit is None else fit(record.value)
-        if value is not None:
+        if fit is None:
+            yield record
+        elif (value := fit(record.value)) is not None:
             yield record._replace(value=value)
 
 
