@@ -20,7 +20,8 @@ from .wrapping import WRAPPING, wrapped_command
     "--outfile",
     metavar="FILE",
     type=WrittenFile(),
-    help="Also time every call, much more slowly, with Python's cProfile, and write its file, which pstats reads.",
+    help="Also time every call, much more slowly, with Python's cProfile, and write its file, which pstats reads. Not "
+    "with --html.",
 )
 @click.option(
     "--html",
@@ -38,7 +39,7 @@ from .wrapping import WRAPPING, wrapped_command
     type=click.IntRange(min=1),
     default=20,
     show_default=True,
-    help="How many functions, and lines, to print.",
+    help="How many functions to print.",
 )
 @click.argument("command_line", metavar="COMMAND [OPTIONS]...", nargs=-1, required=True, type=click.UNPROCESSED)
 @click.pass_context
@@ -53,8 +54,8 @@ def command(
     """Measure how long the robot's functions take in another command: test, sim, fuzz or replay.
 
     Shows for each function that WPILib, commands2 or magicbot calls how its times are distributed; when and where the
-    loop overran its period, and which function caused it; and which lines took the time. Write this command's options
-    before the other command's name: pyfrc profile --json profile.json test -j 1
+    loop overran its period, and which function caused it. Write this command's options before the other command's name:
+    pyfrc profile --json profile.json test -j 1
 
     \b
     Exit codes: the other command's; 2 wrong usage.

@@ -86,9 +86,9 @@ def profile(project: RobotProject, *command: str, options: tuple[str, ...] = ())
     return result, json.loads((project.path / "profile.json").read_text("utf-8"))
 
 
-def sampled(method: str) -> str:
-    """What a running function is called in the samples: its class is known since Python 3.11."""
-    return method if sys.version_info >= (3, 11) else method.rpartition(".")[2]
+def sampled_methods(page: str) -> set[str]:
+    """Return the methods of `MyRobot` on pyinstrument's page: its data has function, file and line, and the class."""
+    return set(re.findall(r'"identifier": "(\w+)\\u0000[^"]*robot\.py[^{}]*"attributes": \{"cMyRobot"', page))
 
 
 def by_name(report: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
@@ -136,7 +136,6 @@ def test_a_slow_function_is_named_with_its_mode_and_time(make_project: MakeProje
     assert re.search(
         rf"^  MyRobot\.teleopPeriodic +{place} +teleop +{len(named)} .* 0\.\d\d", result.stdout, re.MULTILINE
     )
-    assert {line["function"] for line in report["lines"][:2]} <= {sampled("MyRobot.work"), "real_time"}
     if "test_autonomous" in tests:  # merged from another process
         assert by_name(report)["MyRobot.autonomousPeriodic"]["count"] >= 8
     assert [path.name for path in project.temporary.iterdir() if not path.name.startswith("pytest-of-")] == []
@@ -164,8 +163,6 @@ def test_what_waits_takes_as_long_as_on_a_robot(make_project: MakeProject) -> No
     assert function["p50_ms"] < 100
     (overrun,) = [each for each in report["overruns"] if each["function_ms"] > 400]
     assert (overrun["function"], overrun["robot_time_s"]) == ("MyRobot.teleopPeriodic", 0.1)
-    line = report["lines"][0]
-    assert (line["place"], line["ms"]) == (project.place("robot.py", "time.sleep"), pytest.approx(500, rel=0.2))
 
 
 @pytest.mark.skipif(not hasattr(time, "CLOCK_THREAD_CPUTIME_ID"), reason="a thread's processor time cannot be read")
@@ -383,9 +380,51 @@ def test_the_flame_view_shows_the_robots_functions(make_project: MakeProject) ->
     project = make_project({"robot.py": SLOW_ROBOT.replace("PLANTED", "0.03"), "tests/test_a.py": TELEOP})
     profile(project, "test", options=("--html", "pages/profile.html"))
     page = (project.path / "pages/profile.html").read_text("utf-8")
-    assert sampled("MyRobot.teleopPeriodic") in page
-    assert sampled("MyRobot.work") in page
+    methods = sampled_methods(page)
+    assert "teleopPeriodic" in methods
+    assert "work" in methods
     assert "stopwatch.py" not in page
+
+
+def test_the_flame_view_shows_the_threads_of_the_robot(make_project: MakeProject) -> None:
+    pytest.importorskip("pyinstrument")
+    robot = """
+        import threading
+
+        import magicbot
+
+        import wpilib
+
+
+        class MyRobot(magicbot.MagicRobot):
+            def createObjects(self):
+                threading.Thread(target=self.look, daemon=True).start()
+
+            def look(self):
+                for _ in range(9):
+                    self.compute()
+                    wpilib.wait(0.01)
+
+            def compute(self):
+                sum(range(1_000_000))
+
+            def teleopPeriodic(self):
+                sum(range(1_000_000))
+    """
+    project = make_project({"robot.py": robot, "tests/test_a.py": TELEOP})
+    profile(project, "test", options=("--html", "profile.html"))
+    methods = sampled_methods((project.path / "profile.html").read_text("utf-8"))
+    assert "teleopPeriodic" in methods
+    assert "compute" in methods
+
+
+def test_the_two_profilers_are_mutually_exclusive(make_project: MakeProject) -> None:
+    pytest.importorskip("pyinstrument")
+    project = make_project({"robot.py": SMALL_ROBOT, "tests/test_a.py": TELEOP})
+    result = project.run("profile", "-o", "a.pstats", "--html", "a.html", "test")
+    assert result.code == 2, result.output
+    assert result.first_error == "-o and --html are mutually exclusive"
+    assert "passed" not in result.stdout
 
 
 def test_without_pyinstrument_it_says_what_to_install(make_project: MakeProject) -> None:

@@ -1,4 +1,4 @@
-"""The data of a profile: the times of each function's calls, overruns of the period, and where the robot's code was.
+"""The data of a profile: the times of each function's calls, and overruns of the period.
 
 Each process has its own figures. They are saved to a file when it ends, and added up.
 """
@@ -7,14 +7,11 @@ from __future__ import annotations
 
 import pickle
 from array import array
-from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from math import ceil
 from pathlib import Path
 from typing import NamedTuple
-
-from ..project.robot_files import RobotFiles
 
 
 class Measurand(NamedTuple):
@@ -61,14 +58,6 @@ class Overrun(NamedTuple):
     test: str
 
 
-class StackEntry(NamedTuple):
-    """A call in a stack: a function, its file, and the line that it is at."""
-
-    function: str
-    file: str
-    line: int
-
-
 @dataclass
 class Figures:
     """The measurements of one process, or of all.
@@ -76,35 +65,21 @@ class Figures:
     :param times: the duration of each call, in nanoseconds: processor time of its thread, and robot time of its waits
     :param period_ns: the period of the robot's loop; 0 if it has not run
     :param overruns: the iterations that took longer than their period
-    :param stacks: the time of each call stack, outermost call first, in nanoseconds: by samples, and in waits
     """
 
     times: dict[Measurand, array[int]] = field(default_factory=dict)
     period_ns: int = 0
     overruns: list[Overrun] = field(default_factory=list)
-    stacks: Counter[tuple[StackEntry, ...]] = field(default_factory=Counter)
 
     def times_of(self, what: Measurand) -> array[int]:
         """Return the array for the times of a function's calls."""
         return self.times.setdefault(what, array("q"))
-
-    def lines(self, files: RobotFiles) -> list[tuple[str, str, int]]:
-        """Return the time of each line of the robot's code in which it was the innermost one, the longest first.
-
-        :return: its file and line, its function, and nanoseconds
-        """
-        spent: Counter[tuple[str, str]] = Counter()
-        for stack, nanoseconds in self.stacks.items():
-            innermost = next(entry for entry in reversed(stack) if files.is_robot_code(entry.file))
-            spent[f"{files.relative(innermost.file)}:{innermost.line}", innermost.function] += nanoseconds
-        return sorted(((*line, each) for line, each in spent.items()), key=lambda line: (-line[2], line))
 
     def clear(self) -> None:
         """Delete all measurements; the arrays of times stay the same objects."""
         for times in self.times.values():
             del times[:]
         self.overruns.clear()
-        self.stacks.clear()
 
     def save(self, file: Path) -> None:
         """Write the figures to a file."""
@@ -120,7 +95,6 @@ def added_up(files: Iterable[Path]) -> Figures:
             total.times_of(what).extend(times)
         total.period_ns = max(total.period_ns, one.period_ns)
         total.overruns += one.overruns
-        total.stacks.update(one.stacks)
     return total
 
 

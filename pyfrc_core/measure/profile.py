@@ -8,7 +8,7 @@ import os
 import pstats
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import wraps
 from itertools import count
@@ -20,8 +20,9 @@ from ..project import Project
 from ..project.robot_files import RobotFiles
 from ..text_files import write_whole
 from .figures import Figures, added_up
+from .flame_graph import Samples, require_pyinstrument, write_flame_graph
 from .processes import announced, is_announced
-from .profile_report import as_json, as_text, require_pyinstrument, write_flame
+from .profile_report import as_json, as_text
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class ProfileOptions:
     :param pstats: a file in the format of Python's `pstats`
     :param html: a web page with a flame graph
     :param json: all measurements
-    :param top: how many functions and lines to print
+    :param top: how many functions to print
     :param quiet: print the report, but not the paths of the others
     """
 
@@ -82,39 +83,45 @@ def begin(settings: dict[str, Any]) -> Callable[[], None]:
     """Start measuring in this process; return a function that saves the result. A fork continues to measure."""
     from ..runtime.patch_table import PatchTable
     from ..runtime.robot import RobotRun
-    from .sampler import Sampler
+    from ..runtime.threads.robot_threads import RobotThread, RobotThreads
     from .stopwatch import Stopwatch
     from .user_functions import UserFunctions
 
-    figures, calls, files = Figures(), _CallProfile(), RobotFiles(Path(settings["root"]))
+    figures, calls, samples, files = Figures(), _CallProfile(), Samples(), RobotFiles(Path(settings["root"]))
     wrap = calls.wrap if settings["calls"] else lambda function: function
-    functions, sampler = UserFunctions(Stopwatch(figures, files), files, wrap), Sampler(figures, files)
-    table, numbers, real_open, real_close = PatchTable(), count(), RobotRun.open, RobotRun.close
+    functions = UserFunctions(Stopwatch(figures), files, wrap)
+    table, numbers, real_open, real_run_body = PatchTable(), count(), RobotRun.open, RobotThreads.run_body
+    driver = ExitStack()
 
     def open_run(run: RobotRun) -> None:
         functions.time_callbacks(table)
         real_open(run)
-        sampler.start()
+        if settings["samples"]:
+            driver.enter_context(samples.sampling())
+            run.at_close(driver.close)
 
-    def close_run(run: RobotRun) -> None:
-        sampler.stop()
-        real_close(run)
+    def run_body(threads: RobotThreads, record: RobotThread, body: Callable[[], object]) -> None:
+        with samples.sampling():
+            real_run_body(threads, record, body)
 
     def clear() -> None:
         figures.clear()
         calls.clear()
+        samples.sessions.clear()
 
     functions.install(table)
     table.patch(RobotRun, "open", open_run)
-    table.patch(RobotRun, "close", close_run)
+    if settings["samples"]:
+        table.patch(RobotThreads, "run_body", run_body)
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(after_in_child=clear)
 
     def save() -> None:
-        sampler.stop()
+        driver.close()
         name = Path(settings["directory"], f"{os.getpid()}-{next(numbers)}")
         figures.save(name.with_suffix(".figures"))
         calls.save(name.with_suffix(".pstats"))
+        samples.save(name.with_suffix(".samples"))
         clear()
         table.undo()
 
@@ -131,9 +138,16 @@ def profiling(project: Project, options: ProfileOptions, command: str) -> Iterat
         raise UsageError("a profile is already being measured")
     if options.html is not None:
         require_pyinstrument()
+        if options.pstats is not None:  # before Python 3.12, a thread has one profiler at a time
+            raise UsageError("-o and --html are mutually exclusive", remedy="Profile twice, once with each.")
     # The directory for the figures of each process, until they are added up.
     with tempfile.TemporaryDirectory(prefix="pyfrc-profile-") as directory:
-        settings = {"root": str(project.root), "directory": directory, "calls": options.pstats is not None}
+        settings = {
+            "root": str(project.root),
+            "directory": directory,
+            "calls": options.pstats is not None,
+            "samples": options.html is not None,
+        }
         try:
             with announced("profile", settings):
                 yield
@@ -148,15 +162,16 @@ def _report(directory: Path, files: RobotFiles, options: ProfileOptions, command
 
     figures = added_up(sorted(directory.glob("*.figures")))
     print()
-    print(as_text(figures, files, options.top))
+    print(as_text(figures, options.top))
     calls = [str(file) for file in sorted(directory.glob("*.pstats"))]
     if options.pstats is not None and calls:
         options.pstats.parent.mkdir(parents=True, exist_ok=True)
         pstats.Stats(*calls).dump_stats(options.pstats)
         print_path(f"profile for pstats: {options.pstats}")
-    if options.html is not None:
-        write_flame(figures, options.html, command)
+    samples = sorted(directory.glob("*.samples"))
+    if options.html is not None and samples:
+        write_flame_graph(samples, files, options.html, command)
         print_path(f"profile as a web page: {options.html}")
     if options.json is not None:
-        write_whole(options.json, [json.dumps(as_json(figures, files, command), indent=1), "\n"])
+        write_whole(options.json, [json.dumps(as_json(figures, command), indent=1), "\n"])
         print_path(f"profile as JSON: {options.json}")

@@ -1,23 +1,12 @@
-"""The report of a profile: text for people, JSON for programs, and a flame graph.
-
-pyinstrument draws that, because a page with folding, search and zoom is much work, and its page is widely known. It is
-an optional extra, since nothing else here needs it.
-"""
+"""The report of a profile: text for people, and JSON for programs."""
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
-from .._version import requirement
-from ..errors import UsageError
-from ..project.robot_files import RobotFiles
 from ..season import CURRENT
-from ..text_files import write_whole
 from ..wording import counted, table
 from .figures import WHOLE_LOOP, Figures, Measurand, Overrun, distribution
 
@@ -25,34 +14,24 @@ from .figures import WHOLE_LOOP, Figures, Measurand, Overrun, distribution
 _TIMES = 4
 
 
-def as_text(figures: Figures, files: RobotFiles, top: int) -> str:
+def as_text(figures: Figures, top: int) -> str:
     """Return the report to print.
 
-    :param top: how many functions, and lines, to show
+    :param top: how many functions to show
     """
     times = _by_total(figures)
     if not times:
         return "profile: no function of the robot was called"
-    return "\n".join(
-        [
-            *_functions(times, top),
-            *_loop(times, figures.period_ns),
-            *_overruns(figures),
-            *_lines(figures.lines(files)[:top]),
-        ]
-    )
+    return "\n".join([*_functions(times, top), *_loop(times, figures.period_ns), *_overruns(figures)])
 
 
-def as_json(figures: Figures, files: RobotFiles, command: str) -> dict[str, Any]:
+def as_json(figures: Figures, command: str) -> dict[str, Any]:
     """Return all measurements; the names contain the units."""
     return {
         "command": command,
         "period_ms": figures.period_ns / 1e6,
         "functions": [what._asdict() | vars(distribution(times)) for what, times in _by_total(figures).items()],
         "overruns": [overrun._asdict() for overrun in figures.overruns],
-        "lines": [
-            {"place": place, "function": function, "ms": spent / 1e6} for place, function, spent in figures.lines(files)
-        ],
     }
 
 
@@ -143,56 +122,3 @@ def _moments(overruns: Sequence[Overrun]) -> str:
     moments = sorted({round(overrun.robot_time_s, 2) for overrun in overruns})
     text = ", ".join(f"{moment:.2f}" for moment in moments[:_TIMES])
     return f"{text} s" if len(moments) <= _TIMES else f"{text}, ... {moments[-1]:.2f} s"
-
-
-def _lines(slowest: Sequence[tuple[str, str, int]]) -> Iterator[str]:
-    if slowest:
-        yield ""
-        yield "The lines that took longest, in milliseconds, by samples (too many where C++ is called), and in waits:"
-        rows = [("line", "function", "time")]
-        yield from table([*rows, *((place, function, f"{ns / 1e6:.1f}") for place, function, ns in slowest)], left=2)
-
-
-#: The separators in pyinstrument's session files: between the parts of a frame, and before a line number.
-_PART, _LINE = "\x00", "\x01l"
-
-
-def require_pyinstrument() -> None:
-    """Check that pyinstrument is installed, before the measurement begins.
-
-    :raises UsageError: when it is not
-    """
-    if importlib.util.find_spec("pyinstrument") is None:
-        raise UsageError(
-            "the flame graph needs pyinstrument, which is not installed",
-            remedy=f'Install it with: pip install "{requirement("profile")}"',
-        )
-
-
-def write_flame(figures: Figures, file: Path, title: str) -> None:
-    """Write the samples as a web page.
-
-    :param title: the name of what was measured
-    """
-    from pyinstrument.renderers import HTMLRenderer
-    from pyinstrument.session import Session
-
-    whole = f"the robot{_PART}{_PART}0"
-    seconds = figures.stacks.total() / 1e9
-    session = Session.from_json(
-        {
-            "frame_records": [
-                [[whole, *(f"{name}{_PART}{file}{_PART}0{_LINE}{line}" for name, file, line in stack)], spent / 1e9]
-                for stack, spent in figures.stacks.items()
-            ],
-            "start_time": 0.0,
-            "duration": seconds,
-            "sample_count": len(figures.stacks),
-            "start_call_stack": [whole],
-            "target_description": title,
-            "cpu_time": seconds,
-            "sys_path": sys.path,
-            "sys_prefixes": Session.current_sys_prefixes(),
-        }
-    )
-    write_whole(file, [HTMLRenderer(show_all=True).render(session)])

@@ -16,13 +16,10 @@ from threading import get_ident
 from time import perf_counter_ns, thread_time_ns
 from typing import Any, NamedTuple
 
-from ..compat.cpython_private import get_frame
-from ..project.robot_files import RobotFiles
 from ..runtime.patches.install import patches
 from ..runtime.threads.robot_threads import RobotThreads
 from ..wpi import robots, station
 from .figures import WHOLE_LOOP, Figures, Measurand, Overrun
-from .sampler import stack_of
 
 #: Calls that take longer are stored until the loop's iteration is over, since they may be the cause of an overrun.
 _LONG_NS = 5_000_000
@@ -68,9 +65,8 @@ class _CallingThread(threading.local):
 class Stopwatch:
     """The timed functions of this process."""
 
-    def __init__(self, figures: Figures, files: RobotFiles) -> None:
+    def __init__(self, figures: Figures) -> None:
         self._figures = figures
-        self._files = files
         self._thread = _CallingThread()
 
     def timed(self, function: Callable[..., Any], what: Measurand, period_ns: int = 0) -> Callable[..., Any]:
@@ -133,8 +129,6 @@ class Stopwatch:
                 finally:
                     robot_ns = (threads.clock.now_us - robot_us) * 1000
                     clocks.has_waited(begin, robot_ns)
-                    if stack := stack_of(get_frame(1), self._files):
-                        self._figures.stacks[stack] += robot_ns
             if not self._is_own_loop():
                 return original(threads, *args)
             # An iteration of a robot with its own loop begins and ends with a wait.
