@@ -23,7 +23,7 @@ from .verbosity import hint, verbosity
 
 if TYPE_CHECKING:
     from pyfrc_core.fuzz.campaign.executors import WorkExecutor
-    from pyfrc_core.fuzz.campaign.results import Campaign, CampaignOptions, CampaignProgress, FuzzFinding
+    from pyfrc_core.fuzz.campaign.results import Campaign, CampaignProgress, FuzzFinding
     from pyfrc_core.fuzz.oracle.failure import FuzzFailure
     from pyfrc_core.project import Project
 
@@ -90,12 +90,6 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     help="Begin with a recorded match: a data log (.wpilog), or a recording (.jsonl). May be repeated.",
 )
 @click.option(
-    "--against",
-    "revision",
-    metavar="REV",
-    help="Give the same inputs to the code of this git commit, such as HEAD~1, and say where outputs first differ.",
-)
-@click.option(
     "--pages",
     metavar="DIRECTORY",
     type=WrittenDirectory(),
@@ -116,7 +110,6 @@ def command(
     isolation: str | None,
     scheduler: str | None,
     recorded: tuple[Path, ...],
-    revision: str | None,
     pages: Path | None,
 ) -> None:
     """Play many matches with random inputs (a campaign), and save the shortest script of each failure.
@@ -125,17 +118,17 @@ def command(
     tests/test_fuzz_regressions.py fails until the robot is repaired.
 
     \b
-    Exit codes: 0 nothing was found; 1 a failure was found, or an earlier one is still there, or the outputs differ from
-    those of --against; 2 wrong usage, no such project or commit, or interrupted before anything was found.
+    Exit codes: 0 nothing was found; 1 a failure was found, or an earlier one is still there; 2 wrong usage, no such
+    project, or interrupted before anything was found.
     """
     if seconds is not None and runs is not None:
         raise click.UsageError("--time and --runs are mutually exclusive.")
-    if scheduler is not None and (jobs is not None or revision is not None):
-        raise click.UsageError(f"--scheduler and {'-j' if jobs is not None else '--against'} are mutually exclusive.")
+    if scheduler is not None and jobs is not None:
+        raise click.UsageError("--scheduler and -j are mutually exclusive.")
     if resume and recorded:
         raise click.UsageError("--continue and --from are mutually exclusive.")
-    if pages is not None and (merge or revision is not None):
-        raise click.UsageError(f"--pages and {'--merge' if merge else '--against'} are mutually exclusive.")
+    if pages is not None and merge:
+        raise click.UsageError("--pages and --merge are mutually exclusive.")
     if merge and not directories:
         raise click.UsageError("--merge and DIRECTORIES belong together.")
     if directories and not merge:
@@ -164,8 +157,6 @@ def command(
         click.echo(remark)
     jobs = jobs or usable_processors()
     options = CampaignOptions(seed or 0, runs, seconds, jobs, scripts, Shard(*shard), resume)
-    if revision is not None:
-        sys.exit(_compare(project, revision, options))
     campaign = run_campaign(_open_executor(project, jobs, scheduler), options, printer)
     printer.end(campaign.progress)
     if pages is not None:
@@ -200,27 +191,6 @@ def _write_pages(project: Project, campaign: Campaign, pages: Path) -> None:
         page = pages / f"{found.entry.file.stem}.html"
         write_finding_page(project, found, page)
         hint(f"wrote {page}")
-
-
-def _compare(project: Project, revision: str, options: CampaignOptions) -> int:
-    """Print whether the robot does the same as with another commit; return the exit code."""
-    from pyfrc_core.fuzz.campaign.against import compare
-
-    try:
-        compared = compare(project, revision, options)
-    except KeyboardInterrupt:
-        click.echo("interrupted")
-        return 2
-    matches = f"{counted(compared.matches, 'match', 'matches')}, {compared.seconds / 3600:.2f} h of robot time"
-    if compared.file is None:
-        hint(f"{matches}: the outputs are those of {compared.revision}")
-        return 0
-    click.secho(f"The outputs differ from those of {compared.revision}, first", fg="red")
-    for line in (*compared.story, compared.difference):
-        click.echo(f"  {line}")
-    click.echo(f"  pyfrc replay {from_here(compared.file)}")
-    hint(matches)
-    return 1
 
 
 def _parse_shard(text: str | None) -> tuple[int, int]:
