@@ -5,7 +5,6 @@ The registry is built on import: Python's import lock ensures that there is only
 
 from __future__ import annotations
 
-import gc
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -20,18 +19,6 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def _collector_paused() -> Iterator[None]:
-    """Pause garbage collection: it would scan thousands of new definitions, and free none of them."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
-
-
-@contextmanager
 def _without_dask() -> Iterator[None]:
     """Have imports behave as if dask were not installed: pint would import it for arrays that no robot has."""
     imported = sys.modules.setdefault("dask", cast("ModuleType", None))
@@ -42,7 +29,7 @@ def _without_dask() -> Iterator[None]:
             del sys.modules["dask"]
 
 
-with _collector_paused(), _without_dask():
+with _without_dask():
     import pint
     import platformdirs
 
@@ -105,5 +92,4 @@ def _build_and_cache(folder: Path) -> UnitRegistry:
     return registry
 
 
-with _collector_paused():
-    registry = build(cache_folder())
+registry = build(cache_folder())
