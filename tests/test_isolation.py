@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import subprocess
 import sys
@@ -826,41 +825,6 @@ def test_coverage_counts_lines_of_the_robot_wherever_they_run(
     assert covered(result) == {"robot.py": "100%", "arm.py": "100%", "TOTAL": "100%"}
     assert list(project.path.rglob(".coverage*")) == []
     assert [path.name for path in project.temporary.iterdir() if not path.name.startswith("pytest-of-")] == []
-
-
-@pytest.mark.slow
-def test_the_longest_test_starts_first_the_next_time_and_reports_stay_in_order(make_project) -> None:
-    project = make_project(
-        {
-            "robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n",
-            "tests/test_lengths.py": """
-                import pathlib
-
-                import pytest
-
-                @pytest.mark.parametrize("seconds", [1, 2, 400])
-                def test_of(control, robot, seconds):
-                    process = pathlib.Path("/proc/self/stat").read_text().rpartition(")")[2].split()
-                    pathlib.Path(f"{seconds}.started").write_text(process[19])
-                    with control.run_robot():
-                        control.step_timing(seconds=seconds, autonomous=False, enabled=True)
-            """,
-        }
-    )
-    lengths = (1, 2, 400)
-    kept = project.path / ".pytest_cache/v/pyfrc/durations"
-    for _ in range(2):
-        result = project.run("test", "-j", "2", "-v")
-        durations = json.loads(kept.read_text())
-        assert all(seconds > 0 for seconds in durations.values())
-        # On a busy machine, a short one may have taken longer.
-        kept.write_text(json.dumps({test: float(test.partition("[")[2].rstrip("]")) for test in durations}))
-        assert list(result.outcomes()) == [f"tests/test_lengths.py::test_of[{seconds}]" for seconds in lengths]
-    started = [int((project.path / f"{seconds}.started").read_text()) for seconds in lengths]
-    assert started[2] == min(started)
-    # No test may run after one that failed.
-    assert project.run("test", "-j", "2", "--", "-x").code == 0
-    assert int((project.path / "1.started").read_text()) <= int((project.path / "400.started").read_text())
 
 
 def test_plugins_of_libraries_that_pyfrc_depends_on_are_not_loaded(make_project: MakeProject) -> None:

@@ -11,7 +11,6 @@ from contextlib import suppress
 from ...errors import PyfrcError
 from ...hal import HalData, device_table
 from ...project import Project
-from ...runtime.module_files import resolve_module_files
 from ...runtime.patch_table import PatchTable
 from ...wpi import network
 from ..inputs.asked_controls import watch_controls
@@ -30,7 +29,6 @@ class Preparation:
         if is_imported:
             robot_constants(project)
             imported_devices(project)
-            resolve_module_files()
             with watch_controls():
                 pass  # the functions that it replaces have been found
         prepare_search()

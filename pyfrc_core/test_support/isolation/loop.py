@@ -13,10 +13,8 @@ from __future__ import annotations
 import atexit
 import contextlib
 import gc
-import itertools
 import os
 import sys
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -31,7 +29,6 @@ from ...processes.worker import wait_for_any
 from ...processors import usable_processors
 from ...project.robot_files import RobotFiles
 from ...runtime.checks.failures import headline_is_the_robots
-from ...runtime.module_files import resolve_module_files
 from ...runtime.threads.fork_obstacles import reasons_not_to_fork
 from ...runtime.turns import taking_turns
 from ..hangs import ROBOT_FIXTURES
@@ -39,7 +36,6 @@ from ..options import Jobs
 from ..pytest_plugin import PyFrcPlugin
 from ..remembered_passes import PASSES
 from ..reporting import BUG, bug_of, seed_section
-from .durations import Durations, longest_first
 from .interpreters import start_interpreters
 from .messages import replay
 from .processes import TestProcess, forked_test, spawned_test
@@ -54,8 +50,8 @@ _NOT_FORKED = "Each robot test runs in an interpreter that imports the robot aga
 _NOT_AS_GOOD_AS_NEW = "A new interpreter for each test, because a test has left {}."
 
 
-#: What a new interpreter costs: one more has to have as much to do.
-_START_SECONDS = 1.0
+#: For so many tests another interpreter is worth its start.
+_TESTS_WORTH_A_START = 3
 
 
 class IsolatedTests:
@@ -71,7 +67,6 @@ class IsolatedTests:
         self._running: dict[pytest.Item, TestProcess] = {}
         self._announced: pytest.Item | None = None
         self._explained = False
-        self._durations: Durations | None = None
         #: Where tests print to, if pytest captures nothing.
         self._output: UncapturedOutput | None = None
         #: Whether it need not be printed that interpreters take long to start: it was, or no person waits.
@@ -87,7 +82,6 @@ class IsolatedTests:
         if session.testsfailed and not session.config.option.continue_on_collection_errors:
             problems = session.testsfailed
             raise session.Interrupted(f"{problems} error{'s' if problems != 1 else ''} during collection")
-        durations = self._durations = Durations(session.config)
         with uncaptured_output(session.config) as self._output, taking_turns():
             try:
                 self._run_all(session)
@@ -99,13 +93,7 @@ class IsolatedTests:
                     process.close()
                 self._running.clear()
                 self._end_interpreters(session.config)
-                durations.save()
         return True
-
-    @pytest.hookimpl
-    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        if self._durations is not None:
-            self._durations.add(report)
 
     def _left_to_others(self, session: pytest.Session) -> bool:
         config = session.config
@@ -122,50 +110,44 @@ class IsolatedTests:
         waiting: list[pytest.Item] = []
         if notice := reruns_notice(session.config, filter(self._uses_robot, items)):
             self._print(session.config, f"pyfrc: {notice}")
-        if any(map(self._uses_robot, items)):
-            resolve_module_files()
         gc.freeze()  # what is there now stays: a collection in a fork would copy all its memory
         previous: pytest.Item | None = None
-        for group in self._groups(session, jobs):
-            if not self._uses_robot(item := items[group[0]]):
+        for position, item in enumerate(items):
+            if not self._uses_robot(item):
                 self._finish(session, waiting, down_to=0)
                 _tear_down_shared(session, previous, item)
                 previous = item
-                nextitem = items[group[0] + 1] if group[0] + 1 < len(items) else None
+                nextitem = items[position + 1] if position + 1 < len(items) else None
                 item.config.hook.pytest_runtest_protocol(item=item, nextitem=nextitem)
                 _stop_if_asked(session)
                 continue
-            waiting += (items[position] for position in sorted(group))
-            for item in (items[position] for position in group):
-                self._finish(session, waiting, down_to=jobs - 1)
-                other_parameters = previous in self._running and _other_parameters(previous, item)
-                if other_parameters or _would_tear_down_fixtures(session, item):
-                    self._finish(session, waiting, down_to=0)
-                _tear_down_shared(session, previous, item)
-                previous = item
-                forked = self._can_fork(session.config)
-                if forked:  # a new interpreter sets up everything itself
-                    _set_up_shared(session, item)
-                plugin = self._plugin
-                if item is waiting[0]:
-                    self._announce(item)
-                if forked:
-                    self._running[item] = forked_test(item, plugin, self._output)
-                else:
-                    if self._interpreters is None:
-                        self._interpreters = start_interpreters(plugin.project, plugin.options)
-                    more = len(items) - 1 - items.index(item)
-                    self._running[item] = spawned_test(item, plugin, self._interpreters, more)
+            waiting.append(item)
+            self._finish(session, waiting, down_to=jobs - 1)
+            other_parameters = previous in self._running and _other_parameters(previous, item)
+            if other_parameters or _would_tear_down_fixtures(session, item):
+                self._finish(session, waiting, down_to=0)
+            _tear_down_shared(session, previous, item)
+            previous = item
+            forked = self._can_fork(session.config)
+            if forked:  # a new interpreter sets up everything itself
+                _set_up_shared(session, item)
+            plugin = self._plugin
+            if item is waiting[0]:
+                self._announce(item)
+            if forked:
+                self._running[item] = forked_test(item, plugin, self._output)
+            else:
+                if self._interpreters is None:
+                    self._interpreters = start_interpreters(plugin.project, plugin.options)
+                self._running[item] = spawned_test(item, plugin, self._interpreters, len(items) - 1 - position)
         self._finish(session, waiting, down_to=0)
         _tear_down_shared(session, previous, None)
 
     def _worth_starting(self, items: list[pytest.Item]) -> int:
         """Return how many interpreters have enough to do, if tests use them again."""
-        assert self._durations is not None
         if self._plugin.options.isolation == "spawn":
             return len(items)
-        seconds = self._durations.total(item.nodeid for item in items if self._uses_robot(item))
-        return max(1, int(seconds / _START_SECONDS))
+        return max(1, sum(map(self._uses_robot, items)) // _TESTS_WORTH_A_START)
 
     def _end_interpreters(self, config: pytest.Config) -> None:
         if self._interpreters is None:
@@ -175,28 +157,6 @@ class IsolatedTests:
         if (passes := config.pluginmanager.getplugin(PASSES)) is not None:
             passes.record_left_over(self._interpreters.reason)
         self._interpreters.close()
-
-    def _groups(self, session: pytest.Session, jobs: int) -> Iterator[list[int]]:
-        """Yield the positions of tests, in the order in which to start them.
-
-        Those in a row that use the robot and share no fixture are one group: the longest starts first. All others are
-        groups of their own. With ``-x`` the order is the tests' own, since no test is to run after one that failed.
-        """
-        assert self._durations is not None
-        in_order = jobs == 1 or bool(session.config.option.maxfail)
-        items = session.items
-
-        def is_free(position: int) -> bool:
-            item = items[position]
-            return not in_order and self._uses_robot(item) and not pytest_private.shared_fixture_names(item)
-
-        for free, positions in itertools.groupby(range(len(items)), is_free):
-            row = list(positions)
-            if free:
-                names = [items[position].nodeid for position in row]
-                yield [row[index] for index in longest_first(names, self._durations.known)]
-            else:
-                yield from ([position] for position in row)
 
     def _finish(self, session: pytest.Session, waiting: list[pytest.Item], down_to: int) -> None:
         """Report tests that have ended, in their order, until no more than `down_to` are running."""
