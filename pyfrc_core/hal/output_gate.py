@@ -8,18 +8,18 @@ robot is enabled.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
-from ..wpi import station
+from ..wpi import motor_controllers, station
 from . import outputs, pneumatics
 from .can_outputs import CanOutputs
 from .created_devices import CreatedDevices
 from .fields import INITIALIZED
 from .modules import MODULES
-from .motor_getters import MotorGetters
 
 _PCM_CHANNELS, _HUB_CHANNELS = 8, 16
 
@@ -33,7 +33,7 @@ class OutputGate:
     def __init__(self) -> None:
         self._channels = _Channels()
         self._can = CanOutputs()
-        self._getters = MotorGetters()
+        self._getters = _MotorGetters()
         self._closed = False
 
     @contextmanager
@@ -90,3 +90,32 @@ class _Channels:
         for module, channels in self._pneumatics:
             if next(is_created):
                 self._switches += [pneumatics.solenoid(module, channel) for channel in range(channels)]
+
+
+class _MotorGetters:
+    """The `get` of motor controllers that return the value last set, and not that of the HAL.
+
+    REV's ``SparkMax.get()`` is an example; a team's own motor controller class may be another.
+    """
+
+    def __init__(self) -> None:
+        self._modules = 0
+        self._classes: list[type[Any]] = []
+
+    def turn_off(self) -> Iterator[Callable[[], None]]:
+        """Make `get` return 0.
+
+        :returns: a function for each class that restores it
+        """
+        if len(sys.modules) != self._modules:  # new modules may have new classes
+            self._modules = len(sys.modules)
+            self._classes = motor_controllers.with_own_getter()
+        name = motor_controllers.POWER_GETTER
+        for owner in self._classes:
+            original = vars(owner)[name]
+            setattr(owner, name, _zero)
+            yield partial(setattr, owner, name, original)
+
+
+def _zero(*_: object, **__: object) -> float:
+    return 0.0

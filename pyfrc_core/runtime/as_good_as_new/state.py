@@ -7,15 +7,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from ...project.robot_files import RobotFiles
 from ..exceptions import TestEnded, TestFroze
-from .devices import Devices
 from .last_run import LastRun
+from .left_behind import Commands, Devices, ProjectObjects, Tables, Threads
 from .modules import ProjectModules
-from .objects import ProjectObjects
 from .part import Part
 from .process import Directory, Environment, Logging, Randomness, Signals, Streams
 from .replaced_names import ReplacedNames
-from .tables import Commands, Tables
-from .threads import Threads
 
 #: How many reasons are given.
 _NAMED = 3

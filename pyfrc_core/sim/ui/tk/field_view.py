@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import tkinter as tk
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from ....errors import SettingsError
 from ....physics.pose import Pose
-from ...engine.scene import Field, Scene, Shape, Target
+from ...engine.scene import Field, Point, Scene, Shape, Target
 from ...engine.snapshot import Snapshot, Status
 from ..models.viewport import RobotDrag, Viewport, grid_lines, is_on_robot, robot_polygons, tag_marks
 from ..models.wording import station_name
@@ -15,7 +15,6 @@ from . import theme as colors
 from .drawings import Drawings
 from .field_image import FieldImage
 from .theme import Theme
-from .trail import Trail
 
 if TYPE_CHECKING:
     from ...engine.simulation import Simulation
@@ -45,8 +44,8 @@ class FieldView:
         #: The pixel that the field was last dragged to.
         self._panned_from: tuple[int, int] | None = None
         px = theme.px
-        self._former = Trail(canvas, "trail", fill=colors.FORMER_TRAIL, width=px(2), dash=(6, 4))
-        self._trail = Trail(canvas, "trail", fill=colors.TRAIL, width=px(2))
+        self._former = _Trail(canvas, "trail", fill=colors.FORMER_TRAIL, width=px(2), dash=(6, 4))
+        self._trail = _Trail(canvas, "trail", fill=colors.TRAIL, width=px(2))
         self._drawings = Drawings(canvas, theme)
         self._make_robot()
         self._draw_field()
@@ -248,3 +247,47 @@ class FieldView:
 
     def _release(self, event: tk.Event[tk.Canvas]) -> None:
         self._robot_drag = self._panned_from = None
+
+
+#: The points of a piece of a trail.
+_PIECE = 100
+
+
+class _Trail:
+    """A line on the canvas that grows at its end. It is in pieces: a new point does not redraw the whole line.
+
+    :param options: of the canvas's lines
+    """
+
+    def __init__(self, canvas: tk.Canvas, tag: str, **options: Any) -> None:
+        self._canvas, self._tag, self._options = canvas, tag, options
+        self._points: tuple[Point, ...] = ()
+        self._pieces: list[int] = []
+
+    def show(self, points: tuple[Point, ...], view: Viewport) -> None:
+        """Draw a line through these points."""
+        if points is self._points:
+            return
+        before, self._points = self._points, points
+        goes_on = 0 < len(before) <= len(points) and points[0] == before[0] and points[len(before) - 1] == before[-1]
+        if goes_on and len(points) == len(before):
+            return
+        self._draw((len(before) - 1) // _PIECE if goes_on else 0, view)
+
+    def move(self, view: Viewport) -> None:
+        """Place the line for another part of the field."""
+        self._draw(0, view)
+
+    def _draw(self, first: int, view: Viewport) -> None:
+        needed = (len(self._points) - 1 + _PIECE - 1) // _PIECE if len(self._points) > 1 else 0
+        while len(self._pieces) > needed:
+            self._canvas.delete(self._pieces.pop())
+        for number in range(min(first, needed), needed):
+            piece = view.line(self._points[number * _PIECE : (number + 1) * _PIECE + 1])
+            if number < len(self._pieces):
+                self._canvas.coords(self._pieces[number], *piece)
+            else:
+                item = self._canvas.create_line(*piece, tags=self._tag, capstyle="round", **self._options)
+                self._pieces.append(item)
+                if self._canvas.find_withtag("over"):
+                    self._canvas.tag_lower(item, "over")
