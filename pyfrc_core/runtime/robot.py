@@ -41,7 +41,6 @@ class RobotRun:
     :param logs: where the data logs that robot code starts are written; None: they are not kept
     :param has_devices: whether devices exist in the HAL, if the caller knows; None: they are searched
     :param start_us: the robot time at which it begins
-    :param tree: the tree for `hal_data`, made without defaults, which no run has used
     """
 
     def __init__(
@@ -49,10 +48,8 @@ class RobotRun:
         logs: LogPlace | None = None,
         has_devices: bool | None = None,
         start_us: int = 0,
-        tree: HalData | None = None,
     ) -> None:
         self._has_devices = has_devices
-        self._tree = tree
         self.clock = Clock(start_us)
         #: What robot code starts of data logs.
         self.data_logs = DataLogs(self.clock, logs)
@@ -143,7 +140,7 @@ class RobotRun:
     @cached_property
     def hal_data(self) -> HalData:
         """The robot's inputs and outputs: one tree for all users of this run."""
-        tree = HalData(defaults=False) if self._tree is None else self._tree
+        tree = HalData(defaults=False)
         # What was written for a gyro before the robot made it, reaches it then.
         self.clock.before_packet.append(lambda now: tree.sync())
         return tree

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any
 
-from ...hal import HalData, devices_exist
+from ...hal import devices_exist
 from ...invariants.load import Invariant, load_invariants
 from ...project import Project
 from ...runtime.loading import load_robot
@@ -63,11 +63,5 @@ def imported_devices(project: Project) -> bool:
 
 def forget() -> None:
     """Forget the robot, which is to be imported again."""
-    for known in (robot_lines, robot_constants, load, invariants_of, imported_devices, next_tree):
+    for known in (robot_lines, robot_constants, load, invariants_of, imported_devices):
         known.cache_clear()
-
-
-@lru_cache(maxsize=1)
-def next_tree() -> HalData:
-    """Return the tree for the `hal_data` of the next run, in this process or in each of its forks."""
-    return HalData(defaults=False)

@@ -44,7 +44,6 @@ from .imported_robot import (
     imported_devices,
     invariants_of,
     load,
-    next_tree,
     robot_constants,
     robot_lines,
 )
@@ -255,7 +254,7 @@ def _robot(
 ) -> Iterator[tuple[RobotRun, MisbehaviorNotes]]:
     """Open a run with hang detection and, by default, the oracle. The run is never closed: its process ends."""
     # Imports the robot before robot time begins.
-    run = RobotRun(has_devices=imported_devices(project), start_us=begin.at_us, tree=next_tree())
+    run = RobotRun(has_devices=imported_devices(project), start_us=begin.at_us)
     settings = project.settings.fuzz
     hang_detector = HangDetector(project.files, hang_seconds or settings.hang_seconds, log)
     with hang_detector.watching():

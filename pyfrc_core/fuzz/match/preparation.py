@@ -9,13 +9,11 @@ import gc
 from contextlib import suppress
 
 from ...errors import PyfrcError
-from ...hal import HalData, device_table
 from ...project import Project
 from ...runtime.patch_table import PatchTable
 from ...wpi import network
-from ..inputs.asked_controls import watch_controls
 from ..inputs.finders import prepare_search
-from .imported_robot import imported_devices, next_tree, robot_constants
+from .imported_robot import imported_devices, robot_constants
 
 
 class Preparation:
@@ -29,10 +27,7 @@ class Preparation:
         if is_imported:
             robot_constants(project)
             imported_devices(project)
-            with watch_controls():
-                pass  # the functions that it replaces have been found
         prepare_search()
-        _build(next_tree())
         _read_settings(project)
         # It would start a thread, and no one reads what matches log.
         self._patches.patch(*network.NETWORK_LOG.place, lambda instance: None)
@@ -41,14 +36,6 @@ class Preparation:
     def close(self) -> None:
         """Undo what would be noticed in this process."""
         self._patches.undo()
-
-
-def _build(tree: HalData) -> None:
-    """Build the parts of the tree that every match uses: they are built when they are first used."""
-    for branch in ("control", "event", "time", "power", *device_table.MAY_EXIST, "CAN"):
-        dict(tree[branch])
-    for stick in tree["joysticks"]:
-        dict(stick)
 
 
 def _read_settings(project: Project) -> None:
