@@ -5,13 +5,11 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import warnings
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import pytest
 
-from pyfrc_core.test_support.isolation.durations import Durations
 from pyfrc_core.test_support.isolation.reruns import reruns_notice
 
 
@@ -27,18 +25,6 @@ def test_output_that_is_no_longer_read_is_no_failed_test() -> None:
     done = subprocess.run(command, stdout=writer, stderr=writer, env=environment, check=False)
     assert done.returncode == 141
     os.close(writer)
-
-
-def test_a_project_that_cannot_be_written_is_warned_of_once(tmp_path, request: pytest.FixtureRequest) -> None:
-    cache = pytest.Cache(tmp_path / "file" / "cache", request.config, _ispytest=True)
-    (tmp_path / "file").write_text("")
-    with pytest.warns(pytest.PytestCacheWarning):
-        cache.set("a/b", 1)
-    durations = Durations(cast("Any", SimpleNamespace(cache=cache)))
-    durations.add(cast("Any", SimpleNamespace(nodeid="test_a", duration=1.0)))
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        durations.save()
 
 
 def config(**options: object) -> Any:
