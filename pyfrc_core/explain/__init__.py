@@ -24,10 +24,12 @@ Kind = Callable[[BaseException, RobotFiles], Explanation | None]
 
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     """Return what an error means, or None if it is not one of those that are known."""
-    from . import arguments, calls, commands, imports, libraries, names, other_season, syntax
+    from . import alliance, arguments, calls, commands, imports, libraries, methods, names, other_season, syntax
 
     kinds: tuple[Kind, ...] = (
         syntax.explain,
+        methods.explain,
+        alliance.explain,
         other_season.explain,
         imports.explain,
         commands.explain,

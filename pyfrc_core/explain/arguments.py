@@ -11,14 +11,16 @@ from typing import Any
 from ..errors import text_of
 from ..project.robot_files import RobotFiles
 from ..wording import counted
-from .explanation import Explanation
-from .places import calls_at, users_frame, value_of
+from .calls import called_on_class
+from .explanation import Explanation, ask_for
+from .places import calls_at, last_name, robot_trees, users_frame, value_of
 
 _INCOMPATIBLE = re.compile(
-    r"TypeError: (?:\w+\.)*(?P<name>\w+)\(\): incompatible (?:function|constructor) arguments\..*?\n"
+    r"TypeError: (?:\nTypeError: )?(?:\w+\.)*(?P<name>\w+)\(\): incompatible (?:function|constructor) arguments\..*?\n"
     r"(?P<forms>(?:    \d+\. .*\n)+)\s*Invoked with:? ?(?P<got>.*)",
     re.DOTALL,
 )
+_CAST = re.compile(r"RuntimeError: Unable to cast Python instance of type <class '(?P<type>[\w.]+)'>")
 _FORM = re.compile(r"    \d+\. (?:[\w.]+)?\((?P<parameters>.*)\)(?: -> .*)?\n")
 _PARAMETER = re.compile(r"(?<![.\w])(\w+): ")
 _NOT_CALLABLE = re.compile(r"assert (?:\w+ is None or )?callable\((\w+)\)")
@@ -36,7 +38,27 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return explained
     if text.startswith("ArgumentError: argument "):
         return _wrong_type(error, files)
+    if (found := _CAST.match(text)) and (where := users_frame(error, files)) is not None:
+        return _wrong_struct(found["type"], *where)
     return None
+
+
+def _wrong_struct(got: str, frame: FrameType, line: int) -> Explanation | None:
+    """Explain a value that NetworkTables cannot publish as the struct of its topic."""
+    for call in calls_at(frame, line, ""):
+        topic = (
+            getattr(value_of(call.func.value, frame), "getTopic", None)
+            if isinstance(call.func, ast.Attribute)
+            else None
+        )
+        if callable(topic) and call.args:
+            struct = re.sub(r"^struct:|\[\]$", "", topic().getTypeString())
+            written = ast.unparse(call.args[0])
+            text = f"{last_name(call.func)}() got {written}, which is of type {got}, and not of type {struct}"
+            return Explanation(text, f"Write {struct}(...)")
+    return Explanation(
+        f"a value of type {got} is not of the type that the function takes", "Create an object of that type."
+    )
 
 
 def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles) -> Explanation:
@@ -47,18 +69,20 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
         name = named[1].rpartition(".")[2] if named else name
     where = users_frame(error, files)
     call = next(iter(calls_at(*where, name)), None) if where is not None else None
+    if where is not None and call is None and (called := _called_from(error, where[0])) is not None:
+        name = called.f_code.co_name  # of the library's Python, which has called that of C++
+        call, forms = next(iter(calls_at(*where, name)), None), forms[:1]
     takes = " or ".join(f"{name}({', '.join(form)})" for form in dict.fromkeys(map(tuple, forms)))
     if call is None:
-        return Explanation(f"{name}() got arguments that it does not take", f"It takes: {takes}")
+        text, place = _text_passed(found["got"], files)
+        return Explanation(text or f"{name}() got arguments that it does not take", f"It takes: {takes}", place)
     owner = value_of(call.func.value, where[0]) if where is not None and isinstance(call.func, ast.Attribute) else None
-    if isinstance(owner, type) and all("self: " in form for form in found["forms"].strip().splitlines()):
-        cls = ast.unparse(call.func.value) if isinstance(call.func, ast.Attribute) else ""
-        if where is not None and isinstance(where[0].f_locals.get("self"), owner):
-            return Explanation(f"{cls}.{name}() is called without self", f"Write super().{name}(), with what it takes.")
-        return Explanation(
-            f"{name}() is called on the class {cls}, and not on an object of it",
-            f"Create an object in robotInit, as in: self.it = {cls}(...). Then call: self.it.{name}(...)",
-        )
+    if (
+        isinstance(owner, type)
+        and where is not None
+        and all("self: " in form for form in found["forms"].strip().splitlines())
+    ):
+        return called_on_class(call, owner, where[0], files)
     unknown = [each.arg for each in call.keywords if each.arg and not _has_parameter(forms, each.arg)]
     if unknown:
         return Explanation(f"{name}() has no argument {unknown[0]}", f"It takes: {takes}")
@@ -76,10 +100,54 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
         return Explanation(
             f"{name}() was called with {counted(count, 'value')}, but takes {need}", f"It takes: {takes}"
         )
-    function = next((at for at, value in enumerate(values) if _FUNCTION.match(value)), None)
-    if function is not None and function < len(got):
-        return Explanation(f"{name}() got the function {got[function]}, and not its value", f"Write {got[function]}()")
-    return Explanation(f"{name}() does not take {shown}{_types(values)}", f"It takes: {takes}")
+    for at, (value, written) in enumerate(zip(values, got, strict=False)):
+        kinds = [form[at].partition(": ")[2].partition(" = ")[0] for form in forms if at < len(form)]
+        if not call.keywords and (wrong := _wrong(value, written, kinds)):
+            return Explanation(f"{name}() got {wrong[0]}", f"{wrong[1]}\n  It takes: {takes}")
+    return Explanation(f"{name}() does not take {shown}", f"It takes: {takes}")
+
+
+def _wrong(value: str, written: str, kinds: list[str]) -> tuple[str, str] | None:
+    """Return what an argument is, and what to write instead, if its value is of none of the kinds.
+
+    :param value: as Python shows it
+    :param written: as the user has written it
+    """
+    functions = [kind for kind in kinds if "Callable" in kind or kind.startswith("()")]
+    if _FUNCTION.match(value):
+        return None if functions else (f"the function {written}, and not its value", f"Write {written}()")
+    if value.startswith("<class "):
+        return f"the class {written}, and no object of it", f"Write {written}(...), with what its __init__ needs."
+    if functions and (written.endswith(")") or len(functions) == len(kinds)):
+        return f"the value {value}, and no function", _pass_function(written)
+    is_text = value[:1] in "'\""
+    if is_text and "str" not in kinds:
+        number = value[1:-1] if re.fullmatch(r".-?\d+(\.\d+)?.", value) else ""
+        return (
+            f"{written}, a text",
+            f"Write it without quotes: {number}" if number else "Pass a value of the right type.",
+        )
+    if re.fullmatch(r"-?\d+(\.\d+)?|True|False", value) and kinds == ["str"]:
+        return f"{written}, which is no text", f"Write str({written}), or the text in quotes."
+    return None
+
+
+def _pass_function(written: str) -> str:
+    call, _, arguments = written.partition("(")
+    without = f"Pass the function itself: {call} without (). " if arguments else ""
+    return f"{without}With arguments: lambda: {written or 'function(1)'}"
+
+
+def _text_passed(got: str, files: RobotFiles) -> tuple[str, str]:
+    """Return which call has got a text of an error that comes later, and its place; empty if none has."""
+    texts = [each for each in _values(got, got.count(", ") + 1) if each[:1] in "'\""]
+    for file, tree in robot_trees(files):
+        for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
+            for written in _written(call):
+                if repr(written[1:-1]) in texts and written[:1] in "'\"":
+                    text = f"{last_name(call.func)}() got {written}, a text, and no number"
+                    return text, f"{file}:{call.end_lineno}"
+    return "", ""
 
 
 def _got_none(name: str, written: str, takes: str = "") -> Explanation:
@@ -90,8 +158,7 @@ def _got_none(name: str, written: str, takes: str = "") -> Explanation:
     form = f"\n  It takes: {takes}" if takes else ""
     if written in ("None", ""):
         return Explanation(f"{name}() got None", f"Pass a value.{form}")
-    asked = f"Does {written} return something?" if written.endswith(")") else f"Has anything set {written} before?"
-    return Explanation(f"{name}() got None, from {written}", f"{asked}{form}")
+    return Explanation(f"{name}() got None, from {written}", f"{ask_for(written)}{form}")
 
 
 def _has_parameter(forms: list[list[str]], name: str) -> bool:
@@ -125,11 +192,6 @@ def _values(text: str, count: int) -> list[str]:
     return parts[len(parts) - count :] if len(parts) in (count, count + 1) else []
 
 
-def _types(values: list[str]) -> str:
-    texts = [value for value in values if value[:1] in "'\""]
-    return f" ({texts[0]} is a text)" if texts else ""
-
-
 def _not_callable(error: BaseException, files: RobotFiles) -> Explanation | None:
     """Explain a library's assertion that one of its arguments is a function."""
     entry = error.__traceback__
@@ -146,24 +208,22 @@ def _not_callable(error: BaseException, files: RobotFiles) -> Explanation | None
     kind = "None" if value is None else f"of type {type(value).__name__}"
     argument = next((each for call in calls_at(*where, "") for each in call.args if isinstance(each, ast.Call)), None)
     written = ast.unparse(argument) if argument is not None else ""
-    without = f"Pass the function itself: {_without_brackets(written)} without (). " if written else ""
-    return Explanation(
-        f"{found[1]} must be a function, but is {kind}{f', from {written}' if written else ''}",
-        f"{without}With arguments: lambda: {written or 'function(1)'}",
-    )
+    text = f"{found[1]} must be a function, but is {kind}{f', from {written}' if written else ''}"
+    return Explanation(text, _pass_function(written))
 
 
-def _without_brackets(written: str) -> str:
-    return written.partition("(")[0]
+def _called_from(error: BaseException, frame: FrameType) -> FrameType | None:
+    """Return the frame of what the user's function has called."""
+    entry = error.__traceback__
+    while entry is not None and entry.tb_frame is not frame:
+        entry = entry.tb_next
+    return entry.tb_next.tb_frame if entry is not None and entry.tb_next is not None else None
 
 
 def _wrong_type(error: BaseException, files: RobotFiles) -> Explanation | None:
     """Explain an error of a library in C, by the arguments of the library's function that the user has called."""
     where = users_frame(error, files)
-    entry = error.__traceback__
-    while entry is not None and (where is None or entry.tb_frame is not where[0]):
-        entry = entry.tb_next
-    called: FrameType | None = entry.tb_next.tb_frame if entry is not None and entry.tb_next is not None else None
+    called = _called_from(error, where[0]) if where is not None else None
     if called is None or where is None:
         return None
     name = called.f_code.co_name

@@ -5,18 +5,38 @@ from __future__ import annotations
 import ast
 import inspect
 import re
+from collections.abc import Iterator
 from types import FrameType, ModuleType
 
 from ..errors import text_of
 from ..project.robot_files import RobotFiles
 from ..wording import counted
-from .explanation import Explanation
-from .places import calls_at, last_name, statement_at, users_frame, value_of
-
-_OPERAND = re.compile(
-    r"TypeError: (bad operand|unsupported operand|'.+' not supported between).*"
-    r"'(method|builtin_function_or_method|function|instancemethod)'"
+from .explanation import Explanation, ask_for
+from .names import earlier_name
+from .places import (
+    UNKNOWN,
+    calls_at,
+    last_name,
+    looked_up,
+    robot_trees,
+    statement_at,
+    users_frame,
+    value_of,
 )
+from .returned import class_of, numbers_of
+
+#: How Python names a function in the text of an error about a value.
+_FUNCTION = r"(?:method|builtin_function_or_method|function|instancemethod)"
+_OF_A_FUNCTION = re.compile(
+    rf"AttributeError: ('{_FUNCTION}' object|__enter__)|TypeError: (?!.*arguments).*\b{_FUNCTION}\b"
+)
+_READ_ONLY = re.compile(r"AttributeError: .* object attribute '(\w+)' is read-only")
+_NO_NUMBER = re.compile(
+    r"TypeError: (?:'.+' not supported between instances of|unsupported operand type.*?:|bad operand type.*?:) "
+    r"'(?P<left>[\w.]+)'(?: and '(?P<right>[\w.]+)')?"
+)
+#: The functions of Python that compute with what they get.
+_COMPUTING = frozenset({"abs", "max", "min", "round", "float", "int", "len", "str", "sum"})
 _COUNT = re.compile(
     r"TypeError: (?:[\w.<>]+\.)?(?P<name>\w+)\(\) "
     r"(takes .* positional arguments?|missing \d+ required|got an unexpected keyword argument '(?P<keyword>\w+)')"
@@ -28,32 +48,102 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     where = users_frame(error, files)
     if where is None:
         return None
-    if _OPERAND.match(text):
-        return _not_called(*where)
+    if _OF_A_FUNCTION.match(text) and (explained := _not_called(*where)):
+        return explained
     if text == "TypeError: 'module' object is not callable":
         return _module(*where)
+    if text.endswith("object is not callable"):
+        return _called_value(*where)
+    if found := _READ_ONLY.match(text):
+        return _set_method(found[1], *where)
+    if found := _NO_NUMBER.match(text):
+        return _no_number(found, *where)
     if found := _COUNT.match(text):
         return _count(found, *where, files)
     return None
 
 
 def _not_called(frame: FrameType, line: int) -> Explanation | None:
-    """Explain a method among numbers, such as ``self.timer.get < 2``."""
-    for node in ast.walk(statement_at(frame, line)):
-        for each in _operands(node):
-            if isinstance(each, (ast.Attribute, ast.Name)) and callable(value_of(each, frame)):
-                written = ast.unparse(each)
-                return Explanation(f"{written} is a function, and not its value", f"Write {written}()")
+    """Explain a method that is used like its value, such as ``self.timer.get < 2``."""
+    statement = statement_at(frame, line)
+    calls = [each for each in ast.walk(statement) if isinstance(each, ast.Call)]
+    # A function that another one gets is probably meant, unless that one computes.
+    passed = [each for call in calls if last_name(call.func) not in _COMPUTING for each in call.args]
+    passed += [keyword.value for call in calls for keyword in call.keywords]
+    for each in ast.walk(statement):
+        if (
+            each in passed
+            or any(each is call.func for call in calls)
+            or not isinstance(each, (ast.Attribute, ast.Name))
+        ):
+            continue
+        value, written = value_of(each, frame), ast.unparse(each)
+        if not callable(value) or isinstance(value, type):
+            continue
+        owner = value_of(each.value, frame) if isinstance(each, ast.Attribute) else None
+        if isinstance(owner, type) and (
+            instead := earlier_name(each.attr if isinstance(each, ast.Attribute) else "", owner)
+        ):
+            return Explanation(f"{written} is a function, and not its value", f"Instead: {instead}.")
+        return Explanation(f"{written} is a function, and not its value", f"Write {written}()")
+    return None
+
+
+def _called_value(frame: FrameType, line: int) -> Explanation | None:
+    """Explain ``self.speed()``, where `speed` is a number, and a method that a value has replaced."""
+    for call in calls_at(frame, line, ""):
+        value, written = looked_up(call.func, frame), ast.unparse(call.func)
+        if value is UNKNOWN or callable(value):
+            continue
+        if value is None:
+            return Explanation(f"{written} is None, and no function", ask_for(written))
+        owner = type(value_of(call.func.value, frame)) if isinstance(call.func, ast.Attribute) else None
+        if callable(getattr(owner, last_name(call.func), None)):
+            text = f"{written} was a method, but something has set it to {value!r}"
+            return Explanation(text, f"Search for {last_name(call.func)} = and choose another name there.")
+        kind = type(value).__name__
+        instead = f"{written}[...]" if isinstance(value, (list, tuple, dict)) else written
+        return Explanation(f"{written} is a value ({kind}), and no function", f"Write {instead}, without ()")
+    return None
+
+
+def _set_method(name: str, frame: FrameType, line: int) -> Explanation | None:
+    """Explain ``motor.setInverted = True``."""
+    statement = statement_at(frame, line)
+    for target in statement.targets if isinstance(statement, ast.Assign) else []:
+        if last_name(target) == name and isinstance(statement, ast.Assign):
+            written = ast.unparse(target)
+            return Explanation(
+                f"{written} is a method, and cannot be set", f"Write {written}({ast.unparse(statement.value)})"
+            )
+    return None
+
+
+def _no_number(found: re.Match[str], frame: FrameType, line: int) -> Explanation | None:
+    """Explain a text, None, or an object of a library's class, such as a Rotation2d, among numbers."""
+    computed = (_operands(node) for node in ast.walk(statement_at(frame, line)) if not isinstance(node, ast.Call))
+    operands = next(filter(None, computed), [])
+    for each, name in zip(operands, filter(None, found.groups()), strict=False):
+        written, cls = ast.unparse(each), class_of(name)
+        if name == "NoneType":
+            return Explanation(f"{written} is None, and no number", ask_for(written))
+        if name == "str" and found["left"] != found["right"]:
+            return Explanation(f"{written} is a text, and no number", f"Write float({written}), if it has digits only.")
+        if cls is not None and (numbers := numbers_of(cls)):
+            shown = ", ".join(f".{each}()" for each in numbers[:6])
+            return Explanation(
+                f"{written} is an object of {cls.__name__}, and no number", f"Write one of these behind it: {shown}"
+            )
     return None
 
 
 def _operands(node: ast.AST) -> list[ast.expr]:
     if isinstance(node, ast.UnaryOp):
         return [node.operand]
-    if isinstance(node, ast.Call) and last_name(node.func) in ("abs", "max", "min", "round"):
+    if isinstance(node, ast.Call) and last_name(node.func) in _COMPUTING:
         return node.args
-    if isinstance(node, ast.BinOp):
-        return [node.left, node.right]
+    if isinstance(node, (ast.BinOp, ast.AugAssign)):
+        return [node.left, node.right] if isinstance(node, ast.BinOp) else [node.target, node.value]
     return [node.left, *node.comparators] if isinstance(node, ast.Compare) else []
 
 
@@ -76,6 +166,9 @@ def _count(found: re.Match[str], frame: FrameType, line: int, files: RobotFiles)
     for call in calls_at(frame, line, ""):
         called = value_of(call.func, frame)
         name = ast.unparse(call.func)
+        owner = value_of(call.func.value, frame) if isinstance(call.func, ast.Attribute) else None
+        if isinstance(owner, type) and last_name(call.func) == found["name"] and found[0].endswith("required"):
+            return called_on_class(call, owner, frame, files)
         function = vars(called).get("__init__") if isinstance(called, type) else called
         if getattr(function, "__name__", "") != found["name"]:
             continue
@@ -91,3 +184,35 @@ def _count(found: re.Match[str], frame: FrameType, line: int, files: RobotFiles)
             got = f"with {found['keyword']}="
         return Explanation(f"{name}() was called {got}", f"It takes: {name}({', '.join(parameters)}){at}")
     return None
+
+
+def called_on_class(call: ast.Call, cls: type, frame: FrameType, files: RobotFiles) -> Explanation:
+    """Explain a method that is called on a class, such as ``wpilib.Timer.get()``."""
+    name, written = last_name(call.func), ast.unparse(call.func).rpartition(".")[0]
+    if isinstance(frame.f_locals.get("self"), cls):
+        return Explanation(f"{name}() is called without self", f"Write super().{name}(), with what it takes.")
+    text = f"{name}() is called on the class {written}, and not on an object of it"
+    for method in ("getInstance", "getDefault", "get_instance", "get_default"):
+        if hasattr(cls, method):
+            return Explanation(text, f"Write {written}.{method}().{name}(...)")
+    if written.rpartition(".")[2] == cls.__name__:
+        return Explanation(
+            text, f"Create an object in robotInit, as in: self.it = {written}(...). Then call: self.it.{name}(...)"
+        )
+    place = next((f"{file}:{node.lineno}" for file, tree in robot_trees(files) for node in _uncalled(tree, cls)), "")
+    return Explanation(
+        f"{written} is the class {cls.__name__}, and no object of it",
+        f"Write {cls.__name__}(...), with what its __init__ needs.",
+        place,
+    )
+
+
+def _uncalled(tree: ast.Module, cls: type) -> Iterator[ast.expr]:
+    """Yield where a class itself is passed or assigned."""
+    for node in ast.walk(tree):
+        passed = (
+            node.args if isinstance(node, ast.Call) and last_name(node.func) not in ("isinstance", "issubclass") else []
+        )
+        for each in [*passed, *([node.value] if isinstance(node, ast.Assign) else [])]:
+            if last_name(each) == cls.__name__:
+                yield each

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import ast
 import re
-import sys
 from collections.abc import Iterator
 
 from ..errors import text_of
 from ..project.robot_files import RobotFiles
 from .explanation import Explanation
-from .places import last_name, parsed
+from .places import last_name, robot_trees
 
 _NO_COMMAND = re.compile(
     r"AttributeError: '(NoneType|function|method)' object has no attribute '(schedule|cancel|isScheduled)'"
@@ -22,10 +21,9 @@ _BINDINGS = frozenset({"onTrue", "onFalse", "onChange", "whileTrue", "whileFalse
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     if not _NO_COMMAND.match(text_of(error)) or files.innermost_line(error.__traceback__, tests=False) is not None:
         return None
-    modules = [str(getattr(module, "__file__", "")) for module in list(sys.modules.values())]
-    trees = {file: parsed(file) for file in modules if file and files.is_robot_code(file)}
+    trees = dict(robot_trees(files))
     defined = {
-        each.name: (f"{files.relative(file)}:{each.lineno}", each)
+        each.name: (f"{file}:{each.lineno}", each)
         for file, tree in trees.items()
         for each in ast.walk(tree)
         if isinstance(each, (ast.FunctionDef, ast.ClassDef))
@@ -34,9 +32,7 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         for call, bound in _bound(tree):
             if found := _explained(bound, defined):
                 text, remedy = found
-                return Explanation(
-                    f"{last_name(call.func)}() got {text}", remedy, f"{files.relative(file)}:{call.lineno}"
-                )
+                return Explanation(f"{last_name(call.func)}() got {text}", remedy, f"{file}:{call.lineno}")
     return None
 
 

@@ -17,3 +17,8 @@ class Explanation:
     text: str = ""
     remedy: str = ""
     place: str = ""
+
+
+def ask_for(written: str) -> str:
+    """Return a question about an expression that is None."""
+    return f"Does {written} return something?" if written.endswith(")") else f"Has anything set {written} before?"

@@ -237,11 +237,6 @@ ROWS = (
         "class {cls} does not call super().__init__()",
         "Make that the first line of its __init__.",
     ),
-    KnownError(
-        r"TypeError: \w+\.end\(\) takes 1 positional argument but 2 were given",
-        "",
-        "Write def end(self, interrupted): - the scheduler says whether the command was interrupted.",
-    ),
     # -- Python
     KnownError(
         r"TypeError: can only concatenate str",

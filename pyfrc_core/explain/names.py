@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import ast
 import builtins
 import re
 import sys
+from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
+from importlib import import_module
 from importlib.util import find_spec
+from types import FrameType
 
 from ..project.hidden_libraries import LIBRARIES
 from ..project.robot_files import RobotFiles
 from .explanation import Explanation
-from .other_season import in_2027
-from .places import imported_name, place_of_assignment, users_frame
+from .other_season import OF_WPIMATH, in_2027
+from .places import imported_name, last_name, place_of_assignment, statement_at, users_frame
 
 
 def _spark(setting: str) -> str:
@@ -44,8 +48,23 @@ GONE = {
     "Filesystem": "wpilib.getDeployDirectory() and wpilib.getOperatingDirectory()",
     "command": "the package commands2",
     "Hand": "getLeftX(), getRightX(), getLeftY() and getRightY()",
-    "getX": "getLeftX() or getRightX()",
-    "getY": "getLeftY() or getRightY()",
+    "GenericHID.getX": "getLeftX() or getRightX()",
+    "GenericHID.getY": "getLeftY() or getRightY()",
+    "GenericHID.POV": "getPOV(), an angle in degrees: 0 is up, 90 right, and -1 that none is pressed",
+    "Timer.delay": "timer.get() or hasElapsed(seconds), asked each time: a robot that waits does nothing else",
+    "PWMMotorController.follow": "LEADER.addFollower(FOLLOWER)",
+    "DutyCycleEncoder.getAbsolutePosition": "get(), in turns from 0 to 1",
+    "AnalogEncoder.getAbsolutePosition": "get(), in turns from 0 to 1",
+    "DutyCycleEncoder.getDistance": "get(), in turns from 0 to 1, and your own factor",
+    "DutyCycleEncoder.setDistancePerRotation": "DutyCycleEncoder(channel, fullRange, expectedZero)",
+    "DutyCycleEncoder.reset": "DutyCycleEncoder(channel, fullRange, expectedZero)",
+    "DifferentialDrive.setRightSideInverted": "setInverted(True) of the right motor",
+    "NetworkTableInstance.getInstance": "ntcore.NetworkTableInstance.getDefault()",
+    "Compressor.start": "enableDigital()",
+    "setClosedLoopControl": "enableDigital() or disable()",
+    "Command.addSequential": "one.andThen(other)",
+    "Command.addParallel": "one.alongWith(other)",
+    "setInterruptible": "withInterruptBehavior(commands2.InterruptionBehavior.kCancelIncoming)",
     "hasPeriodPassed": "hasElapsed(seconds), or advanceIfElapsed(seconds) for something that repeats",
     "getInstance": "the methods of the class itself, such as wpilib.DriverStation.isEnabled()",
     "addDefault": "setDefaultOption",
@@ -90,12 +109,36 @@ GONE = {
     "getPIDController": "getClosedLoopController",
     "setSmartCurrentLimit": _spark("smartCurrentLimit(40)"),
     "setIdleMode": _spark("setIdleMode(rev.SparkMaxConfig.IdleMode.kBrake)"),
+    "SparkBase.follow": _spark("follow(LEADER)"),
+    "setOpenLoopRampRate": _spark("openLoopRampRate(0.5)"),
+    "enableVoltageCompensation": _spark("voltageCompensation(12)"),
+    "setPositionConversionFactor": _spark("encoder.positionConversionFactor(0.05)"),
+    "setVelocityConversionFactor": _spark("encoder.velocityConversionFactor(0.05)"),
+    "SparkClosedLoopController.setP": _spark("closedLoop.P(0.1)"),
     "restoreFactoryDefaults": _spark("inverted(False)"),
     "burnFlash": _spark("inverted(False)"),
     "AHRS_SPI": "navx.AHRS.create_spi()",
     "WPI_TalonFX": "phoenix6.hardware.TalonFX",
     "NetworkTables": "ntcore.NetworkTableInstance.getDefault()",
+    # pyfrc: words of WPILib, where the fixtures have those of 2019
+    "TestController.set_teleop": "control.set_operator_control(enabled=True)",
+    "TestController.set_teleoperated": "control.set_operator_control(enabled=True)",
+    "TestController.set_disabled": "control.set_operator_control(enabled=False)",
+    "TestController.enable": "control.set_operator_control(enabled=True) or control.set_autonomous(enabled=True)",
+    "TestController.disable": "control.set_operator_control(enabled=False)",
+    "FakeTime.sleep": "fake_time.increment_time_by(seconds), or control.step_timing(...) for a robot that runs",
 }
+
+#: How many names are listed.
+_SHOWN = 8
+#: The methods that create what a robot has.
+_AT_START = ("robotInit", "robot_init", "createObjects", "__init__")
+#: The modules of WPILib with classes that robot code often uses.
+_HOMES = (
+    *("wpilib", "wpilib.drive", "wpilib.interfaces", "commands2", "commands2.button", "commands2.sysid", "wpimath"),
+    *(f"wpimath.{each}" for each in (*OF_WPIMATH, "spline", "system", "system.plant", "trajectory", "units")),
+    *("ntcore", "wpilib.simulation", "cscore"),
+)
 
 #: The libraries whose names may be in the table.
 _KNOWN = (
@@ -112,16 +155,25 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     if isinstance(error, UnboundLocalError):
         return _unbound(error, files)
     if isinstance(error, NameError) and error.name:
-        if error.name in _ELSEWHERE:
-            return Explanation(remedy=f"Did you mean {_ELSEWHERE[error.name]}?")
-        frame = users_frame(error, files)
-        known = [*frame[0].f_locals, *frame[0].f_globals, *dir(builtins), *LIBRARIES] if frame else []
-        if close := get_close_matches(error.name, known, n=1, cutoff=0.75):
-            return Explanation(remedy=f"Did you mean {close[0]}?")
-        if frame and error.name in dir(frame[0].f_locals.get("self")):
-            return Explanation(remedy=f"Did you mean self.{error.name}?")
-        return Explanation(remedy=f"Nothing has given {error.name} a value: is it misspelt, or is an import missing?")
+        return _name(error.name, users_frame(error, files))
     return None
+
+
+def _name(name: str, where: tuple[FrameType, int] | None) -> Explanation:
+    if name in _ELSEWHERE and not (name == "this" and where is None):
+        return Explanation(remedy=f"Did you mean {_ELSEWHERE[name]}?")
+    known = [*where[0].f_locals, *where[0].f_globals, *dir(builtins), *LIBRARIES] if where else []
+    if where and name in dir(where[0].f_locals.get("self")):
+        return Explanation(remedy=f"Did you mean self.{name}?")
+    if name == "self":
+        return Explanation(
+            remedy="Only methods with the parameter self have it: move the line into one, such as robotInit."
+        )
+    if home := home_of(name):
+        return Explanation(remedy=f"Is this line missing at the top: from {home} import {name}")
+    if close := get_close_matches(name, known, n=1, cutoff=0.75):
+        return Explanation(remedy=f"Did you mean {close[0]}?")
+    return Explanation(remedy=f"Nothing has given {name} a value: is it misspelt, or is an import missing?")
 
 
 def _unbound(error: UnboundLocalError, files: RobotFiles) -> Explanation | None:
@@ -129,6 +181,13 @@ def _unbound(error: UnboundLocalError, files: RobotFiles) -> Explanation | None:
     if found is None or frame is None:
         return None
     name = found[1]
+    robot, statement = frame[0].f_locals.get("self"), statement_at(*frame)
+    if isinstance(statement, ast.AugAssign) and last_name(statement.target) == name and robot is not None:
+        changed = ast.unparse(ast.AugAssign(ast.Name(f"self.{name}"), statement.op, statement.value))
+        before = "" if hasattr(robot, name) else f", and self.{name} = 0 in robotInit or __init__"
+        return Explanation(
+            f"{name} has no value yet: a function forgets its names when it ends", in_2027(f"Write {changed}{before}.")
+        )
     if name in frame[0].f_globals:
         return Explanation(
             remedy=f"Keep the value in the robot, as self.{name}; or write first in the function: global {name}"
@@ -139,39 +198,111 @@ def _unbound(error: UnboundLocalError, files: RobotFiles) -> Explanation | None:
 def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanation | None:
     obj = error.obj
     owner = obj if isinstance(obj, type) else type(obj)
-    module = getattr(obj, "__name__", "") if owner.__module__ == "builtins" else owner.__module__
-    is_library = module.partition(".")[0] in _KNOWN or any(
-        base.__module__.partition(".")[0] in _KNOWN for base in owner.__mro__
+    is_module = owner.__module__ == "builtins" and not isinstance(obj, type)
+    module = getattr(obj, "__name__", "") if is_module else owner.__module__
+    is_library = any(
+        base.partition(".")[0] in (*_KNOWN, "pyfrc_core")
+        for base in (module, *(each.__module__ for each in owner.__mro__))
     )
-    if is_library and name in GONE:
-        what = module if owner.__module__ == "builtins" else owner.__name__
-        return Explanation(f"{what} has no {name} any more", f"Instead: {in_2027(GONE[name])}.")
-    if module in _KNOWN and owner.__module__ == "builtins" and find_spec(f"{module}.{name}") is not None:
+    if is_library and (instead := earlier_name(name, owner)):
+        what = module if is_module else owner.__name__
+        any_more = "" if owner.__module__.startswith("pyfrc_core") else " any more"
+        return Explanation(f"{what} has no {name}{any_more}", f"Instead: {instead}.")
+    if is_module and module in _KNOWN and find_spec(f"{module}.{name}") is not None:
         return Explanation(remedy=f"Is this line missing at the top: import {module}.{name}")
-    meant = _nearest(name, [each for each in dir(obj) if not each.startswith("__")])
-    if meant:
-        return Explanation(remedy=f"Did you mean {meant}?")
-    if owner.__module__.partition(".")[0] not in ("builtins", *_KNOWN) and not isinstance(obj, type):
-        place, target = place_of_assignment(owner, files, name)
-        if target == name:
-            return Explanation(
-                remedy=f"Write self.{name} = ... in {place}: without self, the name is known there only."
-            )
-        if place:
-            return Explanation(remedy=f"{place} sets {name}, but has not run yet: move it to __init__ or robotInit.")
-        return Explanation(remedy=f"Nothing has set {name}: is the line missing, or is the name misspelt?")
-    return None
+    if is_module and is_library and (home := home_of(name)):
+        return Explanation(remedy=f"{name} is in another module: from {home} import {name}")
+    known = [each for each in dir(obj) if not each.startswith("__")]
+    where = users_frame(error, files)
+    if isinstance(obj, Mapping) and name in obj and where is not None:
+        written = next(ast.unparse(each) for each in _of_attribute(name, *where))
+        return Explanation(f"{written} has no attributes: its values have keys", f"Write {written}[{name!r}]")
+    if isinstance(obj, (int, float, str)):
+        written = next((ast.unparse(each) for each in _of_attribute(name, *where)), "") if where else ""
+        kind = "text" if isinstance(obj, str) else "number" if not isinstance(obj, bool) else "True or False"
+        return Explanation(f"{written or repr(obj)} is {kind} ({obj!r}) and has no {name}", meant(name, known))
+    if words := meant(name, known):
+        return Explanation(remedy=words)
+    if is_module and is_library and (nested := _nested(name, obj)):
+        return Explanation(remedy=f"Did you mean {nested}?")
+    if is_library and not is_module and owner.__module__.partition(".")[0] in (*_KNOWN, "pyfrc_core"):
+        members = dict.fromkeys(
+            each for base in owner.__mro__ for each in sorted(vars(base)) if each[0] != "_" and base is not object
+        )
+        return Explanation(
+            remedy=f"It has: {', '.join(list(members)[:_SHOWN])}{', ...' if len(members) > _SHOWN else ''}"
+        )
+    if owner.__module__.partition(".")[0] in ("builtins", *_KNOWN) or isinstance(obj, type):
+        return None
+    place, target, method = place_of_assignment(owner, files, name)
+    if target == name:
+        return Explanation(remedy=f"Write self.{name} = ... in {place}: without self, the name is known there only.")
+    if place and method in _AT_START and where is not None and not files.is_robot_code(where[0].f_code.co_filename):
+        text = (
+            f"the robot does not have {name} yet: {method} sets it ({place}), which runs when the test runs the robot"
+        )
+        return Explanation(text, "Read it after control.run_test(...), or inside: with control.run_robot():")
+    if place:
+        return Explanation(
+            remedy=in_2027(f"{place} sets {name}, but has not run yet: move it to __init__ or robotInit.")
+        )
+    return Explanation(remedy=f"Nothing has set {name}: is the line missing, or is the name misspelt?")
+
+
+def _of_attribute(name: str, frame: FrameType, line: int) -> Iterator[ast.expr]:
+    """Yield what stands before an attribute of this name in a statement."""
+    for each in ast.walk(statement_at(frame, line)):
+        if isinstance(each, ast.Attribute) and each.attr == name:
+            yield each.value
+
+
+def earlier_name(name: str, owner: type) -> str:
+    """Return what replaces a name of earlier seasons in a class; empty if none is known."""
+    keys = [f"{base.__name__}.{name}" for base in owner.__mro__] + [name]
+    return next((in_2027(GONE[key]) for key in keys if key in GONE), "")
+
+
+def home_of(name: str) -> str:
+    """Return the module of WPILib that has a class or function of this name; empty if none has."""
+    for module in _HOMES if name[:1].isupper() else ():
+        try:
+            if find_spec(module) is not None and hasattr(import_module(module), name):
+                return module
+        except ImportError:  # the package is not installed
+            continue
+    return ""
+
+
+def _nested(name: str, module: object) -> str:
+    """Return the path of a name that is inside a class of a module, such as ``wpilib.Alert.AlertType``."""
+    for cls in vars(module).values():
+        if isinstance(cls, type) and name in vars(cls):
+            return f"{getattr(module, '__name__', '')}.{cls.__name__}.{name}"
+    return ""
 
 
 def _import(name: str, module: str) -> Explanation:
     if module.partition(".")[0] in _KNOWN and name in GONE:
         return Explanation(f"{module} has no {name} any more", f"Instead: {in_2027(GONE[name])}.")
     known = [each for each in dir(sys.modules.get(module)) if not each.startswith("_")]
-    meant = _nearest(name, known)
-    return Explanation(f"{module} has no {name}", f"Did you mean {meant}?" if meant else "Is the name right?")
+    if home := home_of(name):
+        return Explanation(f"{module} has no {name}", f"Write: from {home} import {name}")
+    return Explanation(f"{module} has no {name}", meant(name, known) or "Is the name right?")
 
 
-def _nearest(name: str, known: list[str]) -> str:
-    """Return a name that differs in case, or in a letter or two."""
-    same = next((each for each in known if each.lower().replace("_", "") == name.lower().replace("_", "")), "")
-    return same or next(iter(get_close_matches(name, known, n=1, cutoff=0.75)), "")
+def meant(name: str, known: list[str]) -> str:
+    """Return a question with the names that were probably meant: those that differ in a letter or two, or in order of
+    words, or that have its words among others; empty if there are none.
+    """
+    same = [each for each in known if each.lower().replace("_", "") == name.lower().replace("_", "")]
+    words = _words(name)
+    same = same or [each for each in known if sorted(_words(each)) == sorted(words)]
+    close = same[:1] or get_close_matches(name, known, n=1, cutoff=0.75)
+    close = close or [each for each in known if set(words) <= set(_words(each, whole=True)) and each[0] != "_"]
+    return f"Did you mean {' or '.join(close[:_SHOWN])}?" if words and close else ""
+
+
+def _words(name: str, whole: bool = False) -> list[str]:
+    """Return the words of a name, in lower case, without what says only that it returns or sets something."""
+    words = [each.lower() for each in re.findall(r"[A-Z]{2,}(?![a-z])|[A-Z]?[a-z]+|[A-Z]|\d+", name)]
+    return [each for each in words if whole or each not in ("get", "is", "k")] or words

@@ -22,10 +22,10 @@ from .places import imported_name
 _TELEMETRY = "the modules telemetry (to show values) and tunables (to set them)"
 
 #: Modules of 2026, and the module that has their names in 2027.
-_OF_WPIMATH = ("controller", "estimator", "filter", "geometry", "interpolation", "kinematics", "optimization", "path")
+OF_WPIMATH = ("controller", "estimator", "filter", "geometry", "interpolation", "kinematics", "optimization", "path")
 _MODULES_OF_2026 = {
     **dict.fromkeys(("wpilib.drive", "wpilib.event", "wpilib.interfaces"), "wpilib"),
-    **{f"wpimath.{each}": "wpimath" for each in (*_OF_WPIMATH, "spline", "system", "system.plant", "trajectory")},
+    **{f"wpimath.{each}": "wpimath" for each in (*OF_WPIMATH, "spline", "system", "system.plant", "trajectory")},
     "wpimath.trajectory.constraint": "wpimath",
     "wpilib.shuffleboard": _TELEMETRY,
     "wpiutil.log": "wpilog",

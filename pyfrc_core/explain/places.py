@@ -92,6 +92,12 @@ def is_in_opmode(file: str, line: int) -> bool:
     )
 
 
+def is_in_while(file: str, line: int) -> bool:
+    """Return whether a line of a file is in a ``while``, or is its first line."""
+    loops = [each for each in ast.walk(parsed(file)) if isinstance(each, ast.While)]
+    return any(each.lineno <= line <= (each.end_lineno or 0) for each in loops)
+
+
 def users_frame(error: BaseException, files: RobotFiles) -> tuple[FrameType, int] | None:
     """Return the frame of the robot's code, or else of a test, nearest to where an error was raised, and its line."""
     found: dict[bool, tuple[FrameType, int]] = {}
@@ -105,24 +111,36 @@ def users_frame(error: BaseException, files: RobotFiles) -> tuple[FrameType, int
 
 
 def statement_at(frame: FrameType, line: int) -> ast.AST:
-    """Return the innermost statement at a line of a file, or the expression of an if, while or return."""
+    """Return the innermost statement at a line of a file; of an if, while, for or with, the expression in its head."""
     found: ast.AST = ast.Module([], [])
     for node in ast.walk(parsed(frame.f_code.co_filename)):
         if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or 0):
             found = node  # the inner ones come later
-    test = getattr(found, "test", None)
-    return test if isinstance(test, ast.expr) else found
+    if isinstance(found, (ast.With, ast.AsyncWith)):
+        return ast.Tuple([item.context_expr for item in found.items])
+    head = getattr(found, "test", None) or getattr(found, "iter", None)
+    return head if isinstance(head, ast.expr) else found
 
 
-def place_of_assignment(cls: type[Any], files: RobotFiles, name: str) -> tuple[str, str]:
-    """Return where a method of a class assigns a name, and what it assigns to: ``self.arm`` or ``arm``."""
+def place_of_assignment(cls: type[Any], files: RobotFiles, name: str) -> tuple[str, str, str]:
+    """Return where a method of a class assigns a name, what it assigns to (``self.arm`` or ``arm``), and the method."""
     file = file_of(cls, files)
     classes = [each for each in ast.walk(parsed(file)) if isinstance(each, ast.ClassDef)] if file is not None else []
-    for node in (each for found in classes if found.name == cls.__name__ for each in ast.walk(found)):
-        for target in node.targets if isinstance(node, ast.Assign) else []:
-            if last_name(target) == name and file is not None:
-                return f"{files.relative(file)}:{target.lineno}", ast.unparse(target)
-    return "", ""
+    for method in (each for found in classes if found.name == cls.__name__ for each in found.body):
+        for node in ast.walk(method):
+            for target in node.targets if isinstance(node, ast.Assign) else []:
+                if last_name(target) == name and file is not None:
+                    place = f"{files.relative(file)}:{target.lineno}"
+                    return place, ast.unparse(target), getattr(method, "name", "")
+    return "", "", ""
+
+
+def robot_trees(files: RobotFiles) -> Iterator[tuple[str, ast.Module]]:
+    """Yield the name and the syntax tree of each imported file of the robot."""
+    for module in list(sys.modules.values()):
+        file = str(getattr(module, "__file__", ""))
+        if file and files.is_robot_code(file):
+            yield files.relative(file), parsed(file)
 
 
 def calls_at(frame: FrameType, line: int, name: str) -> list[ast.Call]:
@@ -133,13 +151,23 @@ def calls_at(frame: FrameType, line: int, name: str) -> list[ast.Call]:
     ]
 
 
-def value_of(expression: ast.expr, frame: FrameType) -> Any:
-    """Return the value of a dotted name, such as ``self.timer.get``; None for other expressions."""
+#: The value of an expression that is not looked up.
+UNKNOWN = object()
+
+
+def looked_up(expression: ast.expr, frame: FrameType) -> Any:
+    """Return the value of a dotted name, such as ``self.timer.get``; `UNKNOWN` for other expressions."""
     if isinstance(expression, ast.Attribute):
-        return getattr(value_of(expression.value, frame), expression.attr, None)
+        return getattr(looked_up(expression.value, frame), expression.attr, UNKNOWN)
     if isinstance(expression, ast.Name):
-        return frame.f_locals.get(expression.id, frame.f_globals.get(expression.id))
-    return None
+        return frame.f_locals.get(expression.id, frame.f_globals.get(expression.id, UNKNOWN))
+    return UNKNOWN
+
+
+def value_of(expression: ast.expr, frame: FrameType) -> Any:
+    """Return the value of a dotted name; None for other expressions."""
+    value = looked_up(expression, frame)
+    return None if value is UNKNOWN else value
 
 
 def last_name(expression: ast.expr) -> str:

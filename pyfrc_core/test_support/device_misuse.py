@@ -1,4 +1,5 @@
-"""Warn of what devices get from robot code that raises no error here: NaN as a speed, one CAN ID for two devices."""
+"""Warn of what robot code does with objects that raises no error here: NaN as a speed, one CAN ID for two devices,
+a motor as the requirement of a command."""
 
 from __future__ import annotations
 
@@ -50,6 +51,22 @@ class _Misuse:
             # Talons of all models are of one kind on the bus.
             key = lambda id, model, bus: (id, bus.name, "talon" if "talon" in model.lower() else model)  # noqa: E731
             yield Patch(device, "__init__", self._counted(device.__init__, key))
+
+        if (commands2 := sys.modules.get("commands2")) is not None:
+            command, subsystem = commands2.Command, commands2.Subsystem
+            for name in {"addRequirements", "add_requirements"} & set(vars(command)):
+                yield Patch(command, name, self._requiring(getattr(command, name), subsystem))
+
+    def _requiring(self, real: Callable[..., None], subsystem: type[Any]) -> Callable[..., None]:
+        def addRequirements(command: object, *requirements: object) -> None:
+            __tracebackhide__ = True
+            real(command, *requirements)
+            for each in requirements:
+                if not isinstance(each, subsystem):
+                    text = "is no subsystem: other commands can use it at the same time. Require its subsystem."
+                    self._warn(f"the requirement {type(each).__name__} {text}")
+
+        return addRequirements
 
     def _counted(self, real: Callable[..., None], key_of: Callable[..., tuple[Any, ...]]) -> Callable[..., None]:
         def __init__(device: object, *args: Any, **kwargs: Any) -> None:

@@ -151,7 +151,7 @@ class PyFrcPlugin(WatchedTests):
     def physics_controller(self, _physics: Physics | None, robot: object) -> PhysicsInterface:
         """The object with which your ``physics.py`` moves the robot; it knows the robot's position on the field."""
         if _physics is None:
-            raise ProjectError(NO_PHYSICS, where=self.project.root)
+            raise ProjectError(NO_PHYSICS, where=self.project.root, remedy=self.project.how_to_get_physics)
         return _physics.controller
 
     @pytest.fixture

@@ -19,6 +19,7 @@ import pytest
 from ..compat.library_output import LibraryOutput
 from ..compat.unrepeatable import explain_unrepeatable
 from ..project import Project
+from ..repeated_lines import shortened
 from ..runtime.checks.code_checks import find_code_warnings
 from .device_misuse import DeviceWarning
 from .reporting import BUG, UNREPEATABLE, put_first
@@ -130,9 +131,13 @@ def _shorten_output(stats: dict[str, list[object]]) -> None:
 
 
 def _end_of(text: str, room: int) -> str:
-    lines = text.splitlines(keepends=True)
+    lines = shortened(text).splitlines(keepends=True)
     left_out = len(lines) - room
-    return text if left_out <= 1 else f"({left_out} lines before these: pyfrc test -v)\n" + "".join(lines[left_out:])
+    return (
+        "".join(lines)
+        if left_out <= 1
+        else f"({left_out} lines before these: pyfrc test -v)\n" + "".join(lines[left_out:])
+    )
 
 
 def _explain_each_bug_once(stats: dict[str, list[object]]) -> None:

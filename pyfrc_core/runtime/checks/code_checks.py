@@ -5,20 +5,30 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .code_warning import CodeWarning
+from .enum_values import find_early_reads, find_wrong_comparisons
 from .foreign_paths import find_foreign_paths
 from .misplaced_physics import find_misplaced_physics
 from .misspelled_methods import find_misspelled_methods
+from .no_effect import find_lines_without_effect
 from .opmodes_never_run import find_opmodes_never_run
+from .setting_names import find_misspelled_settings
+from .sources import sources
 
 if TYPE_CHECKING:
     from ...project import Project
 
 
 def find_code_warnings(project: Project) -> list[CodeWarning]:
-    """Return the mistakes in the project's imported modules."""
+    """Return the mistakes in the project's imported modules, and in the names of its settings."""
+    files = list(sources(project))
+    robots = [each for each in files if not each.is_test]
     return [
         *find_misspelled_methods(project),
         *find_opmodes_never_run(project),
-        *find_foreign_paths(project),
         *find_misplaced_physics(project),
+        *find_foreign_paths(robots),
+        *find_lines_without_effect(files),
+        *find_wrong_comparisons(files),
+        *find_early_reads(robots),
+        *find_misspelled_settings(project),
     ]

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import re
-import sys
 import threading
-from types import CodeType, ModuleType
 
 from ...errors import PyfrcError, RobotCodeError, UsageError, text_of
 from ...explain import Explanation, explain
@@ -56,14 +54,9 @@ def headline(error: BaseException, files: RobotFiles) -> str | None:
     """
     if names_its_place(error) or (isinstance(error, TestFroze) and str(error)):
         return str(error)
-    method = _method_of(error, files)
-    if method is not None and _lacks_self(method, error):
-        return f"{_line_of(method, files)}: {_without_self(method)}"
     traceback = error.__traceback__
     explained = explain(error, files) or Explanation()
-    users = files.innermost_line(traceback, tests=False)
-    place = _line_of(method, files) if method is not None and users is None else explained.place
-    line = place or users
+    line = explained.place or files.innermost_line(traceback, tests=False)
     text = explained.text or text_of(error)
     if not line and (cls := users_class(error, files)) is not None:
         line, text = line_of_class(cls, files), with_library_calls(text, error, files)
@@ -126,36 +119,3 @@ def names_its_place(error: BaseException) -> bool:
 
 def _ours(entry: re.Match[str], files: RobotFiles) -> str:
     return entry[0] if files.is_project_file(entry[1]) else ""
-
-
-def _method_of(error: BaseException, files: RobotFiles) -> CodeType | None:
-    """The robot's method that could not even be called, as when its `self` was forgotten."""
-    found = re.match(r"TypeError: (\w+)\.(\w+)\(\) (?:takes|missing|got)", text_of(error))
-    if found is None:
-        return None
-    for module in list(sys.modules.values()):
-        owner = vars(module).get(found[1]) if isinstance(module, ModuleType) else None
-        function = vars(owner).get(found[2]) if isinstance(owner, type) else None
-        code = getattr(function, "__code__", None)  # a static method has none
-        if isinstance(code, CodeType) and files.is_robot_code(code.co_filename):
-            return code
-    return None
-
-
-def _line_of(method: CodeType, files: RobotFiles) -> str:
-    return f"{files.relative(method.co_filename)}:{method.co_firstlineno}"
-
-
-def _lacks_self(method: CodeType, error: BaseException) -> bool:
-    """Whether it was called with one argument more than it takes, and its first parameter is no `self`."""
-    counts = re.search(r"takes (\d+) positional arguments? but (\d+) w", str(error))
-    if counts is None or int(counts[2]) != int(counts[1]) + 1:
-        return False
-    return method.co_varnames[: method.co_argcount][:1] not in {("self",), ("cls",), ("this",)}
-
-
-def _without_self(method: CodeType) -> str:
-    written = ", ".join(method.co_varnames[: method.co_argcount])
-    corrected = ", ".join(["self", *method.co_varnames[: method.co_argcount]])
-    name = method.co_name
-    return f"the method {name}({written}) has no parameter self: write def {name}({corrected}):"

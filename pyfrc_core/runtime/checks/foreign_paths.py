@@ -9,15 +9,10 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
-from pathlib import Path
-from typing import TYPE_CHECKING
 
-from ...project.loaded_modules import loaded_modules
 from ...season import CURRENT
 from .code_warning import CodeWarning
-
-if TYPE_CHECKING:
-    from ...project import Project
+from .sources import Source
 
 #: The functions that write the file or directory of an argument: its name as a keyword. `open` depends on the mode.
 _WRITERS = {
@@ -29,30 +24,18 @@ _WRITERS = {
 #: Those whose argument is a path only for these classes; `start` is the name of many methods.
 _OWNERS = {"start": "DataLogManager", "set_path": "SignalLogger"}
 _READERS = ("open", "Path", "read_text", "read_bytes")
-_MAY_OPEN = re.compile(rb"\b(open|Path|\w*FileHandler|basicConfig|mkdir|makedirs|start|set_path)\(")
-
 _WRITABLE = (f"{CURRENT.controller.home}/", "/tmp/", "/var/tmp/", "/media/", "/u/", "/U/", "/dev/", "/proc/", "/sys/")
 _OF_A_LAPTOP = re.compile(r"[A-Za-z]:[\\/]|/Users/|/home/(?!lvuser/)|~/(?:Desktop|Documents|Downloads)/")
 
 
-def find_foreign_paths(project: Project) -> list[CodeWarning]:
-    """Return the paths in the project's imported modules that a robot does not have or may not write."""
-    found: list[CodeWarning] = []
-    for module in loaded_modules.look():
-        file = str(module.__file__)
-        if project.files.is_robot_code(file) and Path(file) != project.physics_file:
-            found += _in_file(Path(file), project)
-    return found
+def find_foreign_paths(sources: list[Source]) -> Iterator[CodeWarning]:
+    """Yield the paths in the robot's files that a robot does not have or may not write."""
+    for source in sources:
+        yield from _in_file(source)
 
 
-def _in_file(file: Path, project: Project) -> Iterator[CodeWarning]:
-    try:
-        source = file.read_bytes()
-        if not _MAY_OPEN.search(source):
-            return
-        tree = ast.parse(source)
-    except (OSError, SyntaxError, ValueError):  # it was changed since it was imported
-        return
+def _in_file(source: Source) -> Iterator[CodeWarning]:
+    tree = source.tree
     assigned = {
         target.id: node.value
         for node in tree.body
@@ -67,7 +50,7 @@ def _in_file(file: Path, project: Project) -> Iterator[CodeWarning]:
             argument = assigned.get(argument.id, argument)
         if not isinstance(argument, ast.Constant) or not isinstance(argument.value, str):
             continue
-        path, where = argument.value, f"{project.files.relative(str(file))}:{call.lineno}"
+        path, where = argument.value, source.at(call)
         writes = _writes(name, owner, call)
         if (writes or name in _READERS) and _OF_A_LAPTOP.match(path):
             text = f"{path} is a path of this computer, which the robot does not have"
@@ -81,13 +64,29 @@ def _in_file(file: Path, project: Project) -> Iterator[CodeWarning]:
 
 
 def _calls_on_robot(node: ast.AST) -> Iterator[ast.Call]:
-    """Yield the calls in a part of a program, without those for the simulator."""
-    for child in ast.iter_child_nodes(node):
-        if isinstance(child, ast.If) and "isSimulation()" in ast.unparse(child.test):
-            continue
-        if isinstance(child, ast.Call):
-            yield child
+    """Yield the calls in a part of a program, without those that run in the simulator only."""
+    if isinstance(node, ast.Call):
+        yield node
+    children: list[ast.AST] = list(ast.iter_child_nodes(node))
+    if isinstance(node, (ast.If, ast.IfExp)):
+        children = [node.test]
+        for part, runs in zip((node.body, node.orelse), _on_robot(node.test), strict=True):
+            children += (part if isinstance(part, list) else [part]) if runs else []
+    for child in children:
         yield from _calls_on_robot(child)
+
+
+def _on_robot(test: ast.expr) -> tuple[bool, bool]:
+    """Return whether what an if with this condition encloses, and its else, may run on the robot."""
+    if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
+        return _on_robot(test.operand)[::-1]
+    if isinstance(test, ast.BoolOp):
+        parts = [_on_robot(each) for each in test.values]
+        is_and = isinstance(test.op, ast.And)
+        bodies, others = [body for body, _ in parts], [other for _, other in parts]
+        return (all(bodies), any(others)) if is_and else (any(bodies), all(others))
+    name = _names(test.func)[0].replace("_", "").lower() if isinstance(test, ast.Call) else ""
+    return name != "issimulation", name != "isreal"
 
 
 def _names(function: ast.expr) -> tuple[str, str]:

@@ -20,8 +20,10 @@ from typing import TYPE_CHECKING
 
 from ...compat.c_calls import raise_in_thread
 from ...compat.cpython_private import allocate_lock, current_frames, start_bare_thread
+from ...explain.places import is_in_while
 from ...processes.exit import EXIT_HANGS, exit_now, prepare_sudden_exit
 from ...processes.standstill import Standstill, StandstillNotice
+from ...wpi import names
 from ..exceptions import TestFroze
 from ..patches.active_run import Run, active_run
 from ..threads.thread_cpu import ThreadTimes
@@ -181,7 +183,7 @@ class HangDetector:
                 continue
             elapsed, used = _wall() - wall, max(0.0, times.cpu() - cpu)
             stood.seconds += min(elapsed, 2 * self._look_seconds)
-            ident, place, imports = self._place(ident)
+            ident, place, imports = self._place(ident, used > _COMPUTING * elapsed)
             # This thread holds Python's lock while it waits for a processor.
             starved_now = _sum(times.starved(), me.starved())
             if starved is not None and starved_now is not None:
@@ -237,20 +239,25 @@ class HangDetector:
         running = self._running  # asked once: the code may stop running meanwhile
         return self._watched if running is None else running.threads.whose_turn()
 
-    def _place(self, ident: int) -> tuple[int, str, bool]:
-        """Return the thread that stands, the user's line, and whether that imports a library."""
+    def _place(self, ident: int, computes: bool) -> tuple[int, str, bool]:
+        """Return the thread that stands, the user's line, and whether that imports a library.
+
+        Of code that computes, the line is in the function with the loop that does not end, and not in what that calls.
+        """
         if self._running is None and self.outside is not None:
             ident = self.outside
         imports = False
-        frame = current_frames().get(ident)
-        innermost = frame
+        frame = innermost = current_frames().get(ident)
+        lines: list[str] = []
         while frame is not None and self._files is not None:
             if (line := self._files.line_of_frame(frame)) is not None:
-                return ident, line, imports
-            imports = imports or frame.f_code.co_filename.startswith(_IMPORT)
+                lines.append(line)
+                if computes and is_in_while(frame.f_code.co_filename, frame.f_lineno):
+                    return ident, line if frame.f_code.co_name != names.MAIN else lines[0], imports
+            imports = imports or (not lines and frame.f_code.co_filename.startswith(_IMPORT))
             frame = frame.f_back
         known = f"{innermost.f_code.co_filename}:{innermost.f_lineno}" if innermost is not None else "unknown"
-        return ident, known, imports
+        return ident, next(iter(lines), known), imports
 
     def _tell(self, standstill: Standstill | None) -> None:
         """Write where the code stands, for those who wait for it."""
@@ -287,8 +294,8 @@ class HangDetector:
         if computes:
             what = f"{who} hangs here{stands} through {seconds} of computing"
             advice = (
-                "Is it an endless loop? Write if instead of while: WPILib calls a periodic method every 20 ms. "
-                "In a thread of its own, a loop must sleep or wait()."
+                "Is it an endless loop? Write if instead of while: WPILib calls a periodic method, and execute() of a "
+                "command, every 20 ms. In a thread of its own, a loop must sleep or wait()."
             )
         else:
             what = f"{who} is blocked here{stands} for {seconds}, waiting for the world outside"

@@ -10,6 +10,7 @@ from ...display import has_terminal
 from ...errors import UsageError
 from ...physics.pose import METRES_PER_FOOT
 from ...processes.standstill import StandstillNotice
+from ...repeated_lines import RepeatedLines
 from ...runtime.match import MatchPeriods
 from ...runtime.robot_time import PACKET_US, to_us
 from ..engine.commands import ChosenMode
@@ -113,6 +114,7 @@ class Headless(FrontEnd):
         self._watching = watching
         self._simulation: Simulation | None = None
         self._output: OutputCursor | None = None
+        self._lines = RepeatedLines()
         #: Whether the robot's output has ended a line.
         self._at_line_start = True
         self._reported: Failure | None = None
@@ -144,6 +146,7 @@ class Headless(FrontEnd):
             status.late_packets,
         )
         self._print(simulation)
+        self._show(self._lines.end())
         if not self._quiet:
             for line in self.summary.lines():
                 self._say_line(line)
@@ -231,10 +234,14 @@ class Headless(FrontEnd):
         self._say(f"{text}\n" if self._at_line_start else f"\n{text}\n")
         self._at_line_start = True
 
-    def _print(self, simulation: Simulation) -> None:
-        if self._output is not None and (output := self._output.read()):
+    def _show(self, output: str) -> None:
+        if output:
             self._say(output)
             self._at_line_start = output.endswith("\n")
+
+    def _print(self, simulation: Simulation) -> None:
+        if self._output is not None and (output := self._lines.feed(self._output.read())):
+            self._show(output)
         status = simulation.status
         if status.note not in ("", self._noted):
             self._noted = status.note

@@ -1,0 +1,103 @@
+"""Find values of the driver station and of devices that are compared with what they never are, or read too early.
+
+``DriverStation.getAlliance() == "Red"`` is always False, and in `robotInit` there is no alliance yet.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator
+from difflib import get_close_matches
+from functools import cache
+from typing import Any
+
+from ...explain.alliance import READ_LATER, UNKNOWN_AT_FIRST
+from ...explain.other_season import in_2027
+from ...explain.places import last_name
+from ...explain.returned import class_of, returned_type
+from ...wpi import names
+from .code_warning import CodeWarning
+from .sources import Source
+
+_AT_START = ("robotInit", "robot_init", "createObjects")
+_STARTED_AT_ONCE = ("Robot", "Subsystem", "SubsystemBase", "Container")
+
+
+def find_wrong_comparisons(sources: list[Source]) -> Iterator[CodeWarning]:
+    """Yield comparisons of an enum's value with a text or a number."""
+    for source in sources:
+        held = {
+            last_name(target): last_name(node.value.func)
+            for node in ast.walk(source.tree)
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call)
+            for target in node.targets
+        }
+        for node in ast.walk(source.tree):
+            if not isinstance(node, ast.Compare):
+                continue
+            constants = [each for side in (node.left, *node.comparators) for each in _constants(side)]
+            for side in (node.left, *node.comparators) if constants else ():
+                function = last_name(side.func) if isinstance(side, ast.Call) else held.get(last_name(side), "")
+                if (enum := _enums().get(function)) is not None:
+                    yield _never_equal(enum, constants[0], source.at(node))
+
+
+def _constants(side: ast.expr) -> list[str | int]:
+    """Return the texts and numbers of one side of a comparison, which may be a list of them."""
+    items = side.elts if isinstance(side, (ast.List, ast.Tuple, ast.Set)) else [side]
+    return [each.value for each in items if isinstance(each, ast.Constant) and isinstance(each.value, (str, int))]
+
+
+def _never_equal(enum: type[Any], value: str | int, place: str) -> CodeWarning:
+    path = f"{enum.__module__.replace('._wpilib', '')}.{enum.__qualname__}"
+    members = {each.lower(): each for each in enum.__members__}
+    close = get_close_matches(f"k{value}".lower(), members, n=1) or get_close_matches(str(value).lower(), members, n=1)
+    instead = f"{path}.{members[close[0]]}" if close else f"one of {path}: {', '.join(members.values())}"
+    kind = "text" if isinstance(value, str) else "number"
+    return CodeWarning(
+        place, f"a value of {enum.__qualname__} is never equal to the {kind} {value!r}", f"Write {instead}"
+    )
+
+
+@cache
+def _enums() -> dict[str, type[Any]]:
+    """Return the enums that functions of WPILib return, by the function's name, if all of this name return one."""
+    found: dict[str, type[Any] | None] = {}
+    for module in [each for name, each in list(sys.modules.items()) if name in names.LIBRARIES]:
+        for cls in [each for each in vars(module).values() if isinstance(each, type)]:
+            for name, function in list(vars(cls).items()):
+                if name[0] != "_" and callable(getattr(cls, name)) and not isinstance(function, type):
+                    enum = class_of(returned_type(getattr(cls, name)))
+                    found[name] = enum if hasattr(enum, "__members__") and found.get(name, enum) is enum else None
+    return {name: enum for name, enum in found.items() if enum is not None}
+
+
+def find_early_reads(sources: list[Source]) -> Iterator[CodeWarning]:
+    """Yield where the alliance is read once, before the driver station is connected."""
+    for source in sources:
+        calls = [each for each in ast.walk(source.tree) if _asks(each)]
+        for cls in (each for each in ast.walk(source.tree) if isinstance(each, ast.ClassDef) and len(calls) == 1):
+            at_once = any(last_name(base).endswith(_STARTED_AT_ONCE) for base in cls.bases)
+            at_once = at_once or cls.name.endswith(_STARTED_AT_ONCE)
+            for method in (each for each in cls.body if isinstance(each, ast.FunctionDef)):
+                if method.name not in _AT_START and not (method.name == "__init__" and at_once):
+                    continue
+                looks = any(isinstance(each, ast.Constant) and each.value is None for each in ast.walk(method))
+                for call in (each for each in _at_once(method) if _asks(each) and not looks):
+                    what = UNKNOWN_AT_FIRST[last_name(call.func)]
+                    text = f"the {what} is not known yet in {method.name}: {last_name(call.func)}() is None"
+                    text += " until the driver station is connected"
+                    yield CodeWarning(source.at(call), text, in_2027(READ_LATER))
+
+
+def _asks(node: ast.AST) -> bool:
+    return isinstance(node, ast.Call) and last_name(node.func) in UNKNOWN_AT_FIRST
+
+
+def _at_once(node: ast.AST) -> Iterator[Any]:
+    """Yield the nodes of a function, without the functions that are made in it and called later."""
+    for child in ast.iter_child_nodes(node):
+        if not isinstance(child, (ast.Lambda, ast.FunctionDef)):
+            yield child
+            yield from _at_once(child)

@@ -1,0 +1,140 @@
+"""Find lines that do nothing, or something else than they say, without an error.
+
+Such as ``self.command.schedule`` without its brackets, a comparison that is no assertion, and ``if self.beam.get:``.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator
+from functools import cache
+from inspect import isfunction, isroutine
+
+from ...explain.places import last_name
+from ...wpi import names
+from .code_warning import CodeWarning
+from .sources import Source
+
+#: Code in these may only look whether an error is raised.
+_EXPECTING = frozenset({"raises", "suppress", "warns"})
+
+
+def find_lines_without_effect(sources: list[Source]) -> Iterator[CodeWarning]:
+    assigned = {name for source in sources for name in _assigned(source.tree)}
+    methods = {name for source in sources for name in _methods(source.tree)} - assigned
+    for source in sources:
+        for node in _nodes(source.tree):
+            if isinstance(node, ast.Expr):
+                yield from _of_expression(node.value, source)
+            elif isinstance(node, ast.Assign):
+                yield from _of_assignment(node, source)
+            elif isinstance(node, (ast.If, ast.While, ast.IfExp, ast.Assert)):
+                for each in _conditions(node.test):
+                    name = last_name(each)
+                    if name in methods or (name not in assigned and name in _library_methods()):
+                        written = ast.unparse(each)
+                        text = f"{written} is a function, which counts as true whatever it would return"
+                        yield CodeWarning(source.at(each), text, f"Write {written}()")
+        yield from _replaced_methods(source)
+
+
+def _nodes(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield the nodes of a file, without those where an error is expected."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.Try) and child.handlers:
+            continue
+        if isinstance(child, ast.With) and any(
+            isinstance(item.context_expr, ast.Call) and last_name(item.context_expr.func) in _EXPECTING
+            for item in child.items
+        ):
+            continue
+        yield child
+        yield from _nodes(child)
+
+
+def _of_expression(value: ast.expr, source: Source) -> Iterator[CodeWarning]:
+    """Yield what is wrong with an expression that is a statement of its own."""
+    written = ast.unparse(value)
+    if isinstance(value, ast.Compare):
+        is_equal = isinstance(value.ops[0], ast.Eq) and len(value.ops) == 1
+        change = f"To set it, write one =: {ast.unparse(value.left)} = ..." if is_equal else "Write if before it."
+        text = "this comparison does nothing: no one looks at its result"
+        yield CodeWarning(source.at(value), text, f"Write assert {written}" if source.is_test else change)
+    elif isinstance(value, ast.Attribute) or (isinstance(value, ast.Name) and isfunction(_global(value, source))):
+        yield CodeWarning(source.at(value), f"{written} does nothing: it is not called", f"Write {written}()")
+    elif isinstance(value, ast.BinOp) and isinstance(value.op, (ast.Add, ast.Sub, ast.Mult, ast.Div)):
+        text = f"{written} is computed, and nothing is done with it"
+        yield CodeWarning(source.at(value), text, f"To set it, write: {ast.unparse(value.left)} = {written}")
+
+
+def _of_assignment(node: ast.Assign, source: Source) -> Iterator[CodeWarning]:
+    """Yield ``speed =+ 1``."""
+    value, target = node.value, node.targets[0]
+    if not isinstance(value, ast.UnaryOp) or not isinstance(value.op, (ast.UAdd, ast.USub)):
+        return
+    sign = "+" if isinstance(value.op, ast.UAdd) else "-"
+    joined = value.lineno == target.end_lineno and value.col_offset - (target.end_col_offset or 0) in (1, 2)
+    if joined and (sign == "+" or value.operand.col_offset > value.col_offset + 1):
+        text = f"={sign} sets {ast.unparse(target)} to {ast.unparse(value)}, and does not change it by that"
+        yield CodeWarning(source.at(node), text, f"Write {ast.unparse(target)} {sign}= {ast.unparse(value.operand)}")
+
+
+def _conditions(test: ast.expr) -> Iterator[ast.expr]:
+    """Yield the attributes whose truth a condition asks for, or that it compares with a constant."""
+    if isinstance(test, ast.BoolOp):
+        for each in test.values:
+            yield from _conditions(each)
+    elif isinstance(test, ast.UnaryOp):
+        yield from _conditions(test.operand)
+    elif isinstance(test, ast.Compare) and all(
+        isinstance(each, ast.Constant) and each.value is not None for each in test.comparators
+    ):
+        yield from _conditions(test.left)
+    elif isinstance(test, ast.Attribute):
+        yield test
+
+
+def _replaced_methods(source: Source) -> Iterator[CodeWarning]:
+    """Yield ``self.isFinished = True`` in a class that has a method of this name."""
+    for definition in (each for each in source.tree.body if isinstance(each, ast.ClassDef)):
+        cls = vars(source.module).get(definition.name)
+        for node in ast.walk(definition):
+            if not isinstance(node, ast.Assign) or not isinstance(node.value, ast.Constant) or node.value.value is None:
+                continue
+            for target in node.targets:
+                if ast.unparse(target).startswith("self.") and isroutine(getattr(cls, last_name(target), None)):
+                    name = last_name(target)
+                    text = f"{ast.unparse(node)} replaces the method {name}: what calls it fails"
+                    yield CodeWarning(
+                        source.at(node), text, f"Write {ast.unparse(target)}(...), or choose another name."
+                    )
+
+
+def _global(name: ast.Name, source: Source) -> object:
+    return vars(source.module).get(name.id)
+
+
+def _assigned(tree: ast.Module) -> Iterator[str]:
+    """Yield the names to which a file assigns something, and those of its properties."""
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Attribute, ast.Name)) and isinstance(node.ctx, ast.Store):
+            yield last_name(node)
+        elif isinstance(node, ast.FunctionDef) and node.decorator_list:
+            yield node.name
+
+
+def _methods(tree: ast.Module) -> Iterator[str]:
+    for cls in (each for each in ast.walk(tree) if isinstance(each, ast.ClassDef)):
+        yield from (each.name for each in cls.body if isinstance(each, ast.FunctionDef))
+
+
+@cache
+def _library_methods() -> frozenset[str]:
+    """Return the names that are methods in each class of the robot's libraries that has them."""
+    found: dict[str, bool] = {}
+    for module in [each for name, each in list(sys.modules.items()) if name.partition(".")[0] in names.LIBRARIES]:
+        for cls in [each for each in vars(module).values() if isinstance(each, type)]:
+            for name, value in list(vars(cls).items()):
+                found[name] = found.get(name, True) and callable(value) and not isinstance(value, type)
+    return frozenset(name for name, is_method in found.items() if is_method)
