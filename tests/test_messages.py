@@ -165,12 +165,14 @@ def test_long_output_of_a_failed_test_is_cut(make_project: MakeProject) -> None:
 
 def test_nan_and_a_can_id_used_twice_are_named(make_project: MakeProject) -> None:
     robot = """
+        import commands2
         import wpilib
 
 
         class MyRobot(wpilib.TimedRobot):
             def robotInit(self):
                 self.motor = wpilib.PWMSparkMax(0)
+                commands2.RunCommand(print, self.motor)
                 self.arm = wpilib.CAN(5)
                 self.claw = wpilib.CAN(5)
                 self.camera = wpilib.CAN(5, 8, 10)
@@ -185,6 +187,7 @@ def test_nan_and_a_can_id_used_twice_are_named(make_project: MakeProject) -> Non
     arm, claw = project.place("robot.py", "self.arm"), project.place("robot.py", "self.claw")
     assert f"{claw}: CAN ID 5 is used already, since {arm}, by a device of the same kind." in result.stdout
     assert f"{project.place('robot.py', 'nan')}: set() gets NaN" in result.stdout
+    assert f"{project.place('robot.py', 'RunCommand')}: the requirement PWMSparkMax is no subsystem" in result.stdout
     section, _, warnings = result.stdout.partition("= mistakes without an error =")[2].partition("warnings summary")
     assert section.count("self.claw") == 0
     assert "CAN ID 5" in section

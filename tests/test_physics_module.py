@@ -484,3 +484,7 @@ def test_asking_for_physics_that_are_not_there(make_project) -> None:
     result = project.run("test")
     assert result.code == 1
     assert "there is no physics.py in this project" in result.output
+    assert "pyfrc create-physics writes one" in result.output
+    (project.path / "sim").mkdir()
+    (project.path / "sim" / "physics.py").touch()
+    assert "Move sim/physics.py beside robot.py." in project.run("test").output.replace("\\", "/")

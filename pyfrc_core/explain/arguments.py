@@ -13,7 +13,8 @@ from ..project.robot_files import RobotFiles
 from ..wording import counted
 from .calls import called_on_class
 from .explanation import Explanation, ask_for
-from .places import calls_at, last_name, robot_trees, users_frame, value_of
+from .places import calls_at, frames_of, last_name, looked_up, robot_trees, users_frame, value_of
+from .returned import class_of
 
 _INCOMPATIBLE = re.compile(
     r"TypeError: (?:\nTypeError: )?(?:\w+\.)*(?P<name>\w+)\(\): incompatible (?:function|constructor) arguments\..*?\n"
@@ -34,12 +35,35 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     text = text_of(error)
     if found := _INCOMPATIBLE.match(text):
         return _incompatible(found, error, files)
+    if isinstance(error, AttributeError) and (explained := _wrong_object(error, files)):
+        return explained
     if isinstance(error, AssertionError) and (explained := _not_callable(error, files)):
         return explained
     if text.startswith("ArgumentError: argument "):
         return _wrong_type(error, files)
     if (found := _CAST.match(text)) and (where := users_frame(error, files)) is not None:
         return _wrong_struct(found["type"], *where)
+    return None
+
+
+def _wrong_object(error: AttributeError, files: RobotFiles) -> Explanation | None:
+    """Explain an object that a library's function has got from the user, and that is of a wrong type."""
+    where = users_frame(error, files)
+    if (
+        where is None
+        or frames_of(error)[-1] is where[0]
+        or files.is_project_file(frames_of(error)[-1].f_code.co_filename)
+    ):
+        return None
+    for call in calls_at(*where, ""):
+        for each in call.args:
+            value = looked_up(each, where[0])
+            if error.obj in (value, getattr(value, "__func__", value)):
+                kind = "None" if error.obj is None else f"a {type(error.obj).__name__}"
+                remedy = (
+                    f"Write {ast.unparse(each)}()" if callable(error.obj) else f"It needs an object with {error.name}."
+                )
+                return Explanation(f"{last_name(call.func)}() got {ast.unparse(each)}, which is {kind}", remedy)
     return None
 
 
@@ -104,6 +128,9 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
         kinds = [form[at].partition(": ")[2].partition(" = ")[0] for form in forms if at < len(form)]
         if not call.keywords and (wrong := _wrong(value, written, kinds)):
             return Explanation(f"{name}() got {wrong[0]}", f"{wrong[1]}\n  It takes: {takes}")
+    classes = [each for path in re.findall(r": ([\w.]+)", found["forms"]) if (each := class_of(path)) is not None]
+    for each in dict.fromkeys(each for each in classes if hasattr(each, "__members__")):
+        takes += f"\n  {each.__qualname__} is one of: {', '.join(each.__members__)}"
     return Explanation(f"{name}() does not take {shown}", f"It takes: {takes}")
 
 

@@ -18,6 +18,8 @@ from .places import (
     calls_at,
     last_name,
     looked_up,
+    parsed,
+    place_of_assignment,
     robot_trees,
     statement_at,
     users_frame,
@@ -38,8 +40,8 @@ _NO_NUMBER = re.compile(
 #: The functions of Python that compute with what they get.
 _COMPUTING = frozenset({"abs", "max", "min", "round", "float", "int", "len", "str", "sum"})
 _COUNT = re.compile(
-    r"TypeError: (?:[\w.<>]+\.)?(?P<name>\w+)\(\) "
-    r"(takes .* positional arguments?|missing \d+ required|got an unexpected keyword argument '(?P<keyword>\w+)')"
+    r"TypeError: (?:[\w.<>]+\.)?(?P<name>\w+)\(\) (takes .* positional arguments?"
+    r"|missing \d+ required[^:]*: (?P<missing>.*)|got an unexpected keyword argument '(?P<keyword>\w+)')"
 )
 
 
@@ -48,12 +50,12 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     where = users_frame(error, files)
     if where is None:
         return None
-    if _OF_A_FUNCTION.match(text) and (explained := _not_called(*where)):
+    if _OF_A_FUNCTION.match(text) and (explained := _not_called(*where, files)):
         return explained
     if text == "TypeError: 'module' object is not callable":
         return _module(*where)
     if text.endswith("object is not callable"):
-        return _called_value(*where)
+        return _called_value(*where, files)
     if found := _READ_ONLY.match(text):
         return _set_method(found[1], *where)
     if found := _NO_NUMBER.match(text):
@@ -63,7 +65,7 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     return None
 
 
-def _not_called(frame: FrameType, line: int) -> Explanation | None:
+def _not_called(frame: FrameType, line: int, files: RobotFiles) -> Explanation | None:
     """Explain a method that is used like its value, such as ``self.timer.get < 2``."""
     statement = statement_at(frame, line)
     calls = [each for each in ast.walk(statement) if isinstance(each, ast.Call)]
@@ -85,11 +87,27 @@ def _not_called(frame: FrameType, line: int) -> Explanation | None:
             instead := earlier_name(each.attr if isinstance(each, ast.Attribute) else "", owner)
         ):
             return Explanation(f"{written} is a function, and not its value", f"Instead: {instead}.")
-        return Explanation(f"{written} is a function, and not its value", f"Write {written}()")
+        place, _, _ = place_of_assignment(type(owner), files, last_name(each))
+        there = f" where it is set ({place})" if place else ""
+        return Explanation(
+            f"{written} is a function, and not its value", f"Write {'()' if there else written + '()'}{there}"
+        )
     return None
 
 
-def _called_value(frame: FrameType, line: int) -> Explanation | None:
+def _called_where(parameter: str, frame: FrameType, line: int, files: RobotFiles) -> str:
+    """Return where the function around a line, with this parameter, is called; empty if that is unknown."""
+    around = [each for each in ast.walk(parsed(frame.f_code.co_filename)) if isinstance(each, ast.FunctionDef)]
+    for each in around:
+        if each.lineno <= line <= (each.end_lineno or 0) and parameter in [arg.arg for arg in each.args.args]:
+            for file, tree in robot_trees(files):
+                for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
+                    if last_name(call.func) == each.name:
+                        return f"{file}:{call.lineno}"
+    return ""
+
+
+def _called_value(frame: FrameType, line: int, files: RobotFiles) -> Explanation | None:
     """Explain ``self.speed()``, where `speed` is a number, and a method that a value has replaced."""
     for call in calls_at(frame, line, ""):
         value, written = looked_up(call.func, frame), ast.unparse(call.func)
@@ -102,6 +120,9 @@ def _called_value(frame: FrameType, line: int) -> Explanation | None:
             text = f"{written} was a method, but something has set it to {value!r}"
             return Explanation(text, f"Search for {last_name(call.func)} = and choose another name there.")
         kind = type(value).__name__
+        if isinstance(call.func, ast.Name) and (place := _called_where(written, frame, line, files)):
+            text = f"{written} must be a function, but is a value ({kind})"
+            return Explanation(text, f"Pass a function there, as in: lambda: {value!r}", place)
         instead = f"{written}[...]" if isinstance(value, (list, tuple, dict)) else written
         return Explanation(f"{written} is a value ({kind}), and no function", f"Write {instead}, without ()")
     return None
@@ -167,13 +188,15 @@ def _count(found: re.Match[str], frame: FrameType, line: int, files: RobotFiles)
         called = value_of(call.func, frame)
         name = ast.unparse(call.func)
         owner = value_of(call.func.value, frame) if isinstance(call.func, ast.Attribute) else None
-        if isinstance(owner, type) and last_name(call.func) == found["name"] and found[0].endswith("required"):
+        if isinstance(owner, type) and last_name(call.func) == found["name"] and found["missing"] == "'self'":
             return called_on_class(call, owner, frame, files)
         function = vars(called).get("__init__") if isinstance(called, type) else called
         if getattr(function, "__name__", "") != found["name"]:
             continue
         parameters = [
-            each.name if each.default is each.empty else f"{each.name}={each.default!r}"
+            f"{each.name}={each.default!r}"
+            if each.default is not each.empty
+            else f"{each.name}{'=...' * (each.kind is each.KEYWORD_ONLY)}"
             for each in inspect.signature(called).parameters.values()
         ]
         code = getattr(function, "__code__", None)
@@ -182,6 +205,8 @@ def _count(found: re.Match[str], frame: FrameType, line: int, files: RobotFiles)
         got = f"with {counted(len(call.args) + len(call.keywords), 'value')}"
         if found["keyword"]:
             got = f"with {found['keyword']}="
+        elif found["missing"]:
+            got = f"without {found['missing']}"
         return Explanation(f"{name}() was called {got}", f"It takes: {name}({', '.join(parameters)}){at}")
     return None
 

@@ -15,7 +15,9 @@ _NO_COMMAND = re.compile(
     r"AttributeError: '(NoneType|function|method)' object has no attribute '(schedule|cancel|isScheduled)'"
     r"|TypeError: Command\.\w+\(\) missing 1 required positional argument: 'self'"
 )
-_BINDINGS = frozenset({"onTrue", "onFalse", "onChange", "whileTrue", "whileFalse", "toggleOnTrue", "toggleOnFalse"})
+#: What in a function makes a command.
+_MAKES_COMMAND = re.compile(r"\bcommands2\b|\bself\.(?:run|runOnce|runEnd|startEnd)\(|Command\(")
+BINDINGS = frozenset({"onTrue", "onFalse", "onChange", "whileTrue", "whileFalse", "toggleOnTrue", "toggleOnFalse"})
 
 
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
@@ -39,7 +41,7 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
 def _bound(tree: ast.Module) -> Iterator[tuple[ast.Call, ast.expr]]:
     """Yield the calls that bind a command, and what they bind."""
     for call in ast.walk(tree):
-        if isinstance(call, ast.Call) and last_name(call.func) in _BINDINGS and call.args:
+        if isinstance(call, ast.Call) and last_name(call.func) in BINDINGS and call.args:
             yield call, call.args[0]
 
 
@@ -56,7 +58,9 @@ def _explained(
     if isinstance(definition, ast.FunctionDef):
         returns = any(isinstance(each, ast.Return) and each.value is not None for each in ast.walk(definition))
         if called and not returns:
-            return f"None, from {written}", f"Write return before the command in {definition.name}() ({place})."
+            makes_one = _MAKES_COMMAND.search(ast.unparse(definition)) is not None
+            text = f"Write return before the command in {definition.name}() ({place})."
+            return f"None, from {written}", text if makes_one else run_once.replace(written, f"lambda: {written}")
         if not called:
             remedy = f"Write {written}(), which returns the command." if returns else run_once
             return f"the function {written}, and no command", remedy

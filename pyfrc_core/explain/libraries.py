@@ -246,6 +246,11 @@ ROWS = (
     KnownError(r"TypeError: 'int' object is not iterable", "", "To count, write range, as in: for number in range(5):"),
     KnownError(r"IndexError: list index out of range", "", "Indexes begin with 0: the last one is the length - 1."),
     KnownError(
+        r"IndexError: string index out of range",
+        "",
+        "The text is empty or shorter: ask for its length first. Game data are empty until the field sends them.",
+    ),
+    KnownError(
         r"TypeError: (?:\w+\.)*(?P<name>\w+): No constructor defined",
         "no object of {name} can be created",
         "Call its functions on the class, as in: wpilib.SmartDashboard.putNumber(name, value)",

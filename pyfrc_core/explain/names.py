@@ -12,11 +12,10 @@ from importlib import import_module
 from importlib.util import find_spec
 from types import FrameType
 
-from ..project.hidden_libraries import LIBRARIES
 from ..project.robot_files import RobotFiles
 from .explanation import Explanation
 from .other_season import OF_WPIMATH, in_2027
-from .places import imported_name, last_name, place_of_assignment, statement_at, users_frame
+from .places import imported_name, last_name, place_of_assignment, statement_at, users_frame, value_of
 
 
 def _spark(setting: str) -> str:
@@ -150,19 +149,30 @@ _KNOWN = (
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     if isinstance(error, AttributeError) and error.name:
         return _attribute(error, error.name, files)
+    if isinstance(error, AttributeError) and (found := re.search("has no attribute '(\\w+)'", str(error))):
+        return _assigned(found[1], users_frame(error, files))
     if isinstance(error, ImportError) and error.name and (wanted := imported_name(error)):
         return _import(wanted, error.name)
     if isinstance(error, UnboundLocalError):
         return _unbound(error, files)
     if isinstance(error, NameError) and error.name:
-        return _name(error.name, users_frame(error, files))
+        return _name(error.name, users_frame(error, files), files)
     return None
 
 
-def _name(name: str, where: tuple[FrameType, int] | None) -> Explanation:
+def _assigned(name: str, where: tuple[FrameType, int] | None) -> Explanation | None:
+    """Explain ``motor.inverted = True``, an attribute that a library's object does not have."""
+    for each in _of_attribute(name, *where) if where is not None else ():
+        setters = [method for method in dir(value_of(each, where[0])) if method.startswith("set")] if where else []
+        instead = meant(f"set_{name}", setters)
+        return Explanation(f"{ast.unparse(each)} has no {name} to set", instead or "Call one of its methods instead.")
+    return None
+
+
+def _name(name: str, where: tuple[FrameType, int] | None, files: RobotFiles) -> Explanation:
     if name in _ELSEWHERE and not (name == "this" and where is None):
         return Explanation(remedy=f"Did you mean {_ELSEWHERE[name]}?")
-    known = [*where[0].f_locals, *where[0].f_globals, *dir(builtins), *LIBRARIES] if where else []
+    known = [*where[0].f_locals, *where[0].f_globals, *dir(builtins)] if where else []
     if where and name in dir(where[0].f_locals.get("self")):
         return Explanation(remedy=f"Did you mean self.{name}?")
     if name == "self":
@@ -173,7 +183,13 @@ def _name(name: str, where: tuple[FrameType, int] | None) -> Explanation:
         return Explanation(remedy=f"Is this line missing at the top: from {home} import {name}")
     if close := get_close_matches(name, known, n=1, cutoff=0.75):
         return Explanation(remedy=f"Did you mean {close[0]}?")
-    return Explanation(remedy=f"Nothing has given {name} a value: is it misspelt, or is an import missing?")
+    robot = where[0].f_locals.get("self") if where else None
+    place, target, method = place_of_assignment(type(robot), files, name)
+    if target == name:
+        return Explanation(remedy=f"Only {method} has this {name} ({place}): write self.{name} in both places.")
+    return Explanation(
+        remedy=f"Nothing has given {name} a value: is it misspelt, or is an import or a parameter missing?"
+    )
 
 
 def _unbound(error: UnboundLocalError, files: RobotFiles) -> Explanation | None:
@@ -219,7 +235,7 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
         return Explanation(f"{written} has no attributes: its values have keys", f"Write {written}[{name!r}]")
     if isinstance(obj, (int, float, str)):
         written = next((ast.unparse(each) for each in _of_attribute(name, *where)), "") if where else ""
-        kind = "text" if isinstance(obj, str) else "number" if not isinstance(obj, bool) else "True or False"
+        kind = "a text" if isinstance(obj, str) else "True or False" if isinstance(obj, bool) else "a number"
         return Explanation(f"{written or repr(obj)} is {kind} ({obj!r}) and has no {name}", meant(name, known))
     if words := meant(name, known):
         return Explanation(remedy=words)
@@ -227,7 +243,10 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
         return Explanation(remedy=f"Did you mean {nested}?")
     if is_library and not is_module and owner.__module__.partition(".")[0] in (*_KNOWN, "pyfrc_core"):
         members = dict.fromkeys(
-            each for base in owner.__mro__ for each in sorted(vars(base)) if each[0] != "_" and base is not object
+            each
+            for base in owner.__mro__
+            for each, value in sorted(vars(base).items())
+            if each[0] != "_" and base is not object and not isinstance(value, type)
         )
         return Explanation(
             remedy=f"It has: {', '.join(list(members)[:_SHOWN])}{', ...' if len(members) > _SHOWN else ''}"

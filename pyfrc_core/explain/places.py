@@ -112,10 +112,9 @@ def users_frame(error: BaseException, files: RobotFiles) -> tuple[FrameType, int
 
 def statement_at(frame: FrameType, line: int) -> ast.AST:
     """Return the innermost statement at a line of a file; of an if, while, for or with, the expression in its head."""
-    found: ast.AST = ast.Module([], [])
-    for node in ast.walk(parsed(frame.f_code.co_filename)):
-        if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or 0):
-            found = node  # the inner ones come later
+    statements = [each for each in ast.walk(parsed(frame.f_code.co_filename)) if isinstance(each, ast.stmt)]
+    at = [each for each in statements if each.lineno <= line <= (each.end_lineno or 0)] or [ast.Pass(lineno=0)]
+    found = next((each for each in at if each.lineno == line and hasattr(each, "body")), at[-1])  # if x: pass
     if isinstance(found, (ast.With, ast.AsyncWith)):
         return ast.Tuple([item.context_expr for item in found.items])
     head = getattr(found, "test", None) or getattr(found, "iter", None)

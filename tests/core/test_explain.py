@@ -37,7 +37,8 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         file = tmp_path / "robot.py"
         file.write_text("def run(self):\n" + "".join(f"    {line}\n" for line in dedent(text).strip().splitlines()))
         module = ModuleType("robot")
-        vars(module).update(wpilib=wpilib, commands2=commands2, rev=rev)
+        vars(module).update(wpilib=wpilib, commands2=commands2, rev=rev, __file__=str(file))
+        monkeypatch.setitem(sys.modules, "robot", module)
         exec(compile(file.read_text(), str(file), "exec"), vars(module))
         try:
             module.run(module)
@@ -148,6 +149,112 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ("wpilib.IterativeRobot", "wpilib has no IterativeRobot any more", "Instead: wpilib.TimedRobot."),
         ("wpilib.SendableChooser().addObject('a', 1)", "SendableChooser has no addObject any more", "addOption"),
         ("rev.CANSparkMax", "rev has no CANSparkMax any more", "Instead: rev.SparkMax."),
+        # A method, a class or a value where another is expected
+        (
+            "t = wpilib.Timer()\nif t.get < 2: pass",
+            "t.get is a function, and not its value",
+            "Write t.get()",
+        ),
+        ("t = wpilib.Timer()\nwith t.start: pass", "t.start is a function, and not its value", "Write t.start()"),
+        ("t = wpilib.Timer()\nfor each in t.get: pass", "t.get is a function, and not its value", "Write t.get()"),
+        ("t = wpilib.Timer()\nt.get.hasElapsed(1)", "t.get is a function, and not its value", "Write t.get()"),
+        ("t = wpilib.Timer()\nprint(round(t.get))", "t.get is a function, and not its value", "Write t.get()"),
+        (
+            "if wpilib.XboxController.POV.kUp: pass",
+            "wpilib.XboxController.POV is a function",
+            "Instead: getPOV(), an angle in degrees",
+        ),
+        ("speed = 3\nspeed()", "speed is a value (int), and no function", "Write speed, without ()"),
+        ("speed = None\nspeed()", "speed is None, and no function", "Has anything set speed before?"),
+        ("axes = [1]\naxes(0)", "axes is a value (list), and no function", "Write axes[...], without ()"),
+        (
+            "class Arm:\n    def up(self): pass\na = Arm()\na.up = True\na.up()",
+            "a.up was a method, but something has set it to True",
+            "Search for up =",
+        ),
+        (
+            "def drive(forward):\n    forward()\ndrive(0.5)",
+            "forward must be a function, but is a value (float)",
+            "lambda: 0.5",
+        ),
+        (
+            "from wpimath.geometry import Rotation2d\nr = Rotation2d(1)\nif r > 30: pass",
+            "r is an object of Rotation2d, and no number",
+            ".cos(), .degrees(), .radians()",
+        ),
+        ("a = '3'\nprint(a - 1)", "a is a text, and no number", "Write float(a)"),
+        ("a = None\nprint(a * 2)", "a is None, and no number", "Has anything set a before?"),
+        (
+            "commands2.CommandScheduler.run()",
+            "run() is called on the class commands2.CommandScheduler",
+            "Write commands2.CommandScheduler.getInstance().run(...)",
+        ),
+        (
+            "c = commands2.PrintCommand\nself.c = c\nself.c.schedule()",
+            "self.c is the class PrintCommand, and no object of it",
+            "Write PrintCommand(...)",
+        ),
+        (
+            "c = wpilib.DigitalInput\nwpilib.Encoder(c, c)",
+            "Encoder() got the class c, and no object of it",
+            "Write c(...)",
+        ),
+        (
+            "b = wpilib.DigitalInput(0)\ncommands2.PrintCommand('a').until(b.get())",
+            "until() got the value True, and no function",
+            "Pass the function itself: b.get without ()",
+        ),
+        (
+            "d = commands2.Subsystem()\ndef drive(): pass\nd.setDefaultCommand(drive)",
+            "setDefaultCommand() got drive, which is a function",
+            "Write drive()",
+        ),
+        ("wpilib.PWMSparkMax(1).set('0.5')", "set() got '0.5', a text", "Write it without quotes: 0.5"),
+        ("wpilib.SmartDashboard.putNumber(3, 'x')", "putNumber() got 3, which is no text", "Write str(3)"),
+        (
+            "s = wpilib.DoubleSolenoid(wpilib.PneumaticsModuleType.REVPH, 0, 1)\ns.set(True)",
+            "set() does not take True",
+            "DoubleSolenoid.Value is one of: kOff, kForward, kReverse",
+        ),
+        (
+            "import ntcore\nfrom wpimath.geometry import Pose2d\n"
+            "t = ntcore.NetworkTableInstance.getDefault().getStructTopic('a', Pose2d)\np = t.publish()\np.set((1, 2, 3))",
+            "set() got (1, 2, 3), which is of type tuple, and not of type Pose2d",
+            "Write Pose2d(...)",
+        ),
+        (
+            "m = wpilib.PWMSparkMax(1)\nm.setInverted = True",
+            "m.setInverted is a method, and cannot be set",
+            "Write m.setInverted(True)",
+        ),
+        ("m = wpilib.PWMSparkMax(1)\nm.inverted = True", "m has no inverted to set", "Did you mean setInverted?"),
+        ("speed += 1", "speed has no value yet", "Write self.speed += 1, and self.speed = 0 in robotInit"),
+        ("self.speed = 1\nspeed += 1", "speed has no value yet", "Write self.speed += 1."),
+        ("def go(a, *, speed): pass\ngo(1)", "go() was called without 'speed'", "It takes: go(a, speed=...)"),
+        # What only the driver station knows
+        (
+            "sign = {1: 2}[wpilib.DriverStation.getAlliance()]",
+            "the alliance is None: it is not known until the driver station is connected",
+            "Read it in autonomousInit and teleopInit",
+        ),
+        ("alliance = wpilib.DriverStation.getAlliance()\nprint(alliance.value)", "the alliance is None", "Read it in"),
+        ("wpilib.DriverStation.getGameSpecificMessage()[0]", "string index out of range", "Game data are empty until"),
+        # Names, from what a class has
+        ("wpilib.Timer().delay(1)", "Timer has no delay any more", "Instead: timer.get() or hasElapsed(seconds)"),
+        ("wpilib.PWMSparkMax(0).follow(1)", "PWMSparkMax has no follow any more", "LEADER.addFollower(FOLLOWER)"),
+        ("wpilib.DutyCycleEncoder(3).getAbsolutePosition()", "has no getAbsolutePosition any more", "Instead: get()"),
+        ("wpilib.AlertType.kError", "has no attribute 'AlertType'", "Did you mean wpilib.Alert.AlertType?"),
+        ("wpilib.Preferences.get('a')", "has no attribute 'get'", "Did you mean getBoolean or getDouble"),
+        (
+            "wpilib.Encoder(0, 1).getPosition()",
+            "has no attribute 'getPosition'",
+            "It has: get, getDirection, getDistance",
+        ),
+        ("wpilib.Timer().elapsed_has(1)", "has no attribute 'elapsed_has'", "Did you mean hasElapsed?"),
+        ("wpilib.Pose2d()", "has no attribute 'Pose2d'", "from wpimath.geometry import Pose2d"),
+        ("Pose2d()", "name 'Pose2d' is not defined", "from wpimath.geometry import Pose2d"),
+        ("(0.5).get()", "0.5 is a number (0.5) and has no get", ""),
+        ("{'value': 1}.value", "{'value': 1} has no attributes: its values have keys", "Write {'value': 1}['value']"),
         # Modules
         (
             "import networktables",
@@ -247,6 +354,20 @@ def test_a_name_of_2027(headline_of: Raise, code: str, text: str) -> None:
 def test_while_there_are_only_previews_pip_is_asked_for_one() -> None:
     assert SEASONS[2026].requirement_of("robotpy-rev") == "robotpy-rev"
     assert SEASONS[2027].requirement_of("robotpy-rev") == '"robotpy-rev>=2027.0.0a1,<2028"'
+
+
+def test_a_method_with_other_parameters(headline_of: Raise, tmp_path: Path) -> None:
+    robot = """
+        class Drive(commands2.Subsystem):
+            def periodic(self, dt): pass
+        class Go(commands2.Command):
+            def end(self): pass
+        class Test:
+            def it(control, robot): control.enable()
+    """
+    assert headline_of(f"{dedent(robot)}vars(self).update(locals())\nTest().it(1)") == (
+        "robot.py:7: the method it(control, robot) has no parameter self: write def it(self, control, robot):"
+    )
 
 
 @pytest.mark.parametrize(

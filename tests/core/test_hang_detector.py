@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,6 +15,9 @@ from pyfrc_core.runtime.checks import hang_detector
 from pyfrc_core.runtime.checks.hang_detector import HangDetector, not_watched
 
 DRIVER = 11
+
+
+_CODE = SimpleNamespace(co_filename="", co_name="teleopPeriodic")
 
 
 class World:
@@ -40,7 +44,7 @@ class World:
             is_robot_code=lambda name: name == "robot.py",
         )
         self.steps: Iterator[object] = iter(())
-        self.frame = SimpleNamespace(f_lineno=7, f_back=None)
+        self.frame = SimpleNamespace(f_lineno=7, f_back=None, f_code=_CODE)
         watchers = SimpleNamespace(starved=lambda: 0.0)
         monkeypatch.setattr(hang_detector, "ThreadTimes", lambda: watchers)
         monkeypatch.setattr(hang_detector, "_wall", lambda: self.wall)
@@ -101,6 +105,19 @@ def test_code_that_computes_while_robot_time_stands_hangs(monkeypatch: pytest.Mo
     assert str(world.detector.raised).startswith("robot.py:7: the robot code hangs here")
 
 
+def test_the_loop_that_does_not_end_is_the_place_and_not_what_it_calls(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "command.py").write_text("def execute(self):\n    while True:\n        self.go()\n")
+    world = World(monkeypatch)
+    code = SimpleNamespace(co_filename=str(tmp_path / "command.py"), co_name="execute")
+    world.frame.f_back = SimpleNamespace(f_lineno=3, f_back=None, f_code=code)
+    assert world.watch(world.passes(10, used=1))[-1].startswith("wall 10: 11 robot.py:3: the robot code hangs here")
+    code.co_name = "startCompetition"  # that loop never ends
+    assert world.detector._place(DRIVER, True)[1] == "robot.py:7"
+    assert world.detector._place(DRIVER, False)[1] == "robot.py:7"
+
+
 def test_code_that_waits_for_something_outside_hangs_as_soon(monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch)
     assert world.watch(world.passes(10))[1] == (
@@ -143,7 +160,7 @@ def test_tests_may_compute_for_longer_than_robots_but_not_wait(monkeypatch: pyte
     for used, seconds, what in ((1.0, 60, "hangs"), (0.0, 10, "is blocked")):
         world = World(monkeypatch, everything=True)
         world.run.in_motion = False
-        world.frame = SimpleNamespace(f_lineno=7, f_back=None)
+        world.frame = SimpleNamespace(f_lineno=7, f_back=None, f_code=_CODE)
         monkeypatch.setattr(hang_detector, "current_frames", lambda world=world: {33: world.frame})
         world.detector._files.is_robot_code = lambda name: False  # type: ignore[union-attr, method-assign]
         (entry,) = world.watch(world.passes(seconds, used=used))

@@ -9,6 +9,7 @@ from textwrap import dedent
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
+import commands2
 import pytest
 import wpilib
 
@@ -22,6 +23,7 @@ from pyfrc_core.runtime.checks.failures import (
 )
 from pyfrc_core.runtime.checks.foreign_paths import find_foreign_paths
 from pyfrc_core.runtime.checks.misspelled_methods import find_misspelled_methods, refuse_unawaited_methods
+from pyfrc_core.runtime.checks.sources import sources
 from pyfrc_core.runtime.match import MatchPeriods
 from pyfrc_core.runtime.patches.install import patches
 
@@ -121,12 +123,19 @@ def test_files_that_only_this_computer_has(import_text: Import, files: RobotFile
                 open("log.txt", "w")
                 self.timer.start("/logs")
                 table.putNumber("/logs/number", 1)
-                if wpilib.RobotBase.isSimulation():
+                if wpilib.RobotBase.isSimulation() and self.enabled:
                     open("/home/ada/path.json")
+                elif not self.isReal():
+                    open("/home/ada/path.json")
+                else:
+                    open("/home/ada/robot.json")
+                if not RobotBase.is_simulation():
+                    open("/home/ada/robot.json")
+                open("/home/ada/path.json") if is_simulation() else open("/home/ada/robot.json")
         """
     )
     project = SimpleNamespace(files=files, physics_file=tmp_path / "physics.py")
-    found = [str(each) for each in find_foreign_paths(project)]  # type: ignore[arg-type]
+    found = [str(each) for each in find_foreign_paths(list(sources(project)))]  # type: ignore[arg-type]
     assert [each.partition(": on the")[0] for each in found] == [
         "robot.py:4: the robot program may not write /logs/robot.log",
         "robot.py:5: the robot program may not write /data/log.txt",
@@ -134,6 +143,10 @@ def test_files_that_only_this_computer_has(import_text: Import, files: RobotFile
         "robot.py:7: the robot program may not write /logs",
         "robot.py:8: C:\\path.json is a path of this computer, which the robot does not have",
         "robot.py:9: /home/ada/path.json is a path of this computer, which the robot does not have",
+        *(
+            f"robot.py:{line}: /home/ada/robot.json is a path of this computer, which the robot does not have"
+            for line in (23, 25, 26)
+        ),
     ]
 
 
@@ -159,6 +172,51 @@ def test_a_method_of_a_mode_inside_another_method(import_text: Import, files: Ro
     (found,) = find_misspelled_methods(SimpleNamespace(files=files))  # type: ignore[arg-type]
     assert str(found) == "robot.py:4: WPILib never calls teleopPeriodic, which is inside Robot.robotInit"
     assert found.remedy == "Indent it as much as robotInit."
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        (
+            "Drive().periodic()",
+            "robot.py:2: Drive.periodic(self, dt) has other parameters than the method that it replaces",
+        ),
+        (
+            "Robot.teleopPeriodic(None)",
+            "robot.py:4: Robot.teleopPeriodic(self, dt) has other parameters than the method",
+        ),
+        ("Go().end(True)", "robot.py:6: Go.end(self) has other parameters than the method that it replaces"),
+    ],
+)
+def test_a_method_that_takes_other_values_than_a_library_passes(
+    import_text: Import, files: RobotFiles, call: str, text: str
+) -> None:
+    robot = import_text(
+        """
+        class Drive(commands2.Subsystem):
+            def periodic(self, dt): ...
+        class Robot(wpilib.TimedRobot):
+            def teleopPeriodic(self, dt): ...
+        class Go(commands2.Command):
+            def end(self): ...
+        """,
+        wpilib=wpilib,
+        commands2=commands2,
+    )
+    error = raised_by(lambda: eval(call, vars(robot)))  # noqa: S307
+    found = headline(error, files) or ""
+    assert found.startswith(text)
+    name, passed = text.partition(".py")[2].partition(".")[2].partition("(")[0], "interrupted" if "end" in call else ""
+    assert found.endswith(f"Write def {name}({', '.join(filter(None, ['self', passed]))}):")
+
+
+def test_a_test_reads_what_the_robot_does_not_have_yet(import_text: Import, files: RobotFiles) -> None:
+    robot = import_text("class Robot:\n    def robotInit(self):\n        self.motor = 3\n")
+    test = import_text("def look(robot):\n    return robot.motor\n", name="tests/test_it")
+    assert headline(raised_by(lambda: test.look(robot.Robot())), files) == (
+        "tests/test_it.py:2: the robot does not have motor yet: robotInit sets it (robot.py:3), which runs when the test "
+        "runs the robot\n  Read it after control.run_test(...), or inside: with control.run_robot():"
+    )
 
 
 # -- time --------------------------------------------------------------------------------------------------------------

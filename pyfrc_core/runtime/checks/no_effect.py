@@ -11,7 +11,9 @@ from collections.abc import Iterator
 from functools import cache
 from inspect import isfunction, isroutine
 
+from ...explain.commands import BINDINGS
 from ...explain.places import last_name
+from ...season.spelling import snake_case
 from ...wpi import names
 from .code_warning import CodeWarning
 from .sources import Source
@@ -36,6 +38,17 @@ def find_lines_without_effect(sources: list[Source]) -> Iterator[CodeWarning]:
                         written = ast.unparse(each)
                         text = f"{written} is a function, which counts as true whatever it would return"
                         yield CodeWarning(source.at(each), text, f"Write {written}()")
+            elif isinstance(node, ast.Call):
+                yield from _of_call(node, source)
+            elif isinstance(node, ast.FunctionDef) and node.name in (
+                names.END_CONDITION,
+                snake_case(names.END_CONDITION),
+            ):
+                returns = any(isinstance(each, (ast.Return, ast.Raise)) for each in ast.walk(node))
+                computes = any(isinstance(each, ast.Call) for each in ast.walk(node))
+                if computes and not returns:
+                    text = f"{node.name} returns nothing, so the command never ends by itself"
+                    yield CodeWarning(source.at(node), text, "Write return before what it computes.")
         yield from _replaced_methods(source)
 
 
@@ -80,6 +93,16 @@ def _of_assignment(node: ast.Assign, source: Source) -> Iterator[CodeWarning]:
         yield CodeWarning(source.at(node), text, f"Write {ast.unparse(target)} {sign}= {ast.unparse(value.operand)}")
 
 
+def _of_call(call: ast.Call, source: Source) -> Iterator[CodeWarning]:
+    """Yield ``(one and other).onTrue(...)`` of triggers."""
+    bound = call.func.value if isinstance(call.func, ast.Attribute) and call.func.attr in BINDINGS else None
+    if isinstance(bound, ast.BoolOp):
+        word, sign = ("and", "&") if isinstance(bound.op, ast.And) else ("or", "|")
+        written = f" {sign} ".join(map(ast.unparse, bound.values))
+        text = f"{word} takes one of the triggers, and does not combine them"
+        yield CodeWarning(source.at(call), text, f"Write ({written}).{last_name(call.func)}(...)")
+
+
 def _conditions(test: ast.expr) -> Iterator[ast.expr]:
     """Yield the attributes whose truth a condition asks for, or that it compares with a constant."""
     if isinstance(test, ast.BoolOp):
@@ -107,7 +130,7 @@ def _replaced_methods(source: Source) -> Iterator[CodeWarning]:
                     name = last_name(target)
                     text = f"{ast.unparse(node)} replaces the method {name}: what calls it fails"
                     yield CodeWarning(
-                        source.at(node), text, f"Write {ast.unparse(target)}(...), or choose another name."
+                        source.at(node), text, f"Choose another name, or call it: {ast.unparse(target)}(...)"
                     )
 
 

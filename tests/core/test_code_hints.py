@@ -1,0 +1,162 @@
+"""Hints about code that raises no error here: each with its line, and what to write."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+from textwrap import dedent
+from types import ModuleType, SimpleNamespace
+
+import commands2
+import pytest
+import wpilib
+
+from pyfrc_core.repeated_lines import RepeatedLines, shortened
+from pyfrc_core.runtime.checks.enum_values import find_early_reads, find_wrong_comparisons
+from pyfrc_core.runtime.checks.no_effect import find_lines_without_effect
+from pyfrc_core.runtime.checks.setting_names import find_misspelled_settings
+from pyfrc_core.runtime.checks.sources import Source
+
+
+def source(text: str, is_test: bool = False) -> Source:
+    """Run a text as a file of the project."""
+    module = ModuleType("robot")
+    vars(module).update(wpilib=wpilib, commands2=commands2)
+    text = dedent(text).strip() + "\n"
+    exec(text, vars(module))
+    return Source("robot.py", ast.parse(text), module, is_test)
+
+
+def hints(text: str, is_test: bool = False) -> list[str]:
+    files = [source(text, is_test)]
+    found = [*find_lines_without_effect(files), *find_wrong_comparisons(files), *find_early_reads(files)]
+    return [f"{each.where.removeprefix('robot.py:')}: {each.text} / {each.remedy}" for each in found]
+
+
+@pytest.mark.parametrize(
+    ("line", "text", "remedy"),
+    [
+        ("self.command.schedule", "self.command.schedule does nothing", "Write self.command.schedule()"),
+        ("self.state == 2", "this comparison does nothing", "self.state = ..."),
+        ("self.speed + 1", "is computed, and nothing is done", "self.speed = self.speed + 1"),
+        ("self.speed =+ 1", "=+ sets self.speed to +1", "Write self.speed += 1"),
+        ("self.speed =- 1", "=- sets self.speed to -1", "Write self.speed -= 1"),
+        ("helper", "helper does nothing: it is not called", "Write helper()"),
+        ("if self.pad.getAButton: pass", "getAButton is a function, which counts as true", "self.pad.getAButton()"),
+        ("if not self.at_goal and True: pass", "self.at_goal is a function", "self.at_goal()"),
+        ("self.at_goal = True", "replaces the method at_goal", "Choose another name"),
+        ("if self.pad.getPOV == 90: pass", "getPOV is a function", "self.pad.getPOV()"),
+        ("(a and b).onTrue(c)", "and takes one of the triggers", "Write (a & b).onTrue(...)"),
+        (
+            "if wpilib.DriverStation.getAlliance() == 'red': pass",
+            "Alliance is never equal to the text 'red'",
+            "Write wpilib.DriverStation.Alliance.kRed",
+        ),
+        ("side = getAlliance()\n        if side in ('Blue', 1): pass", "the text 'Blue'", "Alliance.kBlue"),
+        ("if DriverStation.getMatchType() == 3: pass", "the number 3", "kPractice"),
+    ],
+)
+def test_a_line_that_does_not_do_what_it_says(line: str, text: str, remedy: str) -> None:
+    robot = f"""
+    def helper(): pass
+    class Robot(wpilib.TimedRobot):
+        def at_goal(self): return True
+        def go(self, a, b, c):
+            {line}
+    """
+    (found,) = hints(robot.replace("\n        if", "\n            if") if "\n" in line else robot)
+    assert text in found
+    assert remedy in found
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "self.speed = -1",
+        "self.speed=-1",
+        "self.speed = + 1",
+        "'a docstring'",
+        "...",
+        "self.limit = 3\n            if self.limit: pass",
+        "if self.pad.getAButton(): pass",
+        "if self.callback is not None and self.callback: pass",
+        "try: self.camera\n            except AttributeError: pass",
+        "with suppress(AttributeError): self.camera",
+        "if getAlliance() == Alliance.kRed: pass",
+        "if self.pad.getPOV() == 90: pass",
+        "self.done = True",
+        "a.onTrue(c)",
+    ],
+)
+def test_lines_without_a_mistake(line: str) -> None:
+    assert hints(f"class Robot:\n    def go(self, a, c):\n            {line}\n") == []
+
+
+def test_a_comparison_in_a_test_is_no_assertion() -> None:
+    test = """
+    def test_it(control):
+        control.mode == 3
+        with pytest.raises(ValueError):
+            control.mode == 4
+    """
+    assert hints(test, is_test=True) == [
+        "2: this comparison does nothing: no one looks at its result / Write assert control.mode == 3"
+    ]
+
+
+def test_a_command_whose_end_condition_returns_nothing() -> None:
+    command = """
+    class Go(commands2.Command):
+        def isFinished(self):
+            self.pid.atSetpoint()
+    class Wait(commands2.Command):
+        def isFinished(self):
+            return False
+    """
+    (found,) = hints(command)
+    assert found.startswith("2: isFinished returns nothing")
+
+
+def test_the_alliance_is_read_before_it_is_known() -> None:
+    early = """
+    class Robot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.is_red = wpilib.DriverStation.getAlliance() == wpilib.DriverStation.Alliance.kRed
+    """
+    (found,) = hints(early)
+    assert found.startswith("3: the alliance is not known yet in robotInit: getAlliance() is None until")
+    assert "Read it in autonomousInit and teleopInit" in found
+    assert hints(early.replace("= wpilib.DriverStation.get", "= lambda: wpilib.DriverStation.get")) == []
+    assert hints(early + "\n    def autonomousInit(self): self.alliance = getAlliance()\n") == []
+    assert hints(early.replace("robotInit", "teleopInit")) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[tool.pyfcr.match]\n", "pyproject.toml:1: [tool.pyfcr] has no effect: nothing reads this name"),
+        ("[tool.robopty]\nrequires = []\n", "pyproject.toml:1: [tool.robopty] has no effect: nothing reads this name"),
+        ("[tools.pyfrc]\nteam = 1\n", "pyproject.toml:1: [tools.pyfrc] has no effect: nothing reads this name"),
+        ("[tool.robotpy]\nteam = 1\n", "pyproject.toml:2: team under [tool.robotpy] has no effect"),
+        ("[tool.robotpy]\nrobotpy_extras = []\n", "pyproject.toml:2: robotpy_extras under [tool.robotpy]"),
+        ("[tool.pyright]\n[tool.pytest.ini_options]\n[tool.robotpy]\nother = 1\n[project]\nname = 'x'\n", ""),
+    ],
+)
+def test_a_misspelled_name_in_the_settings(tmp_path: Path, text: str, message: str) -> None:
+    (tmp_path / "pyproject.toml").write_text(text)
+    project = SimpleNamespace(pyproject=tmp_path / "pyproject.toml")
+    found = list(find_misspelled_settings(project))  # type: ignore[arg-type]
+    assert len(found) == bool(message)
+    assert all(str(each).startswith(message) for each in found)
+
+
+def test_repeated_lines_are_shown_once_with_a_count() -> None:
+    assert shortened("a\nb\nb\n\nb\nc\n") == "a\nb\n(the line above: 2 times more)\nc\n"
+    assert shortened("late\n\n" * 300) == "late\n\n(the line above: 299 times more)\n"
+    assert shortened("1\n2\n1\n") == "1\n2\n1\n"
+    lines = RepeatedLines()
+    pieces = ["x\n", "x", "y\n", "xy\n", "x", "y\nz", "z\n"]
+    assert [lines.feed(each) for each in pieces] == [
+        *("x\n", "", "xy\n", "", "", "(the line above: 2 times more)\nz", "z\n"),
+    ]
+    assert lines.end() == ""
