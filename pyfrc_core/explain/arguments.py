@@ -13,7 +13,7 @@ from ..project.robot_files import RobotFiles
 from ..wording import counted
 from .calls import called_on_class
 from .explanation import Explanation, ask_for
-from .places import calls_at, frames_of, last_name, looked_up, robot_trees, users_frame, value_of
+from .places import calls_at, frames_of, last_name, owner_of, robot_calls, users_frame, value_of
 from .returned import class_of
 
 _INCOMPATIBLE = re.compile(
@@ -57,7 +57,7 @@ def _wrong_object(error: AttributeError, files: RobotFiles) -> Explanation | Non
         return None
     for call in calls_at(*where, ""):
         for each in call.args:
-            value = looked_up(each, where[0])
+            value = value_of(each, where[0])
             if error.obj in (value, getattr(value, "__func__", value)):
                 kind = "None" if error.obj is None else f"a {type(error.obj).__name__}"
                 remedy = (
@@ -70,11 +70,7 @@ def _wrong_object(error: AttributeError, files: RobotFiles) -> Explanation | Non
 def _wrong_struct(got: str, frame: FrameType, line: int) -> Explanation | None:
     """Explain a value that NetworkTables cannot publish as the struct of its topic."""
     for call in calls_at(frame, line, ""):
-        topic = (
-            getattr(value_of(call.func.value, frame), "getTopic", None)
-            if isinstance(call.func, ast.Attribute)
-            else None
-        )
+        topic = getattr(owner_of(call.func, frame), "getTopic", None)
         if callable(topic) and call.args:
             struct = re.sub(r"^struct:|\[\]$", "", topic().getTypeString())
             written = ast.unparse(call.args[0])
@@ -100,7 +96,7 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
     if call is None:
         text, place = _text_passed(found["got"], files)
         return Explanation(text or f"{name}() got arguments that it does not take", f"It takes: {takes}", place)
-    owner = value_of(call.func.value, where[0]) if where is not None and isinstance(call.func, ast.Attribute) else None
+    owner = owner_of(call.func, where[0]) if where is not None else None
     if (
         isinstance(owner, type)
         and where is not None
@@ -168,12 +164,10 @@ def _pass_function(written: str) -> str:
 def _text_passed(got: str, files: RobotFiles) -> tuple[str, str]:
     """Return which call has got a text of an error that comes later, and its place; empty if none has."""
     texts = [each for each in _values(got, got.count(", ") + 1) if each[:1] in "'\""]
-    for file, tree in robot_trees(files):
-        for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
-            for written in _written(call):
-                if repr(written[1:-1]) in texts and written[:1] in "'\"":
-                    text = f"{last_name(call.func)}() got {written}, a text, and no number"
-                    return text, f"{file}:{call.end_lineno}"
+    for place, call in robot_calls(files):
+        for each in (*call.args, *(keyword.value for keyword in call.keywords)):
+            if isinstance(each, ast.Constant) and repr(each.value) in texts:
+                return f"{last_name(call.func)}() got {each.value!r}, a text, and no number", place
     return "", ""
 
 

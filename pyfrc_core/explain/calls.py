@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import inspect
 import re
-from collections.abc import Iterator
 from types import FrameType, ModuleType
 
 from ..errors import text_of
@@ -17,10 +16,10 @@ from .places import (
     UNKNOWN,
     calls_at,
     last_name,
-    looked_up,
+    owner_of,
     parsed,
     place_of_assignment,
-    robot_trees,
+    robot_calls,
     statement_at,
     users_frame,
     value_of,
@@ -32,7 +31,6 @@ _FUNCTION = r"(?:method|builtin_function_or_method|function|instancemethod)"
 _OF_A_FUNCTION = re.compile(
     rf"AttributeError: ('{_FUNCTION}' object|__enter__)|TypeError: (?!.*arguments).*\b{_FUNCTION}\b"
 )
-_READ_ONLY = re.compile(r"AttributeError: .* object attribute '(\w+)' is read-only")
 _NO_NUMBER = re.compile(
     r"TypeError: (?:'.+' not supported between instances of|unsupported operand type.*?:|bad operand type.*?:) "
     r"'(?P<left>[\w.]+)'(?: and '(?P<right>[\w.]+)')?"
@@ -56,8 +54,6 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return _module(*where)
     if text.endswith("object is not callable"):
         return _called_value(*where, files)
-    if found := _READ_ONLY.match(text):
-        return _set_method(found[1], *where)
     if found := _NO_NUMBER.match(text):
         return _no_number(found, *where)
     if found := _COUNT.match(text):
@@ -67,56 +63,42 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
 
 def _not_called(frame: FrameType, line: int, files: RobotFiles) -> Explanation | None:
     """Explain a method that is used like its value, such as ``self.timer.get < 2``."""
-    statement = statement_at(frame, line)
-    calls = [each for each in ast.walk(statement) if isinstance(each, ast.Call)]
+    nodes = list(ast.walk(statement_at(frame, line)))
+    calls = [each for each in nodes if isinstance(each, ast.Call)]
     # A function that another one gets is probably meant, unless that one computes.
     passed = [each for call in calls if last_name(call.func) not in _COMPUTING for each in call.args]
-    passed += [keyword.value for call in calls for keyword in call.keywords]
-    for each in ast.walk(statement):
-        if (
-            each in passed
-            or any(each is call.func for call in calls)
-            or not isinstance(each, (ast.Attribute, ast.Name))
-        ):
+    passed += [keyword.value for call in calls for keyword in call.keywords] + [call.func for call in calls]
+    for each in nodes:
+        value = value_of(each, frame) if isinstance(each, ast.expr) and each not in passed else UNKNOWN
+        if not callable(value) or isinstance(value, type) or not isinstance(each, ast.expr):
             continue
-        value, written = value_of(each, frame), ast.unparse(each)
-        if not callable(value) or isinstance(value, type):
-            continue
-        owner = value_of(each.value, frame) if isinstance(each, ast.Attribute) else None
-        if isinstance(owner, type) and (
-            instead := earlier_name(each.attr if isinstance(each, ast.Attribute) else "", owner)
-        ):
-            return Explanation(f"{written} is a function, and not its value", f"Instead: {instead}.")
+        written, owner = ast.unparse(each), owner_of(each, frame)
         place, _, _ = place_of_assignment(type(owner), files, last_name(each))
-        there = f" where it is set ({place})" if place else ""
-        return Explanation(
-            f"{written} is a function, and not its value", f"Write {'()' if there else written + '()'}{there}"
-        )
+        remedy = f"Write () where it is set ({place})" if place else f"Write {written}()"
+        if isinstance(owner, type) and (instead := earlier_name(last_name(each), owner)):
+            remedy = f"Instead: {instead}."
+        return Explanation(f"{written} is a function, and not its value", remedy)
     return None
 
 
 def _called_where(parameter: str, frame: FrameType, line: int, files: RobotFiles) -> str:
     """Return where the function around a line, with this parameter, is called; empty if that is unknown."""
-    around = [each for each in ast.walk(parsed(frame.f_code.co_filename)) if isinstance(each, ast.FunctionDef)]
-    for each in around:
-        if each.lineno <= line <= (each.end_lineno or 0) and parameter in [arg.arg for arg in each.args.args]:
-            for file, tree in robot_trees(files):
-                for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
-                    if last_name(call.func) == each.name:
-                        return f"{file}:{call.lineno}"
+    functions = [each for each in ast.walk(parsed(frame.f_code.co_filename)) if isinstance(each, ast.FunctionDef)]
+    around = [each for each in functions if each.lineno <= line <= (each.end_lineno or 0)]
+    for each in (each for each in around if parameter in [argument.arg for argument in each.args.args]):
+        return next((place for place, call in robot_calls(files) if last_name(call.func) == each.name), "")
     return ""
 
 
 def _called_value(frame: FrameType, line: int, files: RobotFiles) -> Explanation | None:
     """Explain ``self.speed()``, where `speed` is a number, and a method that a value has replaced."""
     for call in calls_at(frame, line, ""):
-        value, written = looked_up(call.func, frame), ast.unparse(call.func)
+        value, written = value_of(call.func, frame), ast.unparse(call.func)
         if value is UNKNOWN or callable(value):
             continue
         if value is None:
             return Explanation(f"{written} is None, and no function", ask_for(written))
-        owner = type(value_of(call.func.value, frame)) if isinstance(call.func, ast.Attribute) else None
-        if callable(getattr(owner, last_name(call.func), None)):
+        if callable(getattr(type(owner_of(call.func, frame)), last_name(call.func), None)):
             text = f"{written} was a method, but something has set it to {value!r}"
             return Explanation(text, f"Search for {last_name(call.func)} = and choose another name there.")
         kind = type(value).__name__
@@ -125,18 +107,6 @@ def _called_value(frame: FrameType, line: int, files: RobotFiles) -> Explanation
             return Explanation(text, f"Pass a function there, as in: lambda: {value!r}", place)
         instead = f"{written}[...]" if isinstance(value, (list, tuple, dict)) else written
         return Explanation(f"{written} is a value ({kind}), and no function", f"Write {instead}, without ()")
-    return None
-
-
-def _set_method(name: str, frame: FrameType, line: int) -> Explanation | None:
-    """Explain ``motor.setInverted = True``."""
-    statement = statement_at(frame, line)
-    for target in statement.targets if isinstance(statement, ast.Assign) else []:
-        if last_name(target) == name and isinstance(statement, ast.Assign):
-            written = ast.unparse(target)
-            return Explanation(
-                f"{written} is a method, and cannot be set", f"Write {written}({ast.unparse(statement.value)})"
-            )
     return None
 
 
@@ -187,7 +157,7 @@ def _count(found: re.Match[str], frame: FrameType, line: int, files: RobotFiles)
     for call in calls_at(frame, line, ""):
         called = value_of(call.func, frame)
         name = ast.unparse(call.func)
-        owner = value_of(call.func.value, frame) if isinstance(call.func, ast.Attribute) else None
+        owner = owner_of(call.func, frame)
         if isinstance(owner, type) and last_name(call.func) == found["name"] and found["missing"] == "'self'":
             return called_on_class(call, owner, frame, files)
         function = vars(called).get("__init__") if isinstance(called, type) else called
@@ -224,20 +194,9 @@ def called_on_class(call: ast.Call, cls: type, frame: FrameType, files: RobotFil
         return Explanation(
             text, f"Create an object in robotInit, as in: self.it = {written}(...). Then call: self.it.{name}(...)"
         )
-    place = next((f"{file}:{node.lineno}" for file, tree in robot_trees(files) for node in _uncalled(tree, cls)), "")
+    passed = (place for place, call in robot_calls(files) if cls.__name__ in map(last_name, call.args))
     return Explanation(
         f"{written} is the class {cls.__name__}, and no object of it",
         f"Write {cls.__name__}(...), with what its __init__ needs.",
-        place,
+        next(passed, ""),
     )
-
-
-def _uncalled(tree: ast.Module, cls: type) -> Iterator[ast.expr]:
-    """Yield where a class itself is passed or assigned."""
-    for node in ast.walk(tree):
-        passed = (
-            node.args if isinstance(node, ast.Call) and last_name(node.func) not in ("isinstance", "issubclass") else []
-        )
-        for each in [*passed, *([node.value] if isinstance(node, ast.Assign) else [])]:
-            if last_name(each) == cls.__name__:
-                yield each

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
 
 from ..errors import text_of
 from ..project.robot_files import RobotFiles
 from .explanation import Explanation
-from .places import last_name, robot_trees
+from .places import last_name, robot_calls, robot_trees
 
 _NO_COMMAND = re.compile(
     r"AttributeError: '(NoneType|function|method)' object has no attribute '(schedule|cancel|isScheduled)'"
@@ -23,26 +22,16 @@ BINDINGS = frozenset({"onTrue", "onFalse", "onChange", "whileTrue", "whileFalse"
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     if not _NO_COMMAND.match(text_of(error)) or files.innermost_line(error.__traceback__, tests=False) is not None:
         return None
-    trees = dict(robot_trees(files))
     defined = {
         each.name: (f"{file}:{each.lineno}", each)
-        for file, tree in trees.items()
+        for file, tree in robot_trees(files)
         for each in ast.walk(tree)
         if isinstance(each, (ast.FunctionDef, ast.ClassDef))
     }
-    for file, tree in trees.items():
-        for call, bound in _bound(tree):
-            if found := _explained(bound, defined):
-                text, remedy = found
-                return Explanation(f"{last_name(call.func)}() got {text}", remedy, f"{file}:{call.lineno}")
+    for place, call in robot_calls(files):
+        if last_name(call.func) in BINDINGS and call.args and (found := _explained(call.args[0], defined)):
+            return Explanation(f"{last_name(call.func)}() got {found[0]}", found[1], place)
     return None
-
-
-def _bound(tree: ast.Module) -> Iterator[tuple[ast.Call, ast.expr]]:
-    """Yield the calls that bind a command, and what they bind."""
-    for call in ast.walk(tree):
-        if isinstance(call, ast.Call) and last_name(call.func) in BINDINGS and call.args:
-            yield call, call.args[0]
 
 
 def _explained(

@@ -15,7 +15,7 @@ from types import FrameType
 from ..project.robot_files import RobotFiles
 from .explanation import Explanation
 from .other_season import OF_WPIMATH, in_2027
-from .places import imported_name, last_name, place_of_assignment, statement_at, users_frame, value_of
+from .places import imported_name, last_name, owner_of, place_of_assignment, statement_at, users_frame
 
 
 def _spark(setting: str) -> str:
@@ -149,7 +149,7 @@ _KNOWN = (
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     if isinstance(error, AttributeError) and error.name:
         return _attribute(error, error.name, files)
-    if isinstance(error, AttributeError) and (found := re.search("has no attribute '(\\w+)'", str(error))):
+    if isinstance(error, AttributeError) and (found := re.search(r"object (?:has no )?attribute '(\w+)'", str(error))):
         return _assigned(found[1], users_frame(error, files))
     if isinstance(error, ImportError) and error.name and (wanted := imported_name(error)):
         return _import(wanted, error.name)
@@ -161,11 +161,16 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
 
 
 def _assigned(name: str, where: tuple[FrameType, int] | None) -> Explanation | None:
-    """Explain ``motor.inverted = True``, an attribute that a library's object does not have."""
-    for each in _of_attribute(name, *where) if where is not None else ():
-        setters = [method for method in dir(value_of(each, where[0])) if method.startswith("set")] if where else []
-        instead = meant(f"set_{name}", setters)
-        return Explanation(f"{ast.unparse(each)} has no {name} to set", instead or "Call one of its methods instead.")
+    """Explain ``motor.inverted = True`` and ``motor.setInverted = True``, which a library's object does not allow."""
+    statement = statement_at(*where) if where is not None else None
+    for target in statement.targets if isinstance(statement, ast.Assign) and where is not None else []:
+        owner = owner_of(target, where[0]) if last_name(target) == name and where is not None else None
+        if callable(getattr(owner, name, None)) and isinstance(statement, ast.Assign):
+            text, written = "is a method, and cannot be set", ast.unparse(target)
+            return Explanation(f"{written} {text}", f"Write {written}({ast.unparse(statement.value)})")
+        if owner is not None:
+            setters = [each for each in dir(owner) if each.startswith("set")]
+            return Explanation(f"{ast.unparse(target)} cannot be set", meant(f"set_{name}", setters))
     return None
 
 

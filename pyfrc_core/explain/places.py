@@ -142,6 +142,13 @@ def robot_trees(files: RobotFiles) -> Iterator[tuple[str, ast.Module]]:
             yield files.relative(file), parsed(file)
 
 
+def robot_calls(files: RobotFiles) -> Iterator[tuple[str, ast.Call]]:
+    """Yield the calls in the robot's files, each with its place."""
+    for file, tree in robot_trees(files):
+        for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
+            yield f"{file}:{call.end_lineno}", call
+
+
 def calls_at(frame: FrameType, line: int, name: str) -> list[ast.Call]:
     """Return the calls of a function or class, by its last name, in the statement at a line of a file."""
     calls = [node for node in ast.walk(parsed(frame.f_code.co_filename)) if isinstance(node, ast.Call)]
@@ -154,19 +161,18 @@ def calls_at(frame: FrameType, line: int, name: str) -> list[ast.Call]:
 UNKNOWN = object()
 
 
-def looked_up(expression: ast.expr, frame: FrameType) -> Any:
+def value_of(expression: ast.expr, frame: FrameType) -> Any:
     """Return the value of a dotted name, such as ``self.timer.get``; `UNKNOWN` for other expressions."""
     if isinstance(expression, ast.Attribute):
-        return getattr(looked_up(expression.value, frame), expression.attr, UNKNOWN)
+        return getattr(value_of(expression.value, frame), expression.attr, UNKNOWN)
     if isinstance(expression, ast.Name):
         return frame.f_locals.get(expression.id, frame.f_globals.get(expression.id, UNKNOWN))
     return UNKNOWN
 
 
-def value_of(expression: ast.expr, frame: FrameType) -> Any:
-    """Return the value of a dotted name; None for other expressions."""
-    value = looked_up(expression, frame)
-    return None if value is UNKNOWN else value
+def owner_of(expression: ast.expr, frame: FrameType) -> Any:
+    """Return the object before the last dot; `UNKNOWN` if there is none."""
+    return value_of(expression.value, frame) if isinstance(expression, ast.Attribute) else UNKNOWN
 
 
 def last_name(expression: ast.expr) -> str:

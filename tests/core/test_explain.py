@@ -218,7 +218,8 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ),
         (
             "import ntcore\nfrom wpimath.geometry import Pose2d\n"
-            "t = ntcore.NetworkTableInstance.getDefault().getStructTopic('a', Pose2d)\np = t.publish()\np.set((1, 2, 3))",
+            "t = ntcore.NetworkTableInstance.getDefault().getStructTopic('a', Pose2d)\n"
+            "p = t.publish()\np.set((1, 2, 3))",
             "set() got (1, 2, 3), which is of type tuple, and not of type Pose2d",
             "Write Pose2d(...)",
         ),
@@ -227,7 +228,7 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "m.setInverted is a method, and cannot be set",
             "Write m.setInverted(True)",
         ),
-        ("m = wpilib.PWMSparkMax(1)\nm.inverted = True", "m has no inverted to set", "Did you mean setInverted?"),
+        ("m = wpilib.PWMSparkMax(1)\nm.inverted = True", "m.inverted cannot be set", "Did you mean setInverted?"),
         ("speed += 1", "speed has no value yet", "Write self.speed += 1, and self.speed = 0 in robotInit"),
         ("self.speed = 1\nspeed += 1", "speed has no value yet", "Write self.speed += 1."),
         ("def go(a, *, speed): pass\ngo(1)", "go() was called without 'speed'", "It takes: go(a, speed=...)"),

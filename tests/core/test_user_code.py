@@ -203,7 +203,7 @@ def test_a_method_that_takes_other_values_than_a_library_passes(
         wpilib=wpilib,
         commands2=commands2,
     )
-    error = raised_by(lambda: eval(call, vars(robot)))  # noqa: S307
+    error = raised_by(lambda: eval(call, vars(robot)))
     found = headline(error, files) or ""
     assert found.startswith(text)
     name, passed = text.partition(".py")[2].partition(".")[2].partition("(")[0], "interrupted" if "end" in call else ""
@@ -214,8 +214,8 @@ def test_a_test_reads_what_the_robot_does_not_have_yet(import_text: Import, file
     robot = import_text("class Robot:\n    def robotInit(self):\n        self.motor = 3\n")
     test = import_text("def look(robot):\n    return robot.motor\n", name="tests/test_it")
     assert headline(raised_by(lambda: test.look(robot.Robot())), files) == (
-        "tests/test_it.py:2: the robot does not have motor yet: robotInit sets it (robot.py:3), which runs when the test "
-        "runs the robot\n  Read it after control.run_test(...), or inside: with control.run_robot():"
+        "tests/test_it.py:2: the robot does not have motor yet: robotInit sets it (robot.py:3), which runs when the "
+        "test runs the robot\n  Read it after control.run_test(...), or inside: with control.run_robot():"
     )
 
 

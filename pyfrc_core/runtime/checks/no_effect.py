@@ -74,7 +74,9 @@ def _of_expression(value: ast.expr, source: Source) -> Iterator[CodeWarning]:
         change = f"To set it, write one =: {ast.unparse(value.left)} = ..." if is_equal else "Write if before it."
         text = "this comparison does nothing: no one looks at its result"
         yield CodeWarning(source.at(value), text, f"Write assert {written}" if source.is_test else change)
-    elif isinstance(value, ast.Attribute) or (isinstance(value, ast.Name) and isfunction(_global(value, source))):
+    elif isinstance(value, ast.Attribute) or (
+        isinstance(value, ast.Name) and isfunction(vars(source.module).get(value.id))
+    ):
         yield CodeWarning(source.at(value), f"{written} does nothing: it is not called", f"Write {written}()")
     elif isinstance(value, ast.BinOp) and isinstance(value.op, (ast.Add, ast.Sub, ast.Mult, ast.Div)):
         text = f"{written} is computed, and nothing is done with it"
@@ -132,10 +134,6 @@ def _replaced_methods(source: Source) -> Iterator[CodeWarning]:
                     yield CodeWarning(
                         source.at(node), text, f"Choose another name, or call it: {ast.unparse(target)}(...)"
                     )
-
-
-def _global(name: ast.Name, source: Source) -> object:
-    return vars(source.module).get(name.id)
 
 
 def _assigned(tree: ast.Module) -> Iterator[str]:
