@@ -187,7 +187,7 @@ def test_nan_and_a_can_id_used_twice_are_named(make_project: MakeProject) -> Non
     arm, claw = project.place("robot.py", "self.arm"), project.place("robot.py", "self.claw")
     assert f"{claw}: CAN ID 5 is used already, since {arm}, by a device of the same kind." in result.stdout
     assert f"{project.place('robot.py', 'nan')}: set() gets NaN" in result.stdout
-    assert f"{project.place('robot.py', 'RunCommand')}: the requirement PWMSparkMax is no subsystem" in result.stdout
+    assert f"{project.place('robot.py', 'RunCommand')}: a requirement (PWMSparkMax) is no subsystem" in result.stdout
     section, _, warnings = result.stdout.partition("= mistakes without an error =")[2].partition("warnings summary")
     assert section.count("self.claw") == 0
     assert "CAN ID 5" in section

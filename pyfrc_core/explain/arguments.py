@@ -92,11 +92,19 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
     if where is not None and call is None and (called := _called_from(error, where[0])) is not None:
         name = called.f_code.co_name  # of the library's Python, which has called that of C++
         call, forms = next(iter(calls_at(*where, name)), None), forms[:1]
+    if (
+        where is not None
+        and call is None
+        and frames_of(error)[-1] is where[0]
+        and len(calls := calls_at(*where, "")) == 1
+    ):
+        call, name = calls[0], last_name(calls[0].func)  # the library has another name for it
     takes = " or ".join(f"{name}({', '.join(form)})" for form in dict.fromkeys(map(tuple, forms)))
     if call is None:
-        text, place = _text_passed(found["got"], files)
-        return Explanation(text or f"{name}() got arguments that it does not take", f"It takes: {takes}", place)
-    owner = owner_of(call.func, where[0]) if where is not None else None
+        if passed := _text_passed(found["got"], files):
+            return passed
+        return Explanation(f"{name}() got arguments that it does not take", f"It takes: {takes}")
+    owner = owner_of(call.func, where[0]) if where is not None and name == found["name"] else None
     if (
         isinstance(owner, type)
         and where is not None
@@ -148,10 +156,15 @@ def _wrong(value: str, written: str, kinds: list[str]) -> tuple[str, str] | None
         number = value[1:-1] if re.fullmatch(r".-?\d+(\.\d+)?.", value) else ""
         return (
             f"{written}, a text",
-            f"Write it without quotes: {number}" if number else "Pass a value of the right type.",
+            f"Write it without quotes: {number}" if number else f"It must be: {' or '.join(kinds)}.",
         )
     if re.fullmatch(r"-?\d+(\.\d+)?|True|False", value) and kinds == ["str"]:
         return f"{written}, which is no text", f"Write str({written}), or the text in quotes."
+    if (of := re.match(r"<(?:[\w.]*\.)?(\w+) ", value)) and kinds == ["number"]:
+        return f"{written}, an object of {of[1]}", "Pass a number."
+    classes = [kind for kind in kinds if kind[:1].isupper() and "[" not in kind]
+    if classes and value[:1] == "(":
+        return f"{written}, and no {classes[0]}", f"Write {classes[0]}(...)"
     return None
 
 
@@ -161,14 +174,15 @@ def _pass_function(written: str) -> str:
     return f"{without}With arguments: lambda: {written or 'function(1)'}"
 
 
-def _text_passed(got: str, files: RobotFiles) -> tuple[str, str]:
-    """Return which call has got a text of an error that comes later, and its place; empty if none has."""
+def _text_passed(got: str, files: RobotFiles) -> Explanation | None:
+    """Explain an error that comes later than the call that has got a text for a number."""
     texts = [each for each in _values(got, got.count(", ") + 1) if each[:1] in "'\""]
     for place, call in robot_calls(files):
         for each in (*call.args, *(keyword.value for keyword in call.keywords)):
             if isinstance(each, ast.Constant) and repr(each.value) in texts:
-                return f"{last_name(call.func)}() got {each.value!r}, a text, and no number", place
-    return "", ""
+                text = f"{last_name(call.func)}() got {each.value!r}, a text"
+                return Explanation(text, "Pass a number, without quotes.", place)
+    return None
 
 
 def _got_none(name: str, written: str, takes: str = "") -> Explanation:

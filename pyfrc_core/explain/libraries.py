@@ -243,6 +243,9 @@ ROWS = (
         "",
         'Write the value into the text, as in: f"speed: {{value}}"',
     ),
+    KnownError(
+        r"TypeError: cannot unpack non-iterable", "", "The right side is one value: write one name before the =."
+    ),
     KnownError(r"TypeError: 'int' object is not iterable", "", "To count, write range, as in: for number in range(5):"),
     KnownError(r"IndexError: list index out of range", "", "Indexes begin with 0: the last one is the length - 1."),
     KnownError(

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import ast
 import builtins
+import os
 import re
 import sys
 from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import PurePath
 from types import FrameType
 
 from ..project.robot_files import RobotFiles
 from .explanation import Explanation
 from .other_season import OF_WPIMATH, in_2027
-from .places import imported_name, last_name, owner_of, place_of_assignment, statement_at, users_frame
+from .places import imported_name, last_name, owner_of, place_of_assignment, robot_trees, statement_at, users_frame
 
 
 def _spark(setting: str) -> str:
@@ -49,6 +51,7 @@ GONE = {
     "Hand": "getLeftX(), getRightX(), getLeftY() and getRightY()",
     "GenericHID.getX": "getLeftX() or getRightX()",
     "GenericHID.getY": "getLeftY() or getRightY()",
+    "GenericHID.getButton": "getRawButton(number), or the buttons by name, such as getAButton()",
     "GenericHID.POV": "getPOV(), an angle in degrees: 0 is up, 90 right, and -1 that none is pressed",
     "Timer.delay": "timer.get() or hasElapsed(seconds), asked each time: a robot that waits does nothing else",
     "PWMMotorController.follow": "LEADER.addFollower(FOLLOWER)",
@@ -128,6 +131,8 @@ GONE = {
     "FakeTime.sleep": "fake_time.increment_time_by(seconds), or control.step_timing(...) for a robot that runs",
 }
 
+#: The parameters of tests.
+_FIXTURES = frozenset({"control", "fake_time", "hal_data", "physics_controller", "robot", "robot_file", "robot_path"})
 #: How many names are listed.
 _SHOWN = 8
 #: The methods that create what a robot has.
@@ -184,7 +189,11 @@ def _name(name: str, where: tuple[FrameType, int] | None, files: RobotFiles) -> 
         return Explanation(
             remedy="Only methods with the parameter self have it: move the line into one, such as robotInit."
         )
-    if home := home_of(name):
+    if where and name in _FIXTURES and not files.is_robot_code(where[0].f_code.co_filename):
+        return Explanation(remedy=f"Write it as a parameter of the test: def {where[0].f_code.co_name}({name}):")
+    if path := _nested(name, sys.modules.get("wpilib")):
+        return Explanation(remedy=f"Did you mean {path}?")
+    if home := home_of(name) or _in_project(name, files):
         return Explanation(remedy=f"Is this line missing at the top: from {home} import {name}")
     if close := get_close_matches(name, known, n=1, cutoff=0.75):
         return Explanation(remedy=f"Did you mean {close[0]}?")
@@ -297,12 +306,20 @@ def home_of(name: str) -> str:
     return ""
 
 
-def _nested(name: str, module: object) -> str:
-    """Return the path of a name that is inside a class of a module, such as ``wpilib.Alert.AlertType``."""
-    for cls in vars(module).values():
-        if isinstance(cls, type) and name in vars(cls):
-            return f"{getattr(module, '__name__', '')}.{cls.__name__}.{name}"
+def _in_project(name: str, files: RobotFiles) -> str:
+    """Return the module of the robot that defines a class or function; empty if none does."""
+    for file, tree in robot_trees(files):
+        if any(getattr(node, "name", "") == name for node in tree.body):
+            return str(PurePath(file).with_suffix("")).replace(os.sep, ".")
     return ""
+
+
+def _nested(name: str, module: object) -> str:
+    """Return the path of a class or constant that is inside a class, such as ``wpilib.Alert.AlertType``."""
+    classes = [each for each in vars(module or object).values() if isinstance(each, type)]
+    classes += [inner for each in classes for inner in vars(each).values() if isinstance(inner, type)]
+    found = [cls for cls in classes if name in vars(cls) and (name[:1].isupper() or hasattr(cls, "__members__"))]
+    return f"{getattr(module, '__name__', '')}.{found[0].__qualname__}.{name}" if found else ""
 
 
 def _import(name: str, module: str) -> Explanation:
@@ -318,6 +335,7 @@ def meant(name: str, known: list[str]) -> str:
     """Return a question with the names that were probably meant: those that differ in a letter or two, or in order of
     words, or that have its words among others; empty if there are none.
     """
+    known = [each for each in known if each[:1].islower() or not name[:1].islower()] or known
     same = [each for each in known if each.lower().replace("_", "") == name.lower().replace("_", "")]
     words = _words(name)
     same = same or [each for each in known if sorted(_words(each)) == sorted(words)]

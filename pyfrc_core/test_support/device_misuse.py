@@ -63,8 +63,9 @@ class _Misuse:
             real(command, *requirements)
             for each in requirements:
                 if not isinstance(each, subsystem):
+                    what = f"the class {each.__name__}" if isinstance(each, type) else type(each).__name__
                     text = "is no subsystem: other commands can use it at the same time. Require its subsystem."
-                    self._warn(f"the requirement {type(each).__name__} {text}")
+                    self._warn(f"a requirement ({what}) {text}")
 
         return addRequirements
 

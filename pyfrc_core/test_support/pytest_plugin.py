@@ -341,7 +341,7 @@ class PyFrcPlugin(WatchedTests):
             text = headline(error, files)
             # Without a line of the user's, the traceback has libraries' code only.
             only = short and (names_its_place(error) or files.innermost_line(error.__traceback__) is None)
-            if isinstance(error, AssertionError) and text is not None and not only:
+            if isinstance(error, AssertionError) and "\n" in str(error) and text is not None and not only:
                 text = text.partition("\n")[0]  # the traceback has the other lines
             if short:
                 leave_out_libraries(error, files)

@@ -210,6 +210,14 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "Write drive()",
         ),
         ("wpilib.PWMSparkMax(1).set('0.5')", "set() got '0.5', a text", "Write it without quotes: 0.5"),
+        (
+            "wpilib.Field2d().setRobotPose((1, 2, 0))",
+            "setRobotPose() got (1, 2, 0), and no Pose2d",
+            "Write Pose2d(...)",
+        ),
+        ("wpilib.PWMSparkMax(1).set(wpilib.Timer())", "got wpilib.Timer(), an object of Timer", "Pass a number."),
+        ("kForward", "name 'kForward' is not defined", "Did you mean wpilib.DoubleSolenoid.Value.kForward?"),
+        ("a, b = 3.0", "cannot unpack", "write one name before the =."),
         ("wpilib.SmartDashboard.putNumber(3, 'x')", "putNumber() got 3, which is no text", "Write str(3)"),
         (
             "s = wpilib.DoubleSolenoid(wpilib.PneumaticsModuleType.REVPH, 0, 1)\ns.set(True)",

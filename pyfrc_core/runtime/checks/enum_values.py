@@ -83,7 +83,7 @@ def find_early_reads(sources: list[Source]) -> Iterator[CodeWarning]:
             for method in (each for each in cls.body if isinstance(each, ast.FunctionDef)):
                 if method.name not in _AT_START and not (method.name == "__init__" and at_once):
                     continue
-                looks = any(isinstance(each, ast.Constant) and each.value is None for each in ast.walk(method))
+                looks = any(isinstance(each, ast.Is | ast.IsNot) for each in ast.walk(method))  # is it None?
                 for call in (each for each in _at_once(method) if _asks(each) and not looks):
                     what = UNKNOWN_AT_FIRST[last_name(call.func)]
                     text = f"the {what} is not known yet in {method.name}: {last_name(call.func)}() is None"
