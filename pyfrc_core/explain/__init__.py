@@ -4,8 +4,11 @@ Libraries describe their errors from their own point of view: in the numbers of 
 that the user has never seen. `explain` returns the same in the user's words, for the errors that are common. Each
 module has one kind as a table: adding an error is adding a row. All other errors are shown as they are.
 
-In: an exception with its traceback. Out: an `Explanation`, or None. WPILib is not imported here: an error that it has
-raised brings all that is needed.
+Where no row fits, the explanation is made of what is there: the names that a class has, what its documentation says
+that a method returns, the values at the user's line, and the user's own files.
+
+In: an exception with its traceback. Out: an `Explanation`, or None. WPILib is imported only where the robot has
+imported it, to find the module of a name: an error that it has raised brings the rest.
 """
 
 from __future__ import annotations

@@ -297,7 +297,7 @@ def earlier_name(name: str, owner: type) -> str:
 
 def home_of(name: str) -> str:
     """Return the module of WPILib that has a class or function of this name; empty if none has."""
-    for module in _HOMES if name[:1].isupper() else ():
+    for module in _HOMES if name[:1].isupper() and "wpilib" in sys.modules else ():
         try:
             if find_spec(module) is not None and hasattr(import_module(module), name):
                 return module
