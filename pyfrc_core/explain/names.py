@@ -214,9 +214,9 @@ def _unbound(error: UnboundLocalError, files: RobotFiles) -> Explanation | None:
     robot, statement = frame[0].f_locals.get("self"), statement_at(*frame)
     if isinstance(statement, ast.AugAssign) and last_name(statement.target) == name and robot is not None:
         changed = ast.unparse(ast.AugAssign(ast.Name(f"self.{name}"), statement.op, statement.value))
-        before = "" if hasattr(robot, name) else f", and self.{name} = 0 in robotInit or __init__"
+        before = "" if hasattr(robot, name) else f", and self.{name} = 0 in {in_2027('robotInit')} or __init__"
         return Explanation(
-            f"{name} has no value yet: a function forgets its names when it ends", in_2027(f"Write {changed}{before}.")
+            f"{name} has no value yet: a function forgets its names when it ends", f"Write {changed}{before}."
         )
     if name in frame[0].f_globals:
         return Explanation(
@@ -277,7 +277,7 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
         return Explanation(text, "Read it after control.run_test(...), or inside: with control.run_robot():")
     if place:
         return Explanation(
-            remedy=in_2027(f"{place} sets {name}, but has not run yet: move it to __init__ or robotInit.")
+            remedy=f"{place} sets {name}, but has not run yet: move it to __init__ or {in_2027('robotInit')}."
         )
     return Explanation(remedy=f"Nothing has set {name}: is the line missing, or is the name misspelt?")
 
