@@ -79,6 +79,8 @@ def test_a_line_that_does_not_do_what_it_says(line: str, text: str, remedy: str)
         "...",
         "self.limit = 3\n            if self.limit: pass",
         "if self.pad.getAButton(): pass",
+        "if self.state.position > 1: pass\n    def position(self): pass",
+        "if self.options.reset: pass",
         "if self.callback is not None and self.callback: pass",
         "try: self.camera\n            except AttributeError: pass",
         "with suppress(AttributeError): self.camera",

@@ -6,6 +6,7 @@ Such as ``self.command.schedule`` without its brackets, a comparison that is no 
 from __future__ import annotations
 
 import ast
+import re
 import sys
 from collections.abc import Iterator
 from functools import cache
@@ -18,6 +19,8 @@ from ...wpi import names
 from .code_warning import CodeWarning
 from .sources import Source
 
+#: How methods begin that return something.
+_ASKS = re.compile(r"(get|is|has|at)(?=[A-Z_]|$)")
 #: Code in these may only look whether an error is raised.
 _EXPECTING = frozenset({"raises", "suppress", "warns"})
 
@@ -34,8 +37,11 @@ def find_lines_without_effect(sources: list[Source]) -> Iterator[CodeWarning]:
             elif isinstance(node, (ast.If, ast.While, ast.IfExp, ast.Assert)):
                 for each in _conditions(node.test):
                     name = last_name(each)
+                    written = ast.unparse(each)
+                    # Another library's object may have a value of the same name, but hardly one such as getAngle.
+                    if written != f"self.{name}" and not _ASKS.match(name):
+                        continue
                     if name in methods or (name not in assigned and name in _library_methods()):
-                        written = ast.unparse(each)
                         text = f"{written} is a function, which counts as true whatever it would return"
                         yield CodeWarning(source.at(each), text, f"Write {written}()")
             elif isinstance(node, ast.Call):
