@@ -486,5 +486,5 @@ def test_asking_for_physics_that_are_not_there(make_project) -> None:
     assert "there is no physics.py in this project" in result.output
     assert "pyfrc create-physics writes one" in result.output
     (project.path / "sim").mkdir()
-    (project.path / "sim" / "physics.py").touch()
+    (project.path / "sim" / "physics.py").write_text("class PhysicsEngine: ...\n")
     assert "Move sim/physics.py beside robot.py." in project.run("test").output.replace("\\", "/")

@@ -121,13 +121,6 @@ class Project:
         return Path(path_from(self.root, file)).as_posix()
 
     @property
-    def how_to_get_physics(self) -> str:
-        """The remedy for a missing physics module: it may be in another directory."""
-        for elsewhere in sorted(self.root.glob("*/physics.py")):
-            return f"Move {elsewhere.relative_to(self.root)} beside {self.main_file.name}."
-        return "pyfrc create-physics writes one for this robot."
-
-    @property
     def test_directories(self) -> tuple[Path, Path]:
         """The possible directories of tests, in search order."""
         return self.root / "tests", self.root.parent / "tests"

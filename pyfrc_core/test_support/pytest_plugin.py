@@ -151,7 +151,10 @@ class PyFrcPlugin(WatchedTests):
     def physics_controller(self, _physics: Physics | None, robot: object) -> PhysicsInterface:
         """The object with which your ``physics.py`` moves the robot; it knows the robot's position on the field."""
         if _physics is None:
-            raise ProjectError(NO_PHYSICS, where=self.project.root, remedy=self.project.how_to_get_physics)
+            elsewhere = self.project.misplaced_physics
+            move = f"Move {self.project.shown(elsewhere)} beside {self.project.main_file.name}." if elsewhere else None
+            remedy = move or "pyfrc create-physics writes one for this robot."
+            raise ProjectError(NO_PHYSICS, where=self.project.root, remedy=remedy)
         return _physics.controller
 
     @pytest.fixture
