@@ -179,6 +179,7 @@ def user_interface(choice: RobotChoice, as_json: bool = False) -> UserInterface:
 def errors_shown(choice: RobotChoice, as_json: bool = False) -> Iterator[None]:
     """Add the robot's option to commands in error messages. Also print errors as JSON if requested."""
     from pyfrc_core.errors import PyfrcError, UsageError
+    from pyfrc_core.interruption import interruption
 
     try:
         yield
@@ -194,5 +195,6 @@ def errors_shown(choice: RobotChoice, as_json: bool = False) -> Iterator[None]:
                 shown: PyfrcError = UsageError("interrupted")
             else:
                 shown = error if isinstance(error, PyfrcError) else PyfrcError(str(error))
+            shown.exit_code = interruption.exit_code(shown.exit_code)
             JsonProgress().failure(shown)
         raise

@@ -17,31 +17,26 @@ def main() -> None:
     """Run the command."""
     _open_closed_streams()
     _remove_current_directory(_current_directory())
-    if "PYTHONHASHSEED" not in os.environ and _RUN_ROBOTS.intersection(sys.argv[1:]):
-        _restart_with_fixed_seed()
+    from pyfrc_core.interruption import interruption
+    from pyfrc_core.processes.exit import end_without_destruction
+
+    set_status = end_without_destruction()
+    status = 0
     try:
+        interruption.begin()
+        if "PYTHONHASHSEED" not in os.environ and _RUN_ROBOTS.intersection(sys.argv[1:]):
+            _restart_with_fixed_seed()
         from .main import run
 
         run()
     except KeyboardInterrupt:  # during the import; later, `run` handles it
         print("interrupted", file=sys.stderr)
-        sys.exit(2)
-    finally:
-        _end_at_once_by_ctrl_c()
-
-
-def _end_at_once_by_ctrl_c() -> None:
-    """Let a further Ctrl-C end the process with exit code 2.
-
-    The result was printed. Python may still wait for threads, and would print a traceback or end by the signal.
-    """
-    import signal
-    from contextlib import suppress
-
-    with suppress(OSError, ValueError):  # its reader may have ended
-        sys.stdout.flush()
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # otherwise nohup, for example, ignores it
-        signal.signal(signal.SIGINT, lambda number, frame: os._exit(2))
+        status = 130
+    except SystemExit as ended:
+        status = ended.code if isinstance(ended.code, int) else int(ended.code is not None)
+    interruption.end()
+    set_status(status := interruption.exit_code(status))
+    sys.exit(status)
 
 
 def _open_closed_streams() -> None:

@@ -1,68 +1,93 @@
-"""Handle Ctrl-C and termination signals so that a program can write its files and clean up before it ends."""
+"""Ctrl-C and the signals that end a program: it writes its files and cleans up before it ends.
+
+While a command runs, each of them raises `KeyboardInterrupt`. The command's exit code is then 128 plus the signal's
+number, as in a shell: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP.
+"""
 
 from __future__ import annotations
 
+import os
 import signal
-import threading
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from types import FrameType
 
-#: Signals that end a program, and the one for a closed terminal, where it exists.
-_ENDING = ("SIGTERM", "SIGHUP")
-
-_Handler = Callable[[int, FrameType | None], object]
+#: Ctrl-C, the signal that ends a program, and the one for a closed terminal, where it exists.
+_ENDING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
 class Interruption:
-    """Raise KeyboardInterrupt for signals until the program has begun to finish."""
+    """The signal that has ended this process's command.
+
+    :ivar number: its number; None: the command has not been interrupted
+    """
 
     def __init__(self) -> None:
-        self._ending = self._finishing = False
+        self.number: int | None = None
+        self._call: Callable[[], object] | None = None
+        self._finishing = self._over = False
+
+    def begin(self) -> None:
+        """Handle signals from now on, but those that are ignored, as nohup has it."""
+        for number in _ENDING:
+            if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
+                signal.signal(number, self._handle)
+
+    def leave(self) -> None:
+        """Handle no signals in this process, which a command has forked."""
+        for number in _ENDING:
+            if signal.getsignal(number) == self._handle:
+                signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
 
     def finish(self) -> None:
         """Ignore further signals: files are being written."""
         self._finishing = True
 
-    def handle(self, number: int, frame: FrameType | None) -> None:
-        """Raise KeyboardInterrupt; only once for a closed terminal, which the system and the shell both report."""
-        again, self._ending = self._ending, self._ending or number != signal.SIGINT
-        if not (self._finishing or again):
+    def end(self) -> None:
+        """Let a further signal end the process at once: the result was printed.
+
+        Python may still wait for threads, and would print a traceback or end by the signal.
+        """
+        self._over = True
+
+    def check(self, error: BaseException) -> None:
+        """Raise KeyboardInterrupt if the command was interrupted: an error that robot code raises then comes of that.
+
+        A library in C++ that is being imported reports Ctrl-C as a failed import.
+        """
+        if self.number is not None:
+            raise KeyboardInterrupt from error
+
+    def exit_code(self, status: int) -> int:
+        """Return the exit code of a command.
+
+        :param status: that of a command that was not interrupted
+        """
+        return status if self.number is None else 128 + self.number
+
+    @contextmanager
+    def calling(self, call: Callable[[], object]) -> Iterator[None]:
+        """Call a function instead of raising an exception, while the context lasts.
+
+        For event loops in C, which an exception does not reliably end.
+        """
+        before, self._call = self._call, call
+        try:
+            yield
+        finally:
+            self._call = before
+
+    def _handle(self, number: int, frame: FrameType | None) -> None:
+        if self._over:
+            os._exit(self.exit_code(128 + number))
+        # Only once for a closed terminal, which the system and the shell both report.
+        if self._finishing or self.number not in (None, signal.SIGINT):
+            return
+        self.number = self.number or number
+        if self._call is None:
             raise KeyboardInterrupt
+        self._call()
 
 
-@contextmanager
-def ending_like_ctrl_c() -> Iterator[Interruption]:
-    """Raise KeyboardInterrupt for termination signals, too, while the context lasts."""
-    interruption = Interruption()
-    with _handling((*_ENDING, "SIGINT"), interruption.handle):
-        yield interruption
-
-
-def calling_when_ended(call: Callable[[], object]) -> AbstractContextManager[None]:
-    """Call a function for Ctrl-C and termination signals, instead of raising an exception, while the context lasts.
-
-    For event loops in C, which an exception does not reliably end.
-    """
-    return _handling((*_ENDING, "SIGINT"), lambda number, frame: call())
-
-
-@contextmanager
-def _handling(names: tuple[str, ...], handle: _Handler) -> Iterator[None]:
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
-    # None: a handler that was not set by Python, which stays; SIG_IGN: as set by nohup.
-    former = {
-        number: handler
-        for number in numbers
-        if (handler := signal.getsignal(number)) is not None and handler is not signal.SIG_IGN
-    }
-    for number in former:
-        signal.signal(number, handle)
-    try:
-        yield
-    finally:
-        for number, handler in former.items():
-            signal.signal(number, handler)
+#: Of this process.
+interruption = Interruption()

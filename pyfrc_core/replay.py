@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import signal
-import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from types import FrameType
 
 from .errors import PyfrcError, RobotCodeError
+from .interruption import interruption
 from .invariants.load import load_invariants
 from .invariants.watch import watch_invariants
 from .physics.construct import construct
@@ -33,6 +30,7 @@ from .runtime.scripts.player import Player
 from .runtime.scripts.script import InputScript, trace_beside
 from .runtime.scripts.trace_difference import Difference, first_difference
 from .runtime.seeds import seed_generators
+from .temporary import temporary_directory
 
 
 @dataclass(frozen=True)
@@ -95,7 +93,7 @@ def _replay_here(
     robot_class = load_robot(project)
     rules = load_invariants(project)
     until_us = None if until is None else to_us(until)
-    with TemporaryDirectory() as temporary:
+    with temporary_directory("replay") as temporary:
         written = trace or Path(temporary, "trace.jsonl")
         run = RobotRun(LogPlace.of_run(project.root))
         failures: list[PyfrcError] = []
@@ -142,28 +140,13 @@ def _replay_boots(project: Project, script: InputScript, until: float | None, tr
 @contextmanager
 def _collected(failures: list[PyfrcError], project: Project) -> Iterator[None]:
     """Collect what robot code raises, including `exit()` and its own `KeyboardInterrupt`, but not Ctrl-C."""
-    by_user = False
-
-    def interrupt(signum: int, frame: FrameType | None) -> None:
-        nonlocal by_user
-        by_user = True
-        signal.default_int_handler(signum, frame)
-
-    before = signal.getsignal(signal.SIGINT)
-    handles_interrupt = before is signal.default_int_handler and threading.current_thread() is threading.main_thread()
-    if handles_interrupt:
-        signal.signal(signal.SIGINT, interrupt)
     try:
         yield
     except PyfrcError:
         raise
     except BaseException as error:
-        if isinstance(error, KeyboardInterrupt) and by_user:
-            raise
+        interruption.check(error)
         failures.append(as_robot_code_error(error, project.files))
-    finally:
-        if handles_interrupt:
-            signal.signal(signal.SIGINT, before)
 
 
 def _process_failure(project: Project, script: InputScript) -> str | None:

@@ -170,18 +170,23 @@ main()
 def test_ctrl_c_while_it_is_still_starting_is_told_in_a_word() -> None:
     command = [sys.executable, "-c", INTERRUPTED_AT_ONCE, "--help"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout, done.stderr) == (2, "", "interrupted\n")
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "interrupted\n")
 
 
 INTERRUPTED_AT_ITS_END = """
-import atexit, os, signal, threading
+import atexit, os, signal, sys, threading
+import pyfrc_cli.main
 from pyfrc_cli.start import main
 
 def interrupt():
     os.kill(os.getpid(), signal.SIGINT)
     threading.Event().wait()
 
-atexit.register(interrupt)
+def run(run=pyfrc_cli.main.run):
+    atexit.register(interrupt)
+    run()
+
+pyfrc_cli.main.run = run
 main()
 """
 
@@ -190,7 +195,7 @@ main()
 def test_ctrl_c_after_the_result_ends_without_a_traceback() -> None:
     command = [sys.executable, "-c", INTERRUPTED_AT_ITS_END, "--help"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (2, "")
+    assert (done.returncode, done.stderr) == (130, "")
     assert done.stdout.startswith("Usage: pyfrc ")
 
 

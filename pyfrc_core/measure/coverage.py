@@ -6,7 +6,6 @@ import json
 import os
 import re
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import UsageError
 from ..project import Project
 from ..project.walk import python_files, why_unreadable
+from ..temporary import temporary_directory
 from ..text_files import write_whole
 from ..wording import counted
 from .processes import announced, is_announced
@@ -84,7 +84,7 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
     from coverage.exceptions import CoverageException
 
     # The directory for the data of each process, until it is combined; nothing stays in the project.
-    with tempfile.TemporaryDirectory(prefix="pyfrc-coverage-") as directory:
+    with temporary_directory("coverage") as directory:
         settings: dict[str, Any] = {
             "data_file": str(Path(directory) / "data"),
             "source": [str(project.root)],

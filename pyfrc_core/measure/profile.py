@@ -6,7 +6,6 @@ import cProfile
 import json
 import os
 import pstats
-import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ from typing import Any
 from ..errors import UsageError
 from ..project import Project
 from ..project.robot_files import RobotFiles
+from ..temporary import temporary_directory
 from ..text_files import write_whole
 from .figures import Figures, added_up
 from .flame_graph import Samples, require_pyinstrument, write_flame_graph
@@ -141,7 +141,7 @@ def profiling(project: Project, options: ProfileOptions, command: str) -> Iterat
         if options.pstats is not None:  # before Python 3.12, a thread has one profiler at a time
             raise UsageError("-o and --html are mutually exclusive", remedy="Profile twice, once with each.")
     # The directory for the figures of each process, until they are added up.
-    with tempfile.TemporaryDirectory(prefix="pyfrc-profile-") as directory:
+    with temporary_directory("profile") as directory:
         settings = {
             "root": str(project.root),
             "directory": directory,

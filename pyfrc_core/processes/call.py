@@ -157,7 +157,6 @@ def _result_of(worker: Worker, files: RobotFiles, meanwhile: str) -> Any:
 
 def _call_apart(call: Callable[[CrashLog], object], closed: Sequence[int], send: Send, log: CrashLog) -> None:
     """Do the call, without these standard streams."""
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started this one
     nowhere = os.open(os.devnull, os.O_RDWR)
     for descriptor in closed:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import signal
 import sys
@@ -47,6 +48,25 @@ def exit_by_signal(number: int, frame: object, prepare: Callable[[], object] = l
     signal.signal(number, signal.SIG_IGN)
     prepare()
     exit_now(128 + number)
+
+
+def end_without_destruction() -> Callable[[int], object]:
+    """Return a function that sets the exit code with which this process ends, after `atexit`'s calls.
+
+    To be called first, as the last call of `atexit` is the one that was registered first. Without it, Python and C++
+    would then destroy objects, in any order, while threads use them, such as those of NetworkTables' listeners, and
+    libraries would end the process by SIGABRT.
+    """
+    here = os.getpid()
+    status: list[int] = []
+
+    def end() -> None:
+        if status and os.getpid() == here:
+            flush_output()
+            exit_now(status[0])
+
+    atexit.register(end)
+    return status.append
 
 
 @contextmanager

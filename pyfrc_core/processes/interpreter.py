@@ -14,7 +14,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
@@ -24,6 +23,7 @@ from pathlib import Path
 from typing import IO, NoReturn, Protocol
 
 from ..collector import collector_paused
+from ..temporary import temporary_directory
 from ..text_files import write_whole
 from . import spawn
 from .crash_report import CrashLog
@@ -65,7 +65,7 @@ class Interpreter:
         stdout: int | IO[bytes] | None = subprocess.DEVNULL,
         stderr: int | IO[bytes] | None = subprocess.DEVNULL,
     ) -> None:
-        self._temporary = tempfile.TemporaryDirectory(prefix="pyfrc-process-", ignore_cleanup_errors=True)
+        self._temporary = temporary_directory("process")
         self._directory = Path(self._temporary.name)
         self._ends_after_one = prepare is None
         self._number = 0

@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import os
 import signal
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 
+from ..interruption import interruption
 from .exit import exit_now, flush_output
 from .fork import Fork, wait_for_any
 
@@ -47,26 +46,14 @@ class PreforkedProcess:
         """
         os.write(self._writing_end, reasons.encode()[:_MOST_BYTES])
         self._close()
-        with self._interrupting_the_fork():
-            while not self._fork.finished:
-                try:
-                    wait_for_any([self._fork.fileno()])
-                    self._fork.poll()
-                except KeyboardInterrupt:
-                    continue  # the fork has received it, too, and reports it
+        while not self._fork.finished:
+            try:
+                wait_for_any([self._fork.fileno()])
+                self._fork.poll()
+            except KeyboardInterrupt:
+                if interruption.number == signal.SIGTERM:  # which the fork has not received, as it has Ctrl-C
+                    self._fork.send_signal(signal.SIGTERM)
         return self._fork.status
-
-    @contextmanager
-    def _interrupting_the_fork(self) -> Iterator[None]:
-        """Hand on SIGTERM, which only this process receives, as the Ctrl-C that it stands for."""
-        if threading.current_thread() is not threading.main_thread():
-            yield
-            return
-        before = signal.signal(signal.SIGTERM, lambda number, frame: self._fork.send_signal(signal.SIGINT))
-        try:
-            yield
-        finally:
-            signal.signal(signal.SIGTERM, before)
 
     def _close(self) -> None:
         if self._open:

@@ -14,6 +14,7 @@ from typing import Any
 from ..encoding import find_wrong_encoding
 from ..errors import ProjectError, RobotCodeError, text_of
 from ..explain import Explanation, explain
+from ..interruption import interruption
 from ..processes.crash_report import reported_exit
 from ..processes.lent_streams import lent_streams
 from ..project import Project
@@ -92,15 +93,13 @@ def _run_code(project: Project, file: Path, name: str, run: Callable[[], object]
     try:
         with lent_streams(), importing(project.files, project.settings.test.hang_seconds), reported_exit(project.files):
             run()
-    except (SyntaxError, UnicodeDecodeError, ValueError) as error:
-        sys.modules.pop(name, None)
-        _refuse_wrong_encoding(project, file, error)
-        raise _import_error(project, file, error) from error
-    except RobotCodeError:  # it names its place
-        sys.modules.pop(name, None)
-        raise
     except BaseException as error:
         sys.modules.pop(name, None)
+        interruption.check(error)
+        if isinstance(error, RobotCodeError):  # it names its place
+            raise
+        if isinstance(error, (SyntaxError, UnicodeDecodeError, ValueError)):
+            _refuse_wrong_encoding(project, file, error)
         raise _import_error(project, file, error) from error
 
 

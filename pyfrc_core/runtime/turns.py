@@ -13,7 +13,6 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from types import FrameType
@@ -22,6 +21,7 @@ from typing import IO, Any
 from ..compat.cpython_private import get_frame
 from ..file_lock import lock
 from ..project.robot_files import is_pyfrc
+from ..temporary import temporary_directory
 from .patches.active_run import active_run
 from .patches.data_logs import ROBOT_FILE
 
@@ -51,7 +51,7 @@ def taking_turns() -> Iterator[None]:
     if _VARIABLE in os.environ:  # a part of a command that does so already
         yield
         return
-    with tempfile.TemporaryDirectory(prefix="pyfrc-turns-") as directory:
+    with temporary_directory("turns") as directory:
         os.environ[_VARIABLE] = directory
         try:
             yield

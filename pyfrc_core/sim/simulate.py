@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..disk_space import check_disk_space
 from ..errors import UsageError
-from ..interruption import ending_like_ctrl_c
+from ..interruption import interruption
 from ..project import Project
 from ..runtime.scripts.inputs_file import load_inputs, remarks
 from ..runtime.scripts.script import trace_beside
@@ -46,7 +46,6 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     page = None if request.page is None else PageFile(request.page, _what(project, request))
     files = OutputFiles(request.record, request.wpilog, request.picture, page)
     with ExitStack() as closing:
-        interruption = closing.enter_context(ending_like_ctrl_c())
         if not kind.prints:
             simulation.echo = partial(_echo, say)
         if request.watch:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Literal
 
 from ..errors import ProjectError, UsageError
-from ..interruption import ending_like_ctrl_c
+from ..interruption import interruption
 from ..project import MAIN_FILE, Project, find_project, projects_below
 from ..shell import quoted
 from ..wording import counted
@@ -120,11 +120,11 @@ def _serve(source: Source, request: ViewRequest, say: Say) -> int:
     from .ui.web.server import WebOptions
 
     front_end = WebFrontEnd(say, WebOptions(request.share, request.port or 0, request.allow_host), request.quiet)
-    with ending_like_ctrl_c() as interruption, suppress(KeyboardInterrupt):
-        try:
+    try:
+        with suppress(KeyboardInterrupt):
             return front_end.run(source)
-        finally:
-            interruption.finish()
+    finally:
+        interruption.finish()
     return 0
 
 

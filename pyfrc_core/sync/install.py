@@ -7,11 +7,11 @@ import sys
 from collections.abc import Iterator, Sequence
 from importlib import metadata
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from .._version import __version__
 from ..errors import PyfrcError
 from ..season import Season
+from ..temporary import temporary_directory
 from .lock import Lock
 
 
@@ -55,7 +55,7 @@ def install_here(lock: Lock, season: Season, find_links: Sequence[str], quiet: b
     requirements = [_with_version(each, lock, season) for each in lock.requirements]
     if not requirements:
         return
-    with TemporaryDirectory(prefix="pyfrc-sync-") as temporary:
+    with temporary_directory("sync") as temporary:
         constraints = Path(temporary, "constraints.txt")
         versions = {each.name: each.version for each in lock.packages} | {"pyfrc": __version__}
         constraints.write_text("".join(f"{name}=={version}\n" for name, version in versions.items()), "utf-8")

@@ -13,13 +13,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 from urllib.parse import urlsplit, urlunsplit
 
 from ..compat.pip_private import pip_command
 from ..errors import PyfrcError
 from ..season import Season
+from ..temporary import temporary_directory
 from .addresses import file_name_in, index_of
 from .pip_errors import explain
 from .wanted import robot_environment
@@ -71,7 +71,7 @@ def find_packages(
     if not requirements:
         return []
     _refuse_old_pip()
-    with TemporaryDirectory(prefix="pyfrc-sync-") as temporary:
+    with temporary_directory("sync") as temporary:
         report = Path(temporary, "report.json")
         limits = Path(temporary, "constraints.txt")
         limits.write_text("".join(f"{each}\n" for each in constraints), "utf-8")

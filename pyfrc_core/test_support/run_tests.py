@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -136,12 +135,9 @@ def run_tests(
     preforked: PreforkedProcess | None = None
     if options.isolation != "none" and is_forked(options.isolation):
         preforked = PreforkedProcess(session)
-    # SIGTERM, from an IDE or a CI system, ends a run like Ctrl-C: with the processes it has started.
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return session()
     finally:
-        signal.signal(signal.SIGTERM, before)
         if preforked is not None:
             preforked.dismiss()
 

@@ -23,7 +23,6 @@ from typing import Any
 from ..deploy.agent.virtual import VARIABLE, VirtualRobotClient
 from ..deploy.targets import CONTROLLERS, ControllerKind, controller_of
 from ..errors import PyfrcError, UsageError
-from ..interruption import ending_like_ctrl_c
 from ..season import CURRENT
 from ..terminal_text import visible
 from .console import ConsoleServer
@@ -198,7 +197,6 @@ def show(
     directory, kind = (directory or default_directory()).absolute(), _controller(controller)
     with (
         suppress(KeyboardInterrupt),
-        ending_like_ctrl_c(),
         VirtualRobot(
             directory,
             controller=kind,
@@ -241,6 +239,6 @@ def run_command(
     if program is None:
         raise UsageError(f"there is no command {command[0]!r}", remedy="Write: pyfrc virtual-robot -- COMMAND")
     directory, kind = (directory or default_directory()).absolute(), _controller(controller)
-    with ending_like_ctrl_c(), VirtualRobot(directory, controller=kind, port=port, fresh=fresh) as robot:
+    with VirtualRobot(directory, controller=kind, port=port, fresh=fresh) as robot:
         code = subprocess.run([program, *command[1:], robot.address], check=False).returncode
     return code if code >= 0 else 128 - code

@@ -10,7 +10,6 @@ import logging
 import os
 import pickle
 import socket
-import tempfile
 import time
 import uuid
 from collections.abc import Callable, Iterator, Sequence
@@ -25,6 +24,7 @@ from urllib.parse import urlsplit
 from ..._version import requirement
 from ...errors import PyfrcError, UsageError
 from ...project import Project
+from ...temporary import temporary_directory
 from ..match.work import MatchResult, Result, Shrunk, Work
 from .executors import PooledMatchExecutor
 from .packed_project import pack
@@ -75,7 +75,7 @@ def open_cluster_executor(project: Project, address: str) -> Iterator[ClusterMat
             "--scheduler needs the package distributed, which is not installed",
             remedy=f'Install it with: pip install "{requirement("cluster")}"',
         )
-    with _connected(address) as client, tempfile.TemporaryDirectory(prefix="pyfrc-fuzz-") as temporary:
+    with _connected(address) as client, temporary_directory("fuzz") as temporary:
         from .cluster_worker import ProjectOnWorker, versions
 
         _check_versions(client, address)

@@ -5,7 +5,6 @@ Each match has its own process, so it may crash, hang and print without harm.
 
 from __future__ import annotations
 
-import tempfile
 from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
@@ -16,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import PyfrcError, RobotCodeError
-from ...interruption import calling_when_ended
+from ...interruption import interruption
 from ...processes.call import Call, ForkedCall, begin_call, run_in_subprocess, wait_for_calls
 from ...processes.crash_report import CrashLog
 from ...processes.fork import is_forked
@@ -27,6 +26,7 @@ from ...runtime.clock import to_us
 from ...runtime.scripts.script import InputScript
 from ...runtime.threads.fork_obstacles import reasons_not_to_fork
 from ...runtime.turns import taking_turns
+from ...temporary import temporary_directory
 from ..guidance.goals import RobotLine
 from ..guidance.seed_schedule import match_seconds
 from ..match.imported_robot import robot_lines
@@ -102,7 +102,7 @@ class WorkExecutor(MatchExecutor):
         def interrupt() -> None:
             self.interrupted = True
 
-        return calling_when_ended(interrupt)
+        return interruption.calling(interrupt)
 
     def _check_interrupt(self) -> None:
         if self.interrupted:
@@ -145,7 +145,7 @@ def open_match_executor(project: Project, jobs: int) -> Iterator[WorkExecutor]:
 
     :raises RobotCodeError: when the robot's code cannot be imported
     """
-    with tempfile.TemporaryDirectory(prefix="pyfrc-fuzz-") as temporary, taking_turns():
+    with temporary_directory("fuzz") as temporary, taking_turns():
         kind = ForkedMatchExecutor if is_forked(project.isolation) else SpawnedMatchExecutor
         with closing(kind(project, jobs, Path(temporary))) as executor:
             yield executor

@@ -9,12 +9,12 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from ...processes.spawn import WRITES_UTF_8
 from ...project import NO_PHYSICS, Project
 from ...project.environments import is_environment
 from ...project.walk import LEFT_OUT
+from ...temporary import temporary_directory
 
 _FAILURE = re.compile(r"(?:FAILED|ERROR) (.+)")
 
@@ -42,7 +42,7 @@ def failures_with(project: Project, texts: dict[Path, str]) -> Failures | None:
     if tests is None:
         return None
     base = project.root.parent
-    with TemporaryDirectory(prefix="pyfrc-create-physics-") as temporary:
+    with temporary_directory("create-physics") as temporary:
         copy = Path(temporary)
         shutil.copytree(project.root, copy / project.root.name, symlinks=True, ignore=_not_needed)
         if not tests.is_relative_to(project.root):  # beside the code's directory

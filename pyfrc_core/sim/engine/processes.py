@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from itertools import count
 from multiprocessing.connection import Client, Listener
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from ...processes.channel import Channel, Connection, Outbox
@@ -25,6 +24,7 @@ from ...processes.output_pipe import OutputPipe, Stamps
 from ...processes.spawn import Interpreter
 from ...processes.standstill import Standstill, loading_for
 from ...project.robot_files import RobotFiles
+from ...temporary import temporary_directory
 from . import host_process
 from .commands import Quit
 from .host import CLOSING_SECONDS, Exited, Hosting, Kill, Launch, Preload
@@ -74,7 +74,7 @@ class RobotProcesses:
         self._forks = FORK_IS_SAFE if fork is None else fork
         self._lock = threading.RLock()
         self._closed = False
-        self._temporary = TemporaryDirectory(prefix="pyfrc-sim-")
+        self._temporary = temporary_directory("sim")
         self._key = os.urandom(32)
         try:
             self._listener = Listener(_address(self._temporary.name), authkey=self._key)

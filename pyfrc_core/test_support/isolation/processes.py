@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 import tempfile
 from collections.abc import Callable
@@ -129,7 +128,6 @@ def _run_in_fork(
     send: Send,
     log: CrashLog,
 ) -> None:
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     take()
     capture_into(item.config, files)
     if output is not None:

@@ -72,7 +72,7 @@ class OnlyOneTest:
         from ...runtime.turns import take
         from .messages import ReportSender
 
-        self._send((OUTPUT, _capture_into_files(session.config)))
+        self._send((OUTPUT, _capture_into_files(session.config, self._job.turns)))
         take(self._job.turns)
         self._plugin.crash_log = self._log
         self._log.enable_fault_handler()  # pytest has one of its own
@@ -82,9 +82,9 @@ class OnlyOneTest:
         return True
 
 
-def _capture_into_files(config: pytest.Config) -> list[Path]:
+def _capture_into_files(config: pytest.Config, directory: str | None) -> list[Path]:
     """Have pytest capture into files that outlive this process; the other one removes them."""
-    files = [tempfile.mkstemp(prefix="pyfrc-output-") for _ in range(2)]
+    files = [tempfile.mkstemp(dir=directory) for _ in range(2)]
     (stdout, _), (stderr, _) = files
     capture_into(config, (stdout, stderr))
     for descriptor, _ in files:

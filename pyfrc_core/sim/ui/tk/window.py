@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from ....compat.c_calls import draw_sharp_text
 from ....display import WITHOUT_DISPLAY
 from ....errors import UsageError
-from ....interruption import calling_when_ended
+from ....interruption import interruption
 from ...engine.snapshot import Snapshot, Status
 from ..models.driver_station_keys import SUMMARY, DriverStationKeys
 from ..models.gamepads import GamepadRouter, open_backend
@@ -133,7 +133,7 @@ class Window:
     def loop(self) -> None:
         """Show the simulation until the window is closed."""
         self.begin()
-        with calling_when_ended(self._interrupt):
+        with interruption.calling(self._interrupt):
             self.root.mainloop()
         if isinstance(self.failure, tk.TclError) and not self._exists():
             raise UsageError("the window was destroyed from outside") from None

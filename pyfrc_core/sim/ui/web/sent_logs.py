@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from starlette.requests import ClientDisconnect, Request
 
 from ....errors import PyfrcError
+from ....temporary import temporary_directory
 from ...logs import open_log
 from ...logs.align import offset_of
 
@@ -42,7 +43,7 @@ class SentLogs:
         """Read the log that a request has, and return what the page gets: the branch, and a text for the person."""
         name = Path(request.query_params.get("name", "").replace("\\", "/")).name[:_LONGEST_NAME] or "log"
         if self._directory is None:
-            self._directory = tempfile.TemporaryDirectory(prefix="pyfrc-", ignore_cleanup_errors=True)
+            self._directory = temporary_directory("logs")
         self._count += 1
         file = Path(self._directory.name) / f"{self._count}"
         try:
