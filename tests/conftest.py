@@ -69,6 +69,9 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 #: Guards of tests that need what not every machine has, and of those that only one season has.
 pytest_plugins = ["skips", "seasons"]
 
+#: That code makes no progress, or is still being loaded.
+_SLOW = re.compile(r"no progress for \d+ s|^still loading WPILib")
+
 _BANNER = re.compile(r"^=+ .+ =+$")
 _BLOCK = re.compile(r"^_{2,} (.+?) _{2,}$")
 
@@ -85,6 +88,12 @@ class Result:
     def output(self) -> str:
         """Everything printed: what went to standard output, then the errors."""
         return self.stdout + self.stderr
+
+    @property
+    def complaints(self) -> str:
+        """What went to standard error, without the notes that a slow machine causes."""
+        lines = self.stderr.splitlines(keepends=True)
+        return "".join(line for line in lines if _SLOW.search(line) is None)
 
     @property
     def first_error(self) -> str:

@@ -503,11 +503,11 @@ def test_ctrl_c_leaves_all_whole(as_json: bool, robot: Roborio, make_project) ->
                 threading.Event().wait(0.01)
             command.send_signal(signal.SIGINT)
             output, errors = command.rest()
-            assert command.wait() == 2
+            assert command.wait() == 130
     assert errors.strip() == "interrupted"
     if as_json:
         last = json.loads(output.splitlines()[-1])
-        assert (last["event"], last["message"], last["exit_code"]) == ("error", "interrupted", 2)
+        assert (last["event"], last["message"], last["exit_code"]) == ("error", "interrupted", 130)
     assert "number 1" in code_on(robot)
     assert not (robot.home / "py/noise.bin").exists()
     assert deploy(project, robot, "--large").code == 0

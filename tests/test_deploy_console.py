@@ -67,7 +67,7 @@ def test_the_console_shows_what_the_program_prints_and_connects_again(option, ro
         wait_for(console, "connected to")
         assert project.run("deploy", "--skip-tests", "--robot", robot.where).code == 0
         wait_for(console, "the words of our robot")
-    assert console.wait() == 0
+    assert console.wait() == 130
 
 
 def test_the_console_waits_for_a_robot_that_is_not_there_yet(make_project) -> None:
@@ -77,7 +77,7 @@ def test_the_console_waits_for_a_robot_that_is_not_there_yet(make_project) -> No
         with running(project, "console", "--robot", host, *option) as console:
             port = 1740 if option else 1741
             wait_for(console, f"{host}:{port} refuses the connection: check the address, and that the robot is on")
-        assert console.wait() == 0
+        assert console.wait() == 130
 
 
 class ConsoleServer:
@@ -244,4 +244,4 @@ def test_a_deploy_may_end_in_the_console(option: str, robot: Roborio, make_proje
         wait_for(deploying, "connected to")
         robot.run("/usr/local/frc/bin/frcKillRobot.sh", "-t", "-r")
         wait_for(deploying, "the words of our robot")
-    assert deploying.wait() == 0
+    assert deploying.wait() == 130

@@ -335,7 +335,7 @@ def test_an_interrupted_campaign_keeps_what_was_found_and_nothing_else(make_proj
             lines.append(line)
             if "pyfrc replay" in line:
                 campaign.send_signal(getattr(signal, name))
-        assert campaign.wait() == 1
+        assert campaign.wait() == 128 + getattr(signal, name)
     assert lines[-1] == "interrupted\n"
     assert not list(temporary.iterdir())
     assert "fuzz/zerodivisionerror-robot-autonomousperiodic.jsonl" in kept(project)
@@ -345,7 +345,7 @@ def test_an_interrupted_campaign_keeps_what_was_found_and_nothing_else(make_proj
 def test_ctrl_c_before_anything_is_found_is_no_success(make_project) -> None:
     project = make_project({"robot.py": FAULTY.format("os.kill(os.getppid(), 2)")})
     result = project.run("fuzz", "--time", "1000", "-j", "1")
-    assert result.code == 2, result.output
+    assert result.code == 130, result.output
     assert result.stdout.endswith("interrupted\nNothing was found.\n")
 
 

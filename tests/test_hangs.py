@@ -290,7 +290,7 @@ def test_ctrl_c_says_where_the_test_stands(make_project: MakeProject) -> None:
                 break
         command.send_signal(signal.SIGINT)
         rest = command.stdout.read()
-        assert command.wait() == 2
+        assert command.wait() == 130
     assert f"interrupted: {place}" in rest
 
 

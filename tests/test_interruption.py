@@ -120,7 +120,7 @@ def test_a_command_that_is_interrupted_while_the_robot_is_imported(line: str, ma
     test = "def test_nothing(robot): pass\n"
     made = make_project({"robot.py": robot, "tests/test_robot.py": test, "script.jsonl": SCRIPT})
     result = made.run(*words)
-    assert (result.code, result.stderr.strip()) == (EXIT_CODES[name], "interrupted"), result.output
+    assert (result.code, result.complaints.strip()) == (EXIT_CODES[name], "interrupted"), result.output
     assert "Traceback" not in result.output
     assert "robot.py:" not in result.stderr
     assert list(made.temporary.iterdir()) == []
@@ -152,7 +152,7 @@ def test_a_robot_with_a_listener_in_this_process_ends_with_the_result(line: str,
     test = "def test_it(control, robot): control.run_test(lambda time: time < 0.5)\n"
     made = make_project({"robot.py": LISTENS, "tests/test_robot.py": test, "script.jsonl": SCRIPT})
     result = made.run(*line.split(), cold=True)
-    assert (result.code, result.stderr) == (0, ""), result.output
+    assert (result.code, result.complaints) == (0, ""), result.output
 
 
 # -- directories that killed processes have left -----------------------------------------------------------------------

@@ -439,7 +439,7 @@ def test_ctrl_c_ends_a_replay(make_project) -> None:
             assert command.poll() is None
         command.send_signal(signal.SIGINT)
         _, said = command.rest()
-        assert (command.wait(), said.splitlines()[-1:]) == (2, ["interrupted"]), said
+        assert (command.wait(), said.splitlines()[-1:]) == (130, ["interrupted"]), said
 
 
 values = st.booleans() | st.floats(allow_nan=False, allow_infinity=False) | st.text(max_size=9) | st.integers(-9, 9)

@@ -123,7 +123,7 @@ def test_what_was_driven_is_written_however_it_ends(name: str, make_project) -> 
     made = make_project({"robot.py": ROBOT})
     with running(made, "--nt-port", "0", "--record", "run.jsonl", "--wpilog", "run.wpilog") as sim:
         sim.until("ten packets")
-        assert sim.end(name) == 0, sim.read
+        assert sim.end(name) == 128 + getattr(signal, name), sim.read
     assert "wrote run.jsonl" in sim.read
     assert "wrote run.wpilog" in sim.read
     assert (made.path / "run.jsonl").is_file()
@@ -215,7 +215,7 @@ def test_a_mistake_that_is_saved_is_waited_out(make_project) -> None:
         save(robot, good.replace("ten packets", "corrected") + "\n# corrected\n")
         sim.until("was saved")
         sim.until("corrected of")
-        assert sim.end("SIGINT") == 0, sim.read
+        assert sim.end("SIGINT") == 130, sim.read
     assert "failed" not in sim.read.partition("corrected of")[2]
 
 

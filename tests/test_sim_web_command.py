@@ -68,7 +68,7 @@ def test_it_prints_its_address_and_ends_by_a_signal(make_project, name: str) -> 
             page.command("enable")
             page.until(lambda: page.station.get("enabled"))
             running.command.send_signal(getattr(signal, name))
-            assert running.ended() == 0
+            assert running.ended() == 128 + getattr(signal, name)
         assert "the robot is there" in running.read
         assert "Traceback" not in running.read
         with pytest.raises(OSError), socket.create_connection(("127.0.0.1", urlsplit(running.address).port), 2):  # noqa: PT011

@@ -122,19 +122,24 @@ def display() -> Iterator[VirtualDisplay]:
 
 
 class User:
-    """Somebody at the window."""
+    """Somebody at the window.
+
+    :ivar status: the one that was there at the last look, with which a condition was met
+    """
 
     def __init__(self, simulation: Simulation, window: Window, display: VirtualDisplay) -> None:
         self.simulation, self.window, self.display = simulation, window, display
+        self._look()
+
+    def _look(self) -> None:
+        self.status: Status = self.simulation.status
+        self._snapshot = self.simulation.snapshot
 
     @property
     def snapshot(self) -> Snapshot:
-        assert self.simulation.snapshot is not None
-        return self.simulation.snapshot
-
-    @property
-    def status(self) -> Status:
-        return self.simulation.status
+        """The snapshot that was there at the last look: a newer one may not meet the condition any more."""
+        assert self._snapshot is not None
+        return self._snapshot
 
     def until(self, condition: Callable[[], Any]) -> None:
         """Let the window work until this is so."""
@@ -147,6 +152,7 @@ class User:
             self.window.root.update()
             if self.window.failure is not None:
                 raise self.window.failure
+            self._look()
             if condition():
                 return True
             self.simulation.wait_for(lambda: False, _PAUSE)
@@ -458,7 +464,7 @@ def test_closing_whatever_the_robot_does(what: str, sit: Sit, make_project: Make
     root.after(1, lambda: root.tk.eval(root.tk.call("wm", "protocol", ".", "WM_DELETE_WINDOW")))
     user.window.loop()
     user.simulation.close()
-    assert user.status.state == "closed"
+    assert user.simulation.status.state == "closed"
 
 
 def test_the_command(make_project: MakeProject, display: VirtualDisplay) -> None:

@@ -254,7 +254,7 @@ def test_ctrl_c_ends_everything_and_a_later_start_has_the_same_programs_key_and_
     with started(project, directory, "--port", str(lasting_port())) as robot:
         deploy(robot, project)
         pid, address = robot.pid(), robot.address
-    assert robot.command.wait() == 0
+    assert robot.command.wait() == 130
     assert ended(pid)
     with started(project, directory) as robot:
         assert robot.address == address

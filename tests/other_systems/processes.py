@@ -145,7 +145,10 @@ def install() -> None:
     os.waitstatus_to_exitcode = exit_code
     popen: Any = subprocess.Popen
     popen.__init__ = _popen
-    popen._handle_exitstatus.__defaults__ = (exit_code, *popen._handle_exitstatus.__defaults__[1:])
+    if hasattr(subprocess, "_del_safe"):  # from Python 3.13 on
+        subprocess._del_safe.waitstatus_to_exitcode = exit_code
+    else:
+        popen._handle_exitstatus.__defaults__ = (exit_code, *popen._handle_exitstatus.__defaults__[1:])
     popen.send_signal, popen.terminate, popen.kill = _send_signal, _terminate, _terminate
     for name, value in _CONSTANTS.items():
         setattr(subprocess, name, value)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import shutil
 import socket
 import sys
@@ -72,7 +73,12 @@ class Systemcore(Computer):
         return [str(HERE / "inside.py"), str(self._root), str(self._restart_after)]
 
     def _python_mounts(self, prefix: Path, hidden: list[str]) -> list[str]:
-        return bound(prefix, f"{self.home_directory.lstrip('/')}/.python", hidden)
+        place = f"{self.home_directory}/.python"
+        lines = bound(prefix, place.lstrip("/"), hidden)
+        if not prefix.is_relative_to("/usr"):  # its shared library may be looked for where it was installed
+            own = str(prefix).lstrip("/")
+            lines += [f"mkdir -p {shlex.quote(str(Path(own).parent))}", f"ln -s {place} {shlex.quote(own)}"]
+        return lines
 
     def _install(self) -> None:
         shutil.copytree(HERE / "files/usr/local", self.disk / "usr/local", dirs_exist_ok=True)
@@ -82,7 +88,7 @@ class Systemcore(Computer):
         wants = self.disk / "etc/systemd/system/multi-user.target.wants"
         wants.mkdir(parents=True)
         (wants / "robot.service").symlink_to("/usr/lib/systemd/system/robot.service")  # as an image comes
-        (self.disk / "root").mkdir()
+        (self.disk / "root").mkdir(exist_ok=True)
         self.home.mkdir(exist_ok=True)
         os.chown(self.home, self.user_id, self.user_id)
         self.put("etc/passwd", _PASSWD.format(password=crypted(self._password)), owner=0)
