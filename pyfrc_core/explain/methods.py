@@ -11,7 +11,7 @@ from typing import Any
 from ..errors import text_of
 from ..project.robot_files import RobotFiles
 from .explanation import Explanation
-from .places import users_frame
+from .places import users_frame, users_functions
 
 _DOCUMENTED = re.compile(r"\w+\(self(?:: [\w.]+)?(?P<parameters>.*?)\)(?: ->|$)", re.MULTILINE)
 _PARAMETER = re.compile(r"[(,] (\w+):")
@@ -20,9 +20,13 @@ _PARAMETER = re.compile(r"[(,] (\w+):")
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     if isinstance(error, (TypeError, AttributeError)) and (explained := _used_as_self(error, files)):
         return explained
-    found = re.match(r"TypeError: (\w+)\.(\w+)\(\) (?:takes|missing|got)", text_of(error))
-    owner, method = _method(found[1], found[2], files) if found is not None else (None, None)
-    if owner is None or method is None:
+    found = re.match(r"TypeError: (?:([\w.<>]+)\.)?(\S+?)\(\) (?:takes|missing|got)", text_of(error))
+    if found is None:
+        return None
+    owner, method = _method(found[1], found[2], files)
+    full = ".".join(filter(None, found.groups()))
+    method = next((each for each in users_functions(error, files) if each.__qualname__ == full), method)
+    if method is None:
         return None
     code, name = method.__code__, method.__name__
     place = f"{files.relative(code.co_filename)}:{code.co_firstlineno}"
@@ -31,17 +35,17 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return Explanation(_without_self(code), place=place)
     if files.innermost_line(error.__traceback__, tests=False) is not None:
         return None  # the user's own code has called it
-    passed = _passed(owner, name)
+    passed = _passed(owner, name) if owner is not None else None
     if passed is None:
         return Explanation(place=place)
-    text = f"{owner.__name__}.{name}{inspect.signature(method)} has other parameters than the method that it replaces"
+    text = f"{full}{inspect.signature(method)} has other parameters than the method that it replaces"
     return Explanation(text, f"Write def {name}({', '.join(['self', *passed])}):", place)
 
 
-def _method(owner: str, name: str, files: RobotFiles) -> tuple[type[Any] | None, FunctionType | None]:
+def _method(owner: str | None, name: str, files: RobotFiles) -> tuple[type[Any] | None, FunctionType | None]:
     """Return a class of the robot's code by its name, and its method."""
     for module in list(sys.modules.values()):
-        cls = vars(module).get(owner) if isinstance(module, ModuleType) else None
+        cls = vars(module).get(owner or "") if isinstance(module, ModuleType) else None
         method = vars(cls).get(name) if isinstance(cls, type) else None
         if isinstance(method, FunctionType) and files.is_robot_code(method.__code__.co_filename):
             return cls, method

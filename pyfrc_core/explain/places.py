@@ -6,7 +6,7 @@ import ast
 import re
 import sys
 from collections.abc import Iterator
-from types import FrameType, TracebackType
+from types import FrameType, FunctionType, TracebackType
 from typing import Any
 
 from ..project.robot_files import RobotFiles, is_pyfrc
@@ -50,6 +50,26 @@ def users_class(error: BaseException, files: RobotFiles) -> type[Any] | None:
     return None
 
 
+def place_without_line(error: BaseException, files: RobotFiles) -> str:
+    """Return the place of the user's class whose object has raised an error in a library's code; empty if none has.
+
+    Other objects among a library's variables, such as a command's subsystems, say nothing.
+    """
+    frames = _called_by_pyfrc(error, files)
+    cls = type(frames[-1].f_locals.get("self")) if frames else object
+    return line_of_class(cls, files)
+
+
+def users_functions(error: BaseException, files: RobotFiles) -> Iterator[FunctionType]:
+    """Yield the functions of the user's that a library's functions, innermost first, had among their variables."""
+    for frame in reversed(_called_by_pyfrc(error, files)):
+        own = getattr(frame.f_locals.get("self"), "__dict__", {})
+        for value in (*frame.f_locals.values(), *own.values()):
+            function = getattr(value, "__func__", value)
+            if isinstance(function, FunctionType) and files.is_robot_code(function.__code__.co_filename):
+                yield function
+
+
 def class_named(name: str, files: RobotFiles) -> type[Any] | None:
     """Return a class of the user's by its full name, such as ``components.drivetrain.Drivetrain``."""
     module, _, last = name.rpartition(".")
@@ -90,12 +110,6 @@ def is_in_opmode(file: str, line: int) -> bool:
         if isinstance(cls, type)
         for base in cls.__mro__
     )
-
-
-def is_in_while(file: str, line: int) -> bool:
-    """Return whether a line of a file is in a ``while``, or is its first line."""
-    loops = [each for each in ast.walk(parsed(file)) if isinstance(each, ast.While)]
-    return any(each.lineno <= line <= (each.end_lineno or 0) for each in loops)
 
 
 def users_frame(error: BaseException, files: RobotFiles) -> tuple[FrameType, int] | None:

@@ -161,7 +161,9 @@ class _Oracle:
             else:
                 self._outer_call = clock.call
         if self._reports is not None and (report := self._reports.error()) is not None:
-            self._misbehaved(f"the HAL reports an error: {report}", "hal_errors", ("", ""))
+            text, file, line, function = report
+            place = f"{self._files.relative(file)}:{line}" if file else ""
+            self._misbehaved(f"the HAL reports an error: {text}", "hal_errors", (place, function))
         if self._settings.stuck_modes:
             loop = self._run.timed_loop
             if self._agrees and loop.in_place and not loop.stopped:  # then the robot is alive

@@ -8,6 +8,7 @@ from types import CodeType, FrameType
 from typing import NamedTuple
 
 from ...errors import text_of
+from ...explain.places import frames_of
 from ...invariants.watch import BrokenInvariantError
 from ...project.robot_files import RobotFiles, innermost_entry
 from ...runtime.checks.failures import NamesItsPlace, headline, library_calls, with_library_calls
@@ -92,9 +93,9 @@ def failure_of(error: BaseException, files: RobotFiles) -> FuzzFailure:
     entry = innermost_entry(error.__traceback__, files.is_robot_code)
     text = _ADDRESS.sub("", headline(error, files) or with_library_calls(text_of(error), error, files))
     if isinstance(error, TestFroze):
-        entry = entry or innermost_entry(error.__traceback__, files.is_project_file)  # a rule
-        code = entry.tb_frame.f_code if entry else None
-        place, function = _place(code, files), code.co_name if code else ""
+        code = _code_at(str(error).partition(": ")[0], error, files)
+        place = f"{files.relative(code.co_filename)}:{code.co_firstlineno}" if code else ""
+        function = code.co_name if code else ""
         return FuzzFailure(HANGS, place, function, f"{place}: {function}() hangs" if place else "the robot code hangs")
     calls = library_calls(error, files)
     kind = type(error).__name__
@@ -119,5 +120,13 @@ def place_of(frame: FrameType | None, files: RobotFiles) -> tuple[str, str]:
     return f"{files.relative(frame.f_code.co_filename)}:{frame.f_lineno}", frame.f_code.co_name
 
 
-def _place(code: CodeType | None, files: RobotFiles) -> str:
-    return f"{files.relative(code.co_filename)}:{code.co_firstlineno}" if code else ""
+def _code_at(place: str, error: BaseException, files: RobotFiles) -> CodeType | None:
+    """Return the innermost function on an error's stack that has this line; it may be in another line by now."""
+    codes = [frame.f_code for frame in frames_of(error) if files.is_project_file(frame.f_code.co_filename)]
+    name, _, line = place.rpartition(":")
+    with_line = (
+        code
+        for code in reversed(codes)
+        if files.relative(code.co_filename) == name and line in {str(each[2]) for each in code.co_lines()}
+    )
+    return next(with_line, codes[-1] if codes else None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -10,6 +11,9 @@ from typing import IO
 
 from ...processes.memory_file import memory_file
 from ...wpi import reports
+
+#: The stack with which the HAL writes an error (`runtime.patches.robot_stack`), and a call in it.
+_STACK, _CALL = re.compile(rb"(?: .*\n)*"), re.compile(r'  File "([^"]+)", line (\d+), in (\S+)')
 
 
 class HalReports:
@@ -22,8 +26,11 @@ class HalReports:
         self._descriptor = file.fileno()
         self._read = 0
 
-    def error(self) -> str | None:
-        """Return the first error since the last call, from complete lines only; None if there was none."""
+    def error(self) -> tuple[str, str, int, str] | None:
+        """Return the first error since the last call, from complete lines only; None if there was none.
+
+        With it come file, line and function of the robot's code that led to it, which are empty if they are unknown.
+        """
         begin = self._read
         descriptor = self._descriptor
         # All writers share the position of this file with standard error.
@@ -35,7 +42,9 @@ class HalReports:
         self._read += len(whole)
         for found in reports.ERROR.finditer(whole):
             if not reports.NO_FAULT.search(found[1]):
-                return found[1].decode(errors="replace").strip()
+                calls = _CALL.findall(_STACK.match(whole, found.end())[0].decode(errors="replace"))  # type: ignore[index]
+                file, line, function = calls[-1] if calls else ("", 0, "")
+                return found[1].decode(errors="replace").strip(), file, int(line), function
         return None
 
     def _read_again(self, size: int) -> bytes:

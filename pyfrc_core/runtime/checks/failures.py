@@ -7,7 +7,7 @@ import threading
 
 from ...errors import PyfrcError, RobotCodeError, UsageError, text_of
 from ...explain import Explanation, explain
-from ...explain.places import line_of_class, users_class
+from ...explain.places import place_without_line
 from ...project.robot_files import RobotFiles, is_library, is_pyfrc
 from ..exceptions import TestFroze
 
@@ -58,8 +58,8 @@ def headline(error: BaseException, files: RobotFiles) -> str | None:
     explained = explain(error, files) or Explanation()
     line = explained.place or files.innermost_line(traceback, tests=False)
     text = explained.text or text_of(error)
-    if not line and (cls := users_class(error, files)) is not None:
-        line, text = line_of_class(cls, files), with_library_calls(text, error, files)
+    if not line and (line := place_without_line(error, files)):
+        text = with_library_calls(text, error, files)
     line = line or files.innermost_line(traceback)
     return f"{line}: {text}" + (f"\n  {explained.remedy}" if explained.remedy else "") if line else None
 

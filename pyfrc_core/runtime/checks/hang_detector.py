@@ -20,10 +20,8 @@ from typing import TYPE_CHECKING
 
 from ...compat.c_calls import raise_in_thread
 from ...compat.cpython_private import allocate_lock, current_frames, start_bare_thread
-from ...explain.places import is_in_while
 from ...processes.exit import EXIT_HANGS, exit_now, prepare_sudden_exit
 from ...processes.standstill import Standstill, StandstillNotice
-from ...wpi import names
 from ..exceptions import TestFroze
 from ..patches.active_run import Run, active_run
 from ..threads.thread_cpu import ThreadTimes
@@ -183,7 +181,7 @@ class HangDetector:
                 continue
             elapsed, used = _wall() - wall, max(0.0, times.cpu() - cpu)
             stood.seconds += min(elapsed, 2 * self._look_seconds)
-            ident, place, imports = self._place(ident, used > _COMPUTING * elapsed)
+            ident, place, imports = self._place(ident, stood)
             # This thread holds Python's lock while it waits for a processor.
             starved_now = _sum(times.starved(), me.starved())
             if starved is not None and starved_now is not None:
@@ -239,25 +237,25 @@ class HangDetector:
         running = self._running  # asked once: the code may stop running meanwhile
         return self._watched if running is None else running.threads.whose_turn()
 
-    def _place(self, ident: int, computes: bool) -> tuple[int, str, bool]:
+    def _place(self, ident: int, stood: _Standing) -> tuple[int, str, bool]:
         """Return the thread that stands, the user's line, and whether that imports a library.
 
-        Of code that computes, the line is in the function with the loop that does not end, and not in what that calls.
+        Of the functions that have not returned since the code stands, it is the innermost one: what an endless loop
+        calls returns each time.
         """
         if self._running is None and self.outside is not None:
             ident = self.outside
         imports = False
-        frame = innermost = current_frames().get(ident)
-        lines: list[str] = []
+        innermost = frame = current_frames().get(ident)
+        stood.calls = [each for each in _stack(frame) if not stood.calls or each in stood.calls]
+        frame = stood.calls[0] if stood.calls else frame
         while frame is not None and self._files is not None:
             if (line := self._files.line_of_frame(frame)) is not None:
-                lines.append(line)
-                if computes and is_in_while(frame.f_code.co_filename, frame.f_lineno):
-                    return ident, line if frame.f_code.co_name != names.MAIN else lines[0], imports
-            imports = imports or (not lines and frame.f_code.co_filename.startswith(_IMPORT))
+                return ident, line, imports
+            imports = imports or frame.f_code.co_filename.startswith(_IMPORT)
             frame = frame.f_back
         known = f"{innermost.f_code.co_filename}:{innermost.f_lineno}" if innermost is not None else "unknown"
-        return ident, next(iter(lines), known), imports
+        return ident, known, imports
 
     def _tell(self, standstill: Standstill | None) -> None:
         """Write where the code stands, for those who wait for it."""
@@ -319,6 +317,14 @@ class _Standing:
         #: The parts of it that count: in which it has used a processor, and in which it has not wanted to. What a
         #: library does while it is imported does not count.
         self.computed = self.waited = 0.0
+        #: The calls that have not returned since, innermost first.
+        self.calls: list[FrameType] = []
+
+
+def _stack(frame: FrameType | None) -> Iterator[FrameType]:
+    while frame is not None:
+        yield frame
+        frame = frame.f_back
 
 
 def _sum(first: float | None, second: float | None) -> float | None:
