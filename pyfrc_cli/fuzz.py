@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from pyfrc_core.project import Project
 
 _DEFAULT_SECONDS = 60.0
+#: From this many matches on, a campaign that has found nothing says something.
+_FEW = 100
 
 #: Seconds between two progress lines, on a terminal and elsewhere.
 _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
@@ -166,11 +168,17 @@ def command(
     if campaign.unrepeatable:
         hint(explain_unrepeatable(campaign.unrepeatable))
     if campaign.always_fails:
-        click.echo("The robot fails at its start in every match: the campaign ends until this is repaired.")
+        starts = campaign.progress.matches
+        click.echo(
+            f"The robot failed in the same way at each of {starts} starts: the campaign ends until this is repaired."
+        )
     if campaign.interrupted:
         click.echo("interrupted")
     if not campaign.findings:
         hint("Nothing was found.")
+        if campaign.progress.matches < _FEW and not campaign.interrupted:
+            played = counted(campaign.progress.matches, "match proves", "matches prove")
+            hint(f"But {played} little: pyfrc fuzz --time 600 plays for ten minutes.")
     sys.exit(1 if campaign.findings else 2 if campaign.interrupted else 0)
 
 

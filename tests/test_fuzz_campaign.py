@@ -402,7 +402,7 @@ def test_a_robot_that_exits_has_failed(
     assert f"{place}: {message}\n" in result.stdout, result.output
     assert f"pyfrc replay tests/fuzz/{name}.jsonl\n" in result.stdout, result.output
     # One that exits before anything happens ends the campaign.
-    assert ("2 matches, " if where == 2 else "1 match, ") in result.stdout
+    assert ("2 matches, " if where == 2 else "4 matches, ") in result.stdout
     replayed = project.run("replay", f"tests/fuzz/{name}.jsonl")
     assert replayed.code == 1
     assert f"then {place}: {message}" in replayed.stdout.splitlines(), replayed.output

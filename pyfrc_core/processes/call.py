@@ -69,7 +69,7 @@ class Call(Generic[Answer]):
     """
 
     def __init__(self, worker: Worker, end: Callable[[], object], files: RobotFiles | None) -> None:
-        self._files, self._notice = files, StandstillNotice()
+        self._files, self._notice = files, StandstillNotice(starts=False)  # of many in a row
         self._worker, self._end = worker, end
 
     @property

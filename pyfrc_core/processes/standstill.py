@@ -55,10 +55,11 @@ class StandstillNotice:
     """Returns the text about each standstill of one process once, when it is time to print it.
 
     :param meanwhile: see `Standstill.text`
+    :param starts: whether a start is reported, at which robot time is 0
     """
 
-    def __init__(self, meanwhile: str = "") -> None:
-        self._meanwhile = meanwhile
+    def __init__(self, meanwhile: str = "", starts: bool = True) -> None:
+        self._meanwhile, self._starts = meanwhile, starts
         self._reported = False
 
     def look(self, now: Standstill | None) -> str | None:
@@ -66,7 +67,7 @@ class StandstillNotice:
 
         :param now: the state of the process
         """
-        if now is None:
+        if now is None or (now.robot_time == 0 and not self._starts):
             self._reported = False
         elif now.seconds >= REPORTED_AFTER and not self._reported:
             self._reported = True

@@ -9,13 +9,14 @@ numbers. So the result depends on the seed alone, and not on the number of proce
 
 from __future__ import annotations
 
+import sys
 import time
 from collections import deque
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass, replace
 
 from ...errors import PyfrcError
-from ...runtime.scripts.script import InputScript
+from ...processes.standstill import REPORTED_AFTER
 from ...wording import counted
 from ..guidance.goals import Goal
 from ..match.work import MOST_RUNS, FuzzTask, MatchResult, NoMoreWork, ReplayTask, ShrinkTask, Shrunk
@@ -23,6 +24,7 @@ from ..oracle.failure import FuzzFailure
 from .corpus import Corpus, found_in
 from .describe import story_of
 from .executors import WorkExecutor
+from .first_starts import START_US, STARTS, try_starts
 from .kept_guidance import KeptGuidance
 from .playing import Match, Playing
 from .results import Campaign, CampaignListener, CampaignOptions, FuzzFinding
@@ -35,9 +37,6 @@ _KEPT_EVERY_SECONDS = 5.0
 
 #: How many seconds shrinking one failure may take, in a campaign with a limit of time.
 _LEAST_SECONDS, _MOST_SECONDS = 3.0, 60.0
-
-#: A robot that fails within this time without any input fails in every match.
-_START_US = 2_000_000
 
 #: The maximum number of runs to shrink a script of a robot that does not repeat: runs that fail by chance prove little.
 _MOST_UNREPEATABLE_RUNS = 50
@@ -162,16 +161,27 @@ class _Runner:
         self._playing.revisit(revisited)
 
     def _fails_at_start(self) -> bool:
-        """Return whether the robot fails at its start without any input, as it would in every match; report it."""
-        nothing = InputScript((), _START_US, robot=self._executor.project.main_file.name)
-        played = self._executor.replay(nothing)
-        self._playing.published = played.published
-        if played.failure is None or not played.failure.same_as(self._executor.replay(nothing).failure):
+        """Return whether the robot fails at its start in any case, as it would in every match; report it."""
+        starts = try_starts(self._executor)
+        if starts.seconds >= REPORTED_AFTER:
+            print(f"each match begins with about {starts.seconds:.0f} s of starting this robot", file=sys.stderr)
+        self._playing.published, self._playing.always_set = starts.published, tuple(starts.always_set)
+        hints = self.campaign.hints
+        hints.always_set += [failure.place for failure in starts.always_set.values()]
+        hints.starts += STARTS
+        for failure in starts.unsteady:
+            hints.failed_starts[failure.cause] += 1
+            self._note_unsteady(failure)
+        if starts.always_fails is None:
             return False
         self.campaign.always_fails = True
-        self.campaign.progress.matches = 1
-        self._note_failure(None, played)
+        self.campaign.progress.matches = STARTS
+        self._note_failure(None, starts.always_fails)
         return True
+
+    def _note_unsteady(self, failure: FuzzFailure) -> None:
+        """Note that a failure at the start has not repeated: it is a hint, and the campaign goes on."""
+        self.campaign.hints.unsteady[failure.cause] = failure.text.partition("\n")[0]
 
     # -- what is next ------------------------------------------------------------------------------------------
 
@@ -248,7 +258,11 @@ class _Runner:
             self._keep_guidance_at_times()
 
     def _note_failure(self, number: int | None, played: MatchResult) -> None:
-        if played.failure is None or not self._is_new(played.failure):
+        if played.failure is None:
+            return
+        hints, cause = self.campaign.hints, played.failure.cause
+        hints.failed_starts[cause] += played.script.end_us <= START_US
+        if cause in hints.unsteady or not self._is_new(played.failure):
             return
         failed = _Failed(number, played)
         self._shrunk[failed.key] = None
@@ -298,8 +312,14 @@ class _Runner:
     def _save(self, failed: _Failed, shrunk: Shrunk) -> None:
         """Save a script, and report it: the shortest one, or of a failure that did not repeat the whole match's."""
         failure = shrunk.failure
+        if not shrunk.repeats and failed.played.script.end_us <= START_US:
+            self._failures.remove(failed.failure)
+            self.campaign.progress.crashes = len(self._failures)
+            self._note_unsteady(failed.failure)
+            return
         story = story_of(shrunk.script, failure, failed.played.names)
-        script = replace(shrunk.script, found=found_in(self._options.seed, failed.number, failure), story=story)
+        script = replace(shrunk.script, story=story)
+        script = replace(script, found={**script.found, **found_in(self._options.seed, failed.number, failure)})
         entry = (self._corpus.add if shrunk.repeats else self._corpus.keep)(script, failure)
         writes = sum(len(step.writes) for step in script.steps)
         self._report(FuzzFinding(failure, story, entry, shrunk.repeats, runs=shrunk.runs, writes=writes))

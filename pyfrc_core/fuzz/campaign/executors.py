@@ -51,9 +51,12 @@ from ..match.work import (
 )
 from ..oracle.failure import HANGS, PROCESS_ENDED, FuzzFailure
 from ..shrink.shrinker import Shrinker
+from .first_starts import START_US
 
 # Interval of the checks for an interrupt and for the end of the campaign's time, in seconds.
 _INTERRUPT_CHECK_SECONDS = 0.1
+#: How often a failure at the start has to repeat.
+_STARTS_AGAIN = 4
 
 
 class WorkExecutor(MatchExecutor):
@@ -305,7 +308,9 @@ def _shrink(project: Project, log: CrashLog, task: ShrinkTask) -> Shrunk:
     with open_match_executor(project, jobs=1) as executor:
         shrinker = Shrinker(executor, task.script, task.failure, task.inputs, *options)
         shrinker.shrink()
-        if shrinker.repeats and shrinker.play_again():
+        # What fails at the start by chance may do so twice.
+        again = _STARTS_AGAIN if shrinker.script.end_us <= START_US else 1
+        if shrinker.repeats and all(shrinker.play_again() for _ in range(again)):
             return Shrunk(shrinker.script, shrinker.failure, True, shrinker.runs)
         return Shrunk(task.script, task.failure, runs=shrinker.runs)
 

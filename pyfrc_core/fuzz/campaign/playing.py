@@ -52,6 +52,8 @@ class Playing:
         self.in_batches = in_batches
         #: The entries of NetworkTables that the program is known to write all the time.
         self.published: frozenset[str] = frozenset()
+        #: The lines of code that always set an output while the robot is disabled.
+        self.always_set: tuple[str, ...] = ()
         #: Whether no more matches are begun.
         self.over = False
         self._project, self._streams, self._runs, self._seconds = project, streams, runs, seconds
@@ -89,7 +91,7 @@ class Playing:
         if not self._next:
             return None
         match = self._next.popleft()
-        task = FuzzTask(match.schedule, match.stream.reached, False, self.published)
+        task = FuzzTask(match.schedule, match.stream.reached, False, self.published, self.always_set)
         self._running[id(task)] = _Running(task, match, time.monotonic())
         return task
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, nullcontext
 from contextlib import closing as closed
 from dataclasses import replace
@@ -37,7 +37,7 @@ from ..inputs.match_plan import MatchEvent, plan_match
 from ..inputs.network_reads import watch_network_reads
 from ..inputs.values import Value
 from ..oracle.checks import attach_oracle
-from ..oracle.failure import FuzzFailure, failure_of
+from ..oracle.failure import ALWAYS_SET, FuzzFailure, failure_of
 from ..oracle.hints import HintWatch, threads_left
 from ..oracle.misbehavior_notes import MisbehaviorNotes
 from .imported_robot import (
@@ -110,7 +110,7 @@ def _fuzz(
     begin = _restart_after(before)
     before_us = begin.at_us
     reseed_until_us = task.schedule.seeds[-1][0] + PACKET_US
-    with _robot(project, log, ROBOT_SEED, begin) as (run, notes), ExitStack() as closing:
+    with _robot(project, log, ROBOT_SEED, begin, task.always_set) as (run, notes), ExitStack() as closing:
         generator = InputGenerator(
             rng,
             run,
@@ -163,7 +163,7 @@ def _fuzz(
                 pass
             except BaseException as error:  # robot code may call exit(), too
                 failure = failure_of(error, project.files)
-        script = fuzz_run.script(project.main_file.name, ROBOT_SEED)
+        script = fuzz_run.script(project.main_file.name, ROBOT_SEED).with_found(ALWAYS_SET, task.always_set)
         unrepeatable = run.hal_data["CAN"].unrepeatable_devices()
         restarts = fuzz_run.restarts and failure is None and run.clock.now_us < ends_us
         restart = Restart.after(begin.number, run.clock.now_us, rng.getstate()) if restarts else None
@@ -213,7 +213,10 @@ def _replay(project: Project, log: CrashLog, before: MatchResult | None, task: R
         sent_again = replace(script.steps[0], writes=without_entries(script.steps[0].writes, begin.entries))
         script = replace(script, steps=(sent_again, *script.steps[1:]))
     oracle = task.use_oracle, task.ends_with
-    robot = _robot(project, log, script.seed, begin, *oracle, hang_seconds=task.hang_seconds, paced=task.paced)
+    always_set = task.script.found.get(ALWAYS_SET, ())
+    robot = _robot(
+        project, log, script.seed, begin, always_set, *oracle, hang_seconds=task.hang_seconds, paced=task.paced
+    )
     trace = task.trace if is_last else None
     with robot as (run, notes), traced(run, trace) if trace else nullcontext():
         failure, may_go_on = None, not is_last
@@ -247,6 +250,7 @@ def _robot(
     log: CrashLog,
     seed: int,
     begin: Restart,
+    always_set: Collection[str],
     use_oracle: bool = True,
     ends_with: FuzzFailure | None = None,
     hang_seconds: float | None = None,
@@ -267,7 +271,7 @@ def _robot(
         with ExitStack() as closing:
             closing.callback(run.data_logs.close)
             if use_oracle:
-                closing.enter_context(attach_oracle(run, project.files, settings, notes.ends_run))
+                closing.enter_context(attach_oracle(run, project.files, settings, notes.ends_run, always_set))
 
             def on_broken(error: BrokenInvariantError) -> None:
                 if not use_oracle or notes.ends_run(error):

@@ -32,6 +32,7 @@ class FuzzTask:
     :param known: the goals that were reached before
     :param returns_inputs: whether the script and the inputs are returned even if nothing has failed
     :param published: entries of NetworkTables that the program is known to write all the time
+    :param always_set: the lines of code that always set an output while the robot is disabled
     :param journal: a file for the inputs, in case the process ends before it can return them
     """
 
@@ -39,6 +40,7 @@ class FuzzTask:
     known: frozenset[Goal] = frozenset()
     returns_inputs: bool = True
     published: frozenset[str] = frozenset()
+    always_set: tuple[str, ...] = ()
     journal: Path | None = None
 
 

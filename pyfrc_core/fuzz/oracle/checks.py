@@ -8,7 +8,8 @@ line that makes it, and see a value that changes back before the next packet.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import linecache
+from collections.abc import Callable, Collection, Iterator
 from contextlib import ExitStack, contextmanager
 from types import FrameType
 
@@ -21,7 +22,7 @@ from ...runtime.robot import RobotRun
 from ...runtime.scripts.script import InputScript
 from ...runtime.time.timed_loop import Periodic
 from ...wpi import motor_controllers, station
-from .failure import MisbehaviorError, place_of, user_frame
+from .failure import ALWAYS_SET, WHILE_DISABLED, MisbehaviorError, place_of, user_frame
 from .hal_reports import HalReports, hal_reports
 from .left_running import NEGLIGIBLE_POWER, STOPS_WITHIN_US, MotorsLeftRunning
 from .misbehavior_notes import LastMisbehavior
@@ -40,14 +41,19 @@ EndsRun = Callable[[MisbehaviorError], bool]
 
 
 @contextmanager
-def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings, ends_run: EndsRun) -> Iterator[None]:
-    """Watch a run, which is open and has not started, until the context ends."""
+def attach_oracle(
+    run: RobotRun, files: RobotFiles, settings: FuzzSettings, ends_run: EndsRun, always_set: Collection[str]
+) -> Iterator[None]:
+    """Watch a run, which is open and has not started, until the context ends.
+
+    :param always_set: the lines of code that may set an output while the robot is disabled, since they always do
+    """
     with ExitStack() as closing:
         reports = closing.enter_context(hal_reports()) if settings.hal_errors else None
         of_motors = (settings.not_a_number, settings.out_of_range, settings.motors_while_disabled)
         is_watched = any(of_motors) or settings.motors_left_running
         calls = closing.enter_context(watch_motor_calls()) if is_watched else motor_controllers.MotorCalls()
-        oracle = _Oracle(run, files, settings, reports, calls, ends_run)
+        oracle = _Oracle(run, files, settings, reports, calls, ends_run, always_set)
         if settings.slow_loops:
             run.timed_loop.after_waits.append(oracle.after_wait)
         run.clock.before_packet.append(oracle.before_packet)
@@ -62,7 +68,7 @@ def oracle_if_fuzzed(run: RobotRun, project: Project, script: InputScript) -> It
         yield
         return
     last = LastMisbehavior(run.clock, run.threads, script.end_us)
-    with attach_oracle(run, project.files, project.settings.fuzz, last.ends_run):
+    with attach_oracle(run, project.files, project.settings.fuzz, last.ends_run, script.found.get(ALWAYS_SET, ())):
         run.observe(last.after_packet)
         yield
 
@@ -76,12 +82,14 @@ class _Oracle:
         reports: HalReports | None,
         calls: motor_controllers.MotorCalls,
         ends_run: EndsRun,
+        always_set: Collection[str],
     ) -> None:
         self._run = run
         self._files = files
         self._settings = settings
         self._reports = reports
         self._ends_run = ends_run
+        self._always_set = always_set
         calls.listener = self._on_motor_call
         self._inert_motors = InertMotors(run.hal_data, calls.members)
         self._left_running = MotorsLeftRunning(self._inert_motors.motors_of, self._inert_motors.in_group)
@@ -126,8 +134,11 @@ class _Oracle:
                 and self._is_long_disabled()
                 and not self._inert_motors.is_inert(motor)
             ):
-                what = f"{name}() commands a motor to move while the robot is disabled"
-                self._misbehaved(what, "motors_while_disabled", self._caller())
+                frame = user_frame(get_frame(1), self._files)
+                line = "" if frame is None else linecache.getline(frame.f_code.co_filename, frame.f_lineno).strip()
+                if line not in self._always_set:
+                    what = f"{name}() commands a motor to move while the robot is disabled"
+                    self._misbehaved(what, WHILE_DISABLED, place_of(frame, self._files))
 
     def _is_long_disabled(self) -> bool:
         return self._run.started and self._run.clock.now_us - self._mode_since_us > _STOPS_WITHIN_US

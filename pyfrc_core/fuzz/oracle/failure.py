@@ -22,8 +22,13 @@ WAITS = "loop_waits"
 #: Kind of a failure: the process ended.
 PROCESS_ENDED = "process_ended"
 
+#: Kind of a failure: a motor is set to move while the robot is disabled.
+WHILE_DISABLED = "motors_while_disabled"
+#: What a script's `found` calls the lines of code that do so at each start, and are no failure.
+ALWAYS_SET = "always_set"
+
 #: Failures that are reported once for a robot, wherever its code has more of them.
-_ONCE = ("motors_while_disabled",)
+_ONCE = (WHILE_DISABLED,)
 
 _ADDRESS = re.compile(r" at 0x[0-9A-Fa-f]+")
 _NUMBER = re.compile(r"\d+")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -143,9 +144,16 @@ class CampaignHints:
         self._finished: set[str] = set()
         self._slow: list[MatchHints] = []
         self._threads: dict[tuple[str, str], int] = {}
+        #: The places that set an output in each disabled loop.
+        self.always_set: list[str] = []
+        #: How many starts of the robot there were, how many failed by each cause, and the failures that did not repeat.
+        self.starts = 0
+        self.failed_starts: Counter[str] = Counter()
+        self.unsteady: dict[str, str] = {}
 
     def add(self, hints: MatchHints) -> None:
         """Add what a match shows."""
+        self.starts += 1
         for growth in hints.growths:
             self._growths.setdefault(growth.name, []).append(growth)
         for name, ran_us in hints.unfinished.items():
@@ -158,6 +166,13 @@ class CampaignHints:
 
     def texts(self) -> Iterator[str]:
         """Yield each hint in words."""
+        for cause, text in self.unsteady.items():
+            yield f"{text} (at {self.failed_starts[cause]} of {self.starts} starts, and not again with the same inputs)"
+        for place in self.always_set:
+            yield (
+                f"{place}: this sets an output in each loop while the robot is disabled, from the first one on. "
+                "That is as it should be for lights; a motor would move as soon as the robot is enabled"
+            )
         for name, growths in sorted(self._growths.items()):
             if len(growths) >= _LEAST_MATCHES:
                 what = "NetworkTables grow" if name == NETWORK_TABLES else f"robot.{name} grows"

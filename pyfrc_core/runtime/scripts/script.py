@@ -13,7 +13,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -113,6 +113,10 @@ class InputScript:
         yield json.dumps(header, ensure_ascii=False)
         for step in self.steps:
             yield json.dumps({"t": step.at_us / 1_000_000, "set": dict(step.writes)}, ensure_ascii=False)
+
+    def with_found(self, name: str, value: Any) -> InputScript:
+        """Return this script with one more of what `found` says, or without it if there is none."""
+        return replace(self, found={**self.found, name: value}) if value else self
 
     def save(self, file: Path) -> None:
         """Write it to `file`."""
