@@ -167,6 +167,8 @@ def command(
         hint(f"hint: {text}")
     if campaign.unrepeatable:
         hint(explain_unrepeatable(campaign.unrepeatable))
+    if campaign.problem:
+        click.echo(f"The scripts are in a temporary directory: copy them. {campaign.problem}", err=True)
     if campaign.always_fails:
         starts = campaign.progress.matches
         click.echo(

@@ -341,6 +341,20 @@ def test_an_interrupted_campaign_keeps_what_was_found_and_nothing_else(make_proj
     assert "fuzz/zerodivisionerror-robot-autonomousperiodic.jsonl" in kept(project)
 
 
+@pytest.mark.parametrize("taken", sampled(["tests", "tests/fuzz", ".pyfrc"], "tests/fuzz"))
+def test_what_is_found_in_a_project_that_cannot_be_written_is_kept(taken: str, make_project) -> None:
+    """A file where a directory is to be: no one can make that one, not even root."""
+    project = make_project({"robot.py": FAULTY.format("1 / self.motor.get()"), taken: "a file"})
+    result = project.run("fuzz", "--runs", "4")
+    assert result.code == 1, result.output
+    found = re.search(r"ZeroDivisionError.*\n(?:  .*\n)*  pyfrc replay (.*)\n", result.stdout)
+    assert found is not None, result.output
+    assert project.run("replay", found[1]).code == 1
+    elsewhere = "The scripts are in a temporary directory: copy them."
+    assert (elsewhere in result.stderr) == (taken != ".pyfrc"), result.stderr
+    assert project.path.joinpath(taken).read_text() == "a file"
+
+
 @pytest.mark.skipif(not FORK_IS_SAFE, reason="a match's parent is the campaign only where it is forked")
 def test_ctrl_c_before_anything_is_found_is_no_success(make_project) -> None:
     project = make_project({"robot.py": FAULTY.format("os.kill(os.getppid(), 2)")})

@@ -320,7 +320,8 @@ class _Runner:
         story = story_of(shrunk.script, failure, failed.played.names)
         script = replace(shrunk.script, story=story)
         script = replace(script, found={**script.found, **found_in(self._options.seed, failed.number, failure)})
-        entry = (self._corpus.add if shrunk.repeats else self._corpus.keep)(script, failure)
+        entry = self._corpus.add(replace(script, repeats=shrunk.repeats), failure)
+        self.campaign.problem = self._corpus.problem
         writes = sum(len(step.writes) for step in script.steps)
         self._report(FuzzFinding(failure, story, entry, shrunk.repeats, runs=shrunk.runs, writes=writes))
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import re
+import tempfile
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from importlib.metadata import version
@@ -60,6 +61,8 @@ class Corpus:
         self._project = project
         # Beside the existing tests; in a project without tests, beside the robot program.
         self._tests = project.find_tests() or project.test_directories[0]
+        #: Why scripts are not written there, but elsewhere; empty if they are.
+        self.problem = ""
 
     def all(self) -> Iterator[CorpusEntry]:
         """Return the scripts of earlier campaigns.
@@ -70,18 +73,26 @@ class Corpus:
             yield CorpusEntry(file, load_script(file))
 
     def add(self, script: InputScript, failure: FuzzFailure) -> CorpusEntry:
-        """Write a script to a file with a new name, and the test file if it does not exist."""
-        complete = _complete(script, failure)
-        file = self._free_name(_name_of(failure))
-        complete.save(file)
-        self._write_test()
-        return CorpusEntry(file, complete)
+        """Write a script to a file with a new name, and the test file if it does not exist.
 
-    def keep(self, script: InputScript, failure: FuzzFailure) -> CorpusEntry:
-        """Write the script of a failure that did not repeat, in place of an earlier one of the same failure."""
-        complete = replace(_complete(script, failure), repeats=False)
-        file = self._tests / DIRECTORY / NOT_REPEATED / f"{_name_of(failure)}.jsonl"
-        complete.save(file)
+        Of a failure that did not repeat, write it in place of an earlier one of the same failure. If the project cannot
+        be written, write it to a temporary directory, which stays.
+        """
+        complete = _complete(script, failure)
+        name = _name_of(failure)
+        try:
+            if complete.repeats:
+                file = self._free_name(name)
+                self._write_test()
+            else:
+                file = self._tests / DIRECTORY / NOT_REPEATED / f"{name}.jsonl"
+            complete.save(file)
+        except OSError as error:
+            if not self.problem:
+                self._tests = Path(tempfile.mkdtemp(prefix="pyfrc-found-"))
+                self.problem = f"{error.filename}: {error.strerror}"
+                return self.add(script, failure)
+            raise
         return CorpusEntry(file, complete)
 
     def merge(self, directories: Iterable[Path]) -> list[CorpusEntry]:

@@ -10,6 +10,7 @@ import hashlib
 import json
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 
@@ -55,10 +56,11 @@ class KeptGuidance:
         return json.dumps({"project": self._fingerprint, "streams": states})
 
     def write(self, text: str) -> None:
-        """Write the file."""
-        self._file.parent.mkdir(parents=True, exist_ok=True)
-        keep_out_of_version_control(self._root / DIRECTORY.parts[0])
-        write_whole(self._file, [text])
+        """Write the file. If it cannot be written, the next campaign begins anew."""
+        with suppress(OSError):
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            keep_out_of_version_control(self._root / DIRECTORY.parts[0])
+            write_whole(self._file, [text])
 
 
 def fingerprint(project: Project) -> str:

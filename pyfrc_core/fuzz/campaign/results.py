@@ -89,6 +89,7 @@ class Campaign:
     :param findings: the failures that it found
     :param interrupted: whether the user interrupted it
     :param unrepeatable: the robot's devices that do not repeat, as `compat.unrepeatable` names them
+    :param problem: why scripts are not saved in the project; empty if they are
     :param hints: what is no failure, but may be a mistake, in words
     :param always_fails: whether it ended because the robot fails at its start in every match
     """
@@ -98,6 +99,7 @@ class Campaign:
     interrupted: bool = False
     unrepeatable: tuple[str, ...] = ()
     always_fails: bool = False
+    problem: str = ""
     hints: CampaignHints = field(default_factory=CampaignHints)
 
 
