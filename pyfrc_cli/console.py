@@ -40,7 +40,7 @@ def command(directory: Path | None, choice: RobotChoice, nc_ds: bool) -> None:
     console has no login, so its key is not checked. A SystemCore's output is read over SSH, as by a deploy.
 
     \b
-    Exit codes: 0 ended by Ctrl-C; 1 no robot was found, or the server is not a robot's console;
+    Exit codes: 130 ended by Ctrl-C; 1 no robot was found, or the server is not a robot's console;
     2 wrong usage or no project.
     """
     with errors_shown(choice):

@@ -120,8 +120,8 @@ def command(
     tests/test_fuzz_regressions.py fails until the robot is repaired.
 
     \b
-    Exit codes: 0 nothing was found; 1 a failure was found, or an earlier one is still there; 2 wrong usage, no such
-    project, or interrupted before anything was found.
+    Exit codes: 0 nothing was found; 1 a failure was found, or an earlier one is still there; 2 wrong usage or no such
+    project; 130 ended by Ctrl-C.
     """
     if seconds is not None and runs is not None:
         raise click.UsageError("--time and --runs are mutually exclusive.")
@@ -181,7 +181,7 @@ def command(
         if campaign.progress.matches < _FEW and not campaign.interrupted:
             played = counted(campaign.progress.matches, "match proves", "matches prove")
             hint(f"But {played} little: pyfrc fuzz --time 600 plays for ten minutes.")
-    sys.exit(1 if campaign.findings else 2 if campaign.interrupted else 0)
+    sys.exit(1 if campaign.findings else 0)
 
 
 def _open_executor(project: Project, jobs: int, scheduler: str | None) -> AbstractContextManager[WorkExecutor]:

@@ -44,7 +44,7 @@ def command(
     pyfrc virtual-robot -- pyfrc deploy --robot
 
     \b
-    Exit codes: 0 ended by Ctrl-C (with COMMAND: its exit code), 1 cannot be started, 2 wrong usage.
+    Exit codes: 130 ended by Ctrl-C (with COMMAND: its exit code), 1 cannot be started, 2 wrong usage.
     """
     from pyfrc_core.virtual_robot.robot import run_command, show
 
