@@ -1,4 +1,4 @@
-"""Where a fault is named: at the loop that does not end, at what was bound or passed, at what led to an error of the HAL."""
+"""Where a fault is named: the loop that does not end, what was bound or passed, what led to an error of the HAL."""
 
 from __future__ import annotations
 
