@@ -28,13 +28,14 @@ class Interruption:
         self._finishing = self._over = False
 
     def begin(self) -> None:
-        """Handle signals from now on, but those that are ignored, as nohup has it."""
+        """Handle signals from now on, but those that are ignored, as nohup has it. Forks of this process do not."""
+        if hasattr(os, "register_at_fork"):
+            os.register_at_fork(after_in_child=self._leave)
         for number in _ENDING:
             if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
                 signal.signal(number, self._handle)
 
-    def leave(self) -> None:
-        """Handle no signals in this process, which a command has forked."""
+    def _leave(self) -> None:
         for number in _ENDING:
             if signal.getsignal(number) == self._handle:
                 signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
@@ -78,6 +79,7 @@ class Interruption:
             self._call = before
 
     def _handle(self, number: int, frame: FrameType | None) -> None:
+        __tracebackhide__ = True
         if self._over:
             os._exit(self.exit_code(128 + number))
         # Only once for a closed terminal, which the system and the shell both report.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -87,11 +88,18 @@ def test_signals_that_nohup_ignores_stay_ignored() -> None:
             signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
 
 
-def test_the_processes_of_a_command_end_by_signals(handled: Interruption) -> None:
-    handled.leave()
-    assert [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)] == [
-        signal.default_int_handler, signal.SIG_DFL, signal.SIG_DFL,
-    ]  # fmt: skip
+@pytest.mark.usefixtures("handled")
+def test_what_robot_code_forks_ends_by_signals() -> None:
+    context = multiprocessing.get_context("fork")
+    handlers = context.SimpleQueue()
+
+    def report() -> None:
+        handlers.put([signal.getsignal(getattr(signal, name)) is signal.SIG_DFL for name in EXIT_CODES])
+
+    process = context.Process(target=report)
+    process.start()
+    assert handlers.get() == [False, True, True]  # Ctrl-C raises KeyboardInterrupt, as usual in Python
+    process.join()
 
 
 @pytest.mark.parametrize("raised", ["KeyboardInterrupt", "ImportError('initialization failed')"])

@@ -65,6 +65,7 @@ class PreforkedProcess:
         os.close(self._writing_end)
         status = 0
         try:
+            interruption.begin()
             if reasons := os.read(self._reading_end, _MOST_BYTES):
                 status = self._work(reasons.decode(errors="ignore"))
         finally:

@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import IO, Any, NoReturn, TypeVar
 
-from ..interruption import interruption
 from ..project.robot_files import RobotFiles
 from . import fork
 from .crash_report import CrashLog, describe_exit, moment_of, standstill_of
@@ -142,7 +141,6 @@ def work_and_exit(work: Callable[[CrashLog], int | None], crash_log: int) -> NoR
     :param crash_log: the descriptor of an empty file, open for reading and writing
     """
     status = None
-    interruption.leave()
     try:
         log = CrashLog(crash_log)
         log.enable()
