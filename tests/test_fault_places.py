@@ -57,7 +57,7 @@ PRESS = """
     ("bound", "says"),
     [
         ("commands2.InstantCommand(lambda pressed: self.arm.go(), self.arm)", "<lambda>() missing 1 required"),
-        ("commands2.cmd.run(self.arm.go, self.arm).withTimeout('2 s')", "hasElapsed() got arguments that it does not"),
+        ("commands2.cmd.run(self.arm.go, self.arm).withTimeout('2 s')", "withTimeout() got '2 s', a text"),
     ],
 )
 def test_what_was_bound_to_a_trigger_is_named_and_not_its_subsystem(

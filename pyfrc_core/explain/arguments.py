@@ -9,7 +9,7 @@ from types import FrameType
 from typing import Any
 
 from ..errors import text_of
-from ..project.robot_files import RobotFiles
+from ..project.robot_files import RobotFiles, is_pyfrc
 from ..wording import counted
 from .calls import called_on_class
 from .explanation import Explanation, ask_for
@@ -248,11 +248,12 @@ def _not_callable(error: BaseException, files: RobotFiles) -> Explanation | None
 
 
 def _called_from(error: BaseException, frame: FrameType) -> FrameType | None:
-    """Return the frame of what the user's function has called."""
+    """Return the frame of the library's function that the user's has called; None if that is pyfrc's."""
     entry = error.__traceback__
     while entry is not None and entry.tb_frame is not frame:
         entry = entry.tb_next
-    return entry.tb_next.tb_frame if entry is not None and entry.tb_next is not None else None
+    called = entry.tb_next.tb_frame if entry is not None and entry.tb_next is not None else None
+    return None if called is None or is_pyfrc(called.f_code.co_filename) else called
 
 
 def _wrong_type(error: BaseException, files: RobotFiles) -> Explanation | None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -105,17 +104,16 @@ def test_code_that_computes_while_robot_time_stands_hangs(monkeypatch: pytest.Mo
     assert str(world.detector.raised).startswith("robot.py:7: the robot code hangs here")
 
 
-def test_the_loop_that_does_not_end_is_the_place_and_not_what_it_calls(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    (tmp_path / "command.py").write_text("def execute(self):\n    while True:\n        self.go()\n")
+def test_the_loop_that_does_not_end_is_the_place_and_not_what_it_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch)
-    code = SimpleNamespace(co_filename=str(tmp_path / "command.py"), co_name="execute")
-    world.frame.f_back = SimpleNamespace(f_lineno=3, f_back=None, f_code=code)
-    assert world.watch(world.passes(10, used=1))[-1].startswith("wall 10: 11 robot.py:3: the robot code hangs here")
-    code.co_name = "startCompetition"  # that loop never ends
-    assert world.detector._place(DRIVER, True)[1] == "robot.py:7"
-    assert world.detector._place(DRIVER, False)[1] == "robot.py:7"
+    loop = world.frame
+
+    def looks() -> Iterator[object]:
+        for count, step in enumerate(world.passes(10, used=1)):  # a new call, each time
+            world.frame = SimpleNamespace(f_lineno=100 + count, f_back=loop, f_code=_CODE)
+            yield step
+
+    assert world.watch(looks())[-1].startswith("wall 10: 11 robot.py:7: the robot code hangs here")
 
 
 def test_code_that_waits_for_something_outside_hangs_as_soon(monkeypatch: pytest.MonkeyPatch) -> None:
