@@ -97,6 +97,10 @@ def _report(synced: Synced) -> None:
     from pyfrc_core.wording import counted, size_text
 
     lock, previous = synced.lock, synced.previous
+    for index in dict.fromkeys(each.index for each in lock.packages):
+        names = [each.name for each in lock.packages if each.index == index]
+        what = ", ".join(names) if len(names) <= 3 else counted(len(names), "package")
+        hint(f"index     {index or 'none, but a directory'}: {what}")
     if previous is None:
         hint(f"lock      {LOCK_FILE} is new: {counted(len(lock.packages), 'package')}. Commit it.")
     elif lock == previous:
@@ -128,6 +132,7 @@ class _Progress:
     def __init__(self) -> None:
         self._stack = ExitStack()
         self._began = time.monotonic()
+        self._notes: list[str] = []
 
     def __enter__(self) -> _Progress:
         self._quiet = verbosity().quiet
@@ -142,6 +147,8 @@ class _Progress:
 
     def __exit__(self, *_: object) -> None:
         self._stack.close()
+        for text in self._notes:
+            hint(f"note      {text}")
 
     def waiting(self) -> None:
         hint("Another pyfrc sync is running: waiting until it has ended.")
@@ -149,6 +156,9 @@ class _Progress:
     def finding(self, package: str) -> None:
         if self._bars is not None:
             self._bars.update(self._task, description=f"find      {package}", total=None, completed=0, visible=True)
+
+    def note(self, text: str) -> None:
+        self._notes.append(text)
 
     def received(self, what: str, there: int, total: int | None) -> None:
         if self._bars is not None:

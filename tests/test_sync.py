@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
 from unittest.mock import Mock
+from zipfile import ZipFile
 
 import pytest
 from conftest import MakeProject, Result, RobotProject
@@ -453,6 +454,47 @@ def test_what_is_no_wheel_is_refused_with_how_to_make_one(laptop: Laptop) -> Non
     assert refused.code == 2
     assert "pyproject.toml:4: requires has 'own-lib" in refused.first_error
     assert "python -m pip wheel --no-deps --wheel-dir wheels" in refused.stderr
+
+
+def test_a_wheel_that_aims_at_the_robots_python_is_refused_before_the_lock_is_written(laptop: Laptop) -> None:
+    wheel = add_wheel(laptop.index.directory / "simple/own-lib", "own-lib", "1.0")
+    with ZipFile(wheel, "a") as archive:
+        archive.writestr("own_lib-1.0.data/data/bin/python3", "")
+    laptop.project.write({"pyproject.toml": pyproject(requires='"own-lib"')})
+    refused = laptop.run()
+    assert refused.code == 1
+    expected = f"{wheel.name} has a file in the place of Python's own: 'own_lib-1.0.data/data/bin/python3'"
+    assert refused.first_error == expected
+    assert not (laptop.project.path / LOCK_FILE).exists()
+
+
+def test_a_package_from_another_index_than_before_needs_an_upgrade(laptop: Laptop, tmp_path: Path) -> None:
+    laptop.project.write({"pyproject.toml": pyproject(version="ignored", requires='"simple-lib"')})
+    assert f"\nindex     {laptop.index.url}: simple-lib\n" in laptop.sync()
+    with package_index(tmp_path / "stranger") as stranger:
+        stranger.add("simple-lib", "99.0")
+        also = {"PIP_EXTRA_INDEX_URL": f"{stranger.url}/simple"}
+        laptop.project.write({"pyproject.toml": pyproject(version="ignored", requires='"simple-lib>1"')})
+        refused = laptop.run(**also)
+        assert refused.code == 1
+        assert refused.first_error == (
+            f"simple-lib 99.0 would come from {stranger.url}, and the locked 1.0 came from {laptop.index.url}"
+        )
+        assert laptop.packages == {"simple-lib": "1.0"}
+        printed = laptop.sync("--upgrade", **also)
+    assert f"  simple-lib 1.0 -> 99.0, now from {stranger.url}\n" in printed
+    assert f"\nindex     {stranger.url}: simple-lib\n" in printed
+    assert [each.index for each in laptop.lock.packages] == [stranger.url]
+
+
+@pytest.mark.slow
+def test_a_wrong_hash_in_the_index_is_the_indexs_fault(laptop: Laptop) -> None:
+    served = laptop.index.served
+    laptop.index.served = lambda path: (served(path) or b"").replace(b"#sha256=", b"#sha256=0") or None  # type: ignore[method-assign]
+    failed = laptop.run()
+    assert failed.code == 1
+    assert "has another content than its index says (its SHA-256 differs)" in failed.first_error
+    assert "requirements" not in failed.stderr
 
 
 def test_without_internet_one_sentence_says_so(laptop: Laptop, tmp_path: Path) -> None:

@@ -17,7 +17,8 @@ def changes(before: Lock, after: Lock) -> Iterator[str]:
         elif name not in new:
             yield f"- {old[name]}"
         elif old[name].version != new[name].version:
-            yield f"{old[name]} -> {new[name].version}"
+            other = new[name].index if old[name].index not in (None, new[name].index) else None
+            yield f"{old[name]} -> {new[name].version}{f', now from {other}' if other else ''}"
         elif old[name].sha256 != new[name].sha256:
             yield f"{new[name]}: another file of this version"
     for requirement in after.requirements:

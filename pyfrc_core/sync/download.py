@@ -17,10 +17,10 @@ import urllib.request
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from http.client import HTTPException, HTTPResponse
+from http.client import HTTPException, HTTPMessage, HTTPResponse
 from importlib import import_module
 from pathlib import Path
-from typing import Literal
+from typing import IO, Literal
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
@@ -34,6 +34,8 @@ _TIMEOUT = 30.0
 #: How often a lost connection is tried again in a row, without a byte more.
 _RETRIES = 3
 _RANGE = re.compile(r"bytes (\d+)-\d+/(\d+)")
+#: The size of the largest file whose size is unknown.
+_MAX_BYTES = 1 << 30
 #: How the files begin that have the robot's Python: gzip, and Debian's archives.
 _ARCHIVES = (b"\x1f\x8b", b"!<arch>\n")
 
@@ -50,6 +52,7 @@ class Download:
     :param url:    its address: ``http:``, ``https:``, or ``file:``
     :param to:     where it is to be
     :param sha256: its hash; None if unknown
+    :param size:   its size in bytes; 0 if unknown
     :param named_by: the variable of the environment that names the address, if one does
     """
 
@@ -57,6 +60,7 @@ class Download:
     url: str
     to: Path
     sha256: str | None = None
+    size: int = 0
     named_by: str | None = None
 
     @property
@@ -70,6 +74,20 @@ class Download:
         return self.to.with_name(f".{self.to.name}.part-of")
 
 
+class _SafeRedirects(urllib.request.HTTPRedirectHandler):
+    """Follows redirections, but not from an encrypted connection to another one."""
+
+    def redirect_request(
+        self, req: urllib.request.Request, fp: IO[bytes], code: int, msg: str, headers: HTTPMessage, newurl: str
+    ) -> urllib.request.Request | None:
+        if urlsplit(newurl).scheme not in ("https", req.type):
+            raise DownloadError(
+                f"{req.full_url} redirects to {newurl}, which is not encrypted: nothing was taken from there",
+                remedy="Use another network, or another address: docs/sync.md.",
+            )
+        return super().redirect_request(req, fp, code, msg, headers, newurl)
+
+
 class Downloader:
     """Downloads files.
 
@@ -78,7 +96,7 @@ class Downloader:
 
     def __init__(self, use_certifi: bool = False) -> None:
         context = ssl.create_default_context(cafile=_certificates(use_certifi))
-        self._opener = urllib.request.build_opener(urllib.request.HTTPSHandler(context=context))
+        self._opener = urllib.request.build_opener(urllib.request.HTTPSHandler(context=context), _SafeRedirects)
 
     def get(self, wanted: Download, advanced: Callable[[int, int | None], None]) -> bool:
         """Download a file. What an earlier attempt has received is kept, and the file appears only when complete.
@@ -124,18 +142,20 @@ class Downloader:
     ) -> Literal["complete", "lost", "there already"]:
         """Receive until the end or the loss of the connection."""
         try:
-            response = self._open(wanted, _size(wanted.part))
+            response, asked = self._open(wanted, _size(wanted.part))
         except urllib.error.HTTPError as refused:
             if refused.code != 416:
                 raise
             refused.close()  # the part is not the beginning of what the server has now
             wanted.part.unlink()
-            response = self._open(wanted, 0)
+            response, asked = self._open(wanted, 0)
         with response:
             there, total = 0, None
-            partial = _RANGE.match(response.headers.get("Content-Range", "")) if response.status == 206 else None
-            if partial is not None:
-                there, total = int(partial[1]), int(partial[2])
+            if response.status == 206:
+                partial = _RANGE.match(response.headers.get("Content-Range", ""))
+                if partial is None or not asked or int(partial[1]) != asked:
+                    raise _wrong(wanted, f"{_host(wanted)} sent another part of {wanted.what} than was asked for")
+                there, total = asked, int(partial[2])
             else:
                 length = response.headers.get("Content-Length", "")
                 total = int(length) if length.isdecimal() else None
@@ -148,14 +168,19 @@ class Downloader:
                 part.truncate(there)
                 part.seek(there)
                 while piece := response.read(_PIECE):
-                    part.write(piece)
                     there += len(piece)
+                    part.write(piece)
+                    if wanted.size and there > wanted.size:
+                        return "complete"  # its hash differs
+                    if there > _MAX_BYTES:
+                        raise _wrong(wanted, f"{_host(wanted)} sends more than {wanted.what} can have")
                     advanced(there, total)
                 part.flush()
                 os.fsync(part.fileno())
         return "complete" if total is None or there == total else "lost"
 
-    def _open(self, wanted: Download, there: int) -> HTTPResponse:
+    def _open(self, wanted: Download, there: int) -> tuple[HTTPResponse, int]:
+        """Return the response, and from which byte on the file was asked for."""
         headers = {"User-Agent": f"pyfrc/{__version__}", "Accept-Encoding": "identity"}
         if there:
             version = ""
@@ -166,7 +191,7 @@ class Downloader:
             elif wanted.sha256 is not None:  # it shows whether the parts fit together
                 headers["Range"] = f"bytes={there}-"
         request = urllib.request.Request(wanted.url, headers=headers)
-        return self._opener.open(request, timeout=_TIMEOUT)  # type: ignore[no-any-return]
+        return self._opener.open(request, timeout=_TIMEOUT), there if "Range" in headers else 0
 
     def _check(self, wanted: Download) -> None:
         """Check the received bytes, and remove them if they are wrong.
@@ -182,9 +207,14 @@ class Downloader:
             wrong = f"{wanted.what} from {_host(wanted)} has another content than it should have (its SHA-256 differs)"
             remedy = "Run pyfrc sync again. If it stays so, the file was replaced: pyfrc sync --upgrade"
         if not fits:
-            wanted.part.unlink()
-            wanted.version_file.unlink(missing_ok=True)
-            raise DownloadError(wrong, where=None, remedy=remedy)
+            raise _wrong(wanted, wrong, remedy)
+
+
+def _wrong(wanted: Download, text: str, remedy: str = "Run pyfrc sync again, or in another network.") -> DownloadError:
+    """Remove what has arrived, and return the error for it."""
+    wanted.part.unlink(missing_ok=True)
+    wanted.version_file.unlink(missing_ok=True)
+    return DownloadError(text, remedy=remedy)
 
 
 def cannot_write(error: OSError, to: Path) -> OSError | DownloadError:

@@ -43,6 +43,7 @@ class LockedFile:
     :param size:    in bytes
     :param sha256:  in hexadecimal
     :param url:     the address to download it from; None for a file that came from a directory
+    :param index:   the package index that it came from; None for a file that came from elsewhere
     """
 
     name: str
@@ -51,6 +52,7 @@ class LockedFile:
     size: int
     sha256: str
     url: str | None = None
+    index: str | None = None
 
     def __str__(self) -> str:
         return f"{'Python' if self.name == PYTHON else self.name} {self.version}"
@@ -137,8 +139,9 @@ def _text(lock: Lock) -> Iterator[str]:
         yield "\n[python]\n" if locked is lock.python else f"\n[[package]]\nname = {_quoted(locked.name)}\n"
         yield f"version = {_quoted(locked.version)}\nfile = {_quoted(locked.file)}\n"
         yield f"size = {locked.size}\nsha256 = {_quoted(locked.sha256)}\n"
-        if locked.url is not None:
-            yield f"url = {_quoted(locked.url)}\n"
+        for key, address in (("url", locked.url), ("index", locked.index)):
+            if address is not None:
+                yield f"{key} = {_quoted(address)}\n"
 
 
 def _quoted(text: str) -> str:
@@ -183,14 +186,20 @@ class _Reader:
 
     def _file(self, name: str, table: dict[str, Any]) -> LockedFile:
         key = PYTHON if name == PYTHON else "package"
-        size, url = table.get("size"), table.get("url")
+        size = table.get("size")
         if type(size) is not int or size < 0:
             raise self._error(f"{name}: size must be a number of bytes", key)
-        if url is not None and (not isinstance(url, str) or _ADDRESS.fullmatch(url) is None):
-            raise self._error(f"{name}: url must be an address with http: or https:", key)
+        url, index = (self._address(name, table, each) for each in ("url", "index"))
         version = self._text(table, "version", key, _FILE_NAME)
         file = self._text(table, "file", key, _FILE_NAME)
-        return LockedFile(name, version, file, size, self._text(table, "sha256", key, _HASH), url)
+        return LockedFile(name, version, file, size, self._text(table, "sha256", key, _HASH), url, index)
+
+    def _address(self, name: str, table: dict[str, Any], key: str) -> str | None:
+        address = table.get(key)
+        if address is None or (isinstance(address, str) and _ADDRESS.fullmatch(address)):
+            return address
+        where = PYTHON if name == PYTHON else "package"
+        raise self._error(f"{name}: {key} must be an address with http: or https:", where)
 
     def _text(self, table: dict[str, Any], key: str, where: str, allowed: re.Pattern[str] | None = None) -> str:
         value = table.get(key)

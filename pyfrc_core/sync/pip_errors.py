@@ -26,6 +26,7 @@ _REASON = re.compile(r"\[Errno -?\d+\] ([^'\")\n]+)|(certificate.verify.failed)|
 _INDEXES = re.compile(r"^Looking in indexes: (.+)$", re.MULTILINE)
 #: The path of what pip tries again to get, or the host of it.
 _TRIED = re.compile(r"Retrying \(Retry\(.*: (/\S*)$|Could not fetch URL (\S+?):? |host='([^']+)'", re.MULTILINE)
+_WRONG_HASH = re.compile(r"DO NOT MATCH THE HASHES[^\n]*\n\s+(\S.*?) from ([^\s#]+)")
 _FULL = "No space left on device"
 _ERROR = re.compile(r"^ERROR: (?!Ignored the following|pip's dependency resolver)(.+)$", re.MULTILINE)
 
@@ -34,6 +35,11 @@ def explain(printed: str, season: Season) -> PyfrcError:
     """Return the error that pip's output is about."""
     if _FULL in printed:
         return PyfrcError("the disk is full", remedy="Free some space, and run pyfrc sync again.")
+    if (wrong := _WRONG_HASH.search(printed)) is not None:
+        return PyfrcError(
+            f"{wrong[1]}: {wrong[2].rstrip(':')} has another content than its index says (its SHA-256 differs)",
+            remedy="Run pyfrc sync again, or in another network. If it stays so, the index is wrong, or the file is.",
+        )
     if (missing := _MISSING.search(printed)) is not None:
         unreachable = _UNREACHABLE.search(printed) is not None
         return unreachable_index(printed) if unreachable else _no_wheel(missing, season)
@@ -63,11 +69,16 @@ def unreachable_index(printed: str) -> PyfrcError:
     return PyfrcError(f"{_tried_indexes(printed)} cannot be reached: {why.strip()}", remedy=remedy)
 
 
+def indexes_in(printed: str) -> list[str]:
+    """Return the addresses of the indexes in which pip has looked, as far as it prints them."""
+    listed = _INDEXES.search(printed)
+    return listed[1].split(", ") if listed else []
+
+
 def _tried_indexes(printed: str) -> str:
     """Return the hosts of the indexes that pip could not reach, as far as its output names them."""
-    listed = _INDEXES.search(printed)
     hosts = []
-    for index in map(urlsplit, listed[1].split(", ") if listed else []):
+    for index in map(urlsplit, indexes_in(printed)):
         for path, url, host in _TRIED.findall(printed):
             tried = path.startswith(index.path) if path else index.hostname in (host, urlsplit(url).hostname)
             if tried and index.hostname and index.hostname not in hosts:

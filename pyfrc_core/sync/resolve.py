@@ -10,7 +10,6 @@ import os
 import re
 import subprocess
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -21,7 +20,8 @@ from ..errors import PyfrcError
 from ..season import Season
 from ..temporary import temporary_directory
 from .addresses import file_name_in, index_of
-from .pip_errors import explain
+from .lock import LockedFile
+from .pip_errors import explain, indexes_in
 from .wanted import robot_environment
 
 #: The oldest pip that reports what it would install, for another computer.
@@ -32,27 +32,6 @@ _OFF = {"PIP_USER": "0", "PIP_REQUIRE_VIRTUALENV": "0", "PIP_DRY_RUN": "0"}
 _COLLECTING = re.compile(r"Collecting ([^ =<>!~;\[]+)")
 
 
-@dataclass(frozen=True)
-class Found:
-    """A wheel for the robot.
-
-    :param name:    its package, in the normalized form
-    :param version: its version
-    :param url:     its address, which may be that of a file (``file:``)
-    :param sha256:  as the index has it; None if it has none
-    """
-
-    name: str
-    version: str
-    url: str
-    sha256: str | None
-
-    @property
-    def file(self) -> str:
-        """The file's name."""
-        return file_name_in(self.url)
-
-
 def find_packages(
     requirements: Sequence[str],
     season: Season,
@@ -60,8 +39,10 @@ def find_packages(
     constraints: Sequence[str] = (),
     find_links: Sequence[str] = (),
     finding: Callable[[str], None] = lambda package: None,
-) -> list[Found]:
+) -> list[LockedFile]:
     """Return the wheels that meet the requirements on the season's robots, sorted by package.
+
+    Their sizes are 0: unknown. The address may be of a file (``file:``), and the hash is empty if the index has none.
 
     :param constraints: versions that are to be taken, such as ``six==1.17.0``
     :param find_links:  further places where pip looks: directories and addresses
@@ -88,7 +69,7 @@ def find_packages(
         printed, code = _run(pip_command(robot_environment(season), [*arguments, *requirements]), finding)
         if code != 0 or not report.is_file():
             raise explain(printed, season)
-        return _found(json.loads(report.read_text("utf-8")))
+        return _found(json.loads(report.read_text("utf-8")), indexes_in(printed))
 
 
 def _run(command: Sequence[str], finding: Callable[[str], None]) -> tuple[str, int]:
@@ -107,7 +88,7 @@ def _run(command: Sequence[str], finding: Callable[[str], None]) -> tuple[str, i
     return "".join(printed), pip.returncode
 
 
-def _found(report: dict[str, Any]) -> list[Found]:
+def _found(report: dict[str, Any], indexes: Sequence[str]) -> list[LockedFile]:
     from packaging.utils import canonicalize_name
 
     found = []
@@ -118,8 +99,19 @@ def _found(report: dict[str, Any]) -> list[Found]:
             sha256 = archive["hash"].removeprefix("sha256=")
         about = each["metadata"]
         name, url = canonicalize_name(about["name"]), _without_user(each["download_info"]["url"])
-        found.append(Found(name, about["version"], url, sha256))
+        locked = LockedFile(name, about["version"], file_name_in(url), 0, sha256 or "", url, source_of(url, indexes))
+        found.append(locked)
     return sorted(found, key=lambda each: each.name)
+
+
+def source_of(url: str, indexes: Sequence[str] = ()) -> str | None:
+    """Return the index with a file, or the host if it is none of these indexes'; None for a file of this computer."""
+    parts = urlsplit(url)
+    if parts.scheme == "file":
+        return None
+    bases = [_without_user(each).removesuffix("/").removesuffix("/simple") for each in indexes]
+    host = urlunsplit(parts._replace(path="", query="", fragment=""))
+    return max((each for each in bases if url.startswith(f"{each}/")), key=len, default=host)
 
 
 def _without_user(url: str) -> str:

@@ -19,8 +19,9 @@ from .carry import lock_in, take
 from .download import Download, Downloader, DownloadError
 from .lock import PYTHON, Lock, LockedFile, is_file_name, load_lock, lock_file_of, save_lock
 from .pip_errors import NothingFitsError
-from .resolve import Found, find_packages
+from .resolve import find_packages, source_of
 from .wanted import Wanted, load_wanted
+from .wheels import check_wheels
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,9 @@ class SyncProgress(Protocol):
 
     def finding(self, package: str) -> None:
         """Show that pip looks at a package."""
+
+    def note(self, text: str) -> None:
+        """Show a sentence about the packages."""
 
     def received(self, what: str, there: int, total: int | None) -> None:
         """Show how many bytes of a file are there; `total` is None if unknown."""
@@ -93,6 +97,8 @@ def synchronize(
             work.get_all(lock)
         else:
             lock = work.make_lock(wanted, previous, keep=not options.upgrade)
+        for text in check_wheels(lock, season, cache):
+            progress.note(text)
         if lock != previous:
             save_lock(file, lock)
     return Synced(lock, previous)
@@ -140,9 +146,27 @@ def _other_requirements(whose: str, lock: Lock, wanted: Wanted) -> PyfrcError:
     )
 
 
-def _without_file(url: str) -> str | None:
+def _index_of(locked: LockedFile) -> str | None:
+    """Return where a locked file came from. Locks of older versions have only its address."""
+    return locked.index or (source_of(locked.url) if locked.url else None)
+
+
+def _refuse_other_index(found: LockedFile, old: LockedFile | None) -> None:
+    """Refuse another version from another index than the locked one: it may be a stranger's of the same name."""
+    if old is None or old.version == found.version or found.index == _index_of(old):
+        return
+    if old.index is None and old.url is not None and source_of(old.url) == source_of(found.url or ""):
+        return  # an older version has locked only the address
+    places = [f"from {each}" if each else "from a directory" for each in (found.index, _index_of(old))]
+    raise PyfrcError(
+        f"{found} would come {places[0]}, and the locked {old.version} came {places[1]}",
+        remedy="If that is right: pyfrc sync --upgrade. Otherwise, check pip's settings: pip config list",
+    )
+
+
+def _without_file(url: str | None) -> str | None:
     """Return an address for the lock: none for a file, which only this computer has."""
-    return None if url.startswith("file:") else url
+    return None if url is None or url.startswith("file:") else url
 
 
 class _Work:
@@ -183,19 +207,21 @@ class _Work:
         """
         old = {each.name: each for each in previous.packages} if previous is not None and keep else {}
         found = self._find(wanted, old)
+        for each in found:
+            _refuse_other_index(each, old.get(each.name))
         python = self._python(previous.python if previous is not None and keep else None)
         packages = [self._package(each, old.get(each.name)) for each in found]
         controller = self._season.controller.name
         return Lock(self._season.year, controller, wanted.locked, python, tuple(packages))
 
-    def _find(self, wanted: Wanted, old: dict[str, LockedFile]) -> list[Found]:
+    def _find(self, wanted: Wanted, old: dict[str, LockedFile]) -> list[LockedFile]:
         requirements = list(wanted.locked)
         constraints = [f"{each.name}=={each.version}" for each in old.values()]
         meta = self._season.downloads.packages
         newest = [f"{meta}=={wanted.version}"] if wanted.version is not None else []
         links = [str(Path(each).absolute()) if Path(each).is_dir() else each for each in self._options.find_links]
 
-        def find(limits: list[str]) -> list[Found]:
+        def find(limits: list[str]) -> list[LockedFile]:
             return find_packages(
                 requirements, self._season, constraints=limits, find_links=links, finding=self._progress.finding
             )
@@ -224,12 +250,10 @@ class _Work:
         python = LockedFile(PYTHON, self._season.downloads.python, file, 0, "", _without_file(url))
         return self._get(python, url)
 
-    def _package(self, found: Found, old: LockedFile | None) -> LockedFile:
-        url = _without_file(found.url)
+    def _package(self, found: LockedFile, old: LockedFile | None) -> LockedFile:
+        new = replace(found, url=_without_file(found.url))
         if old is not None and old.version == found.version:
-            new = old
-        else:
-            new = LockedFile(found.name, found.version, found.file, 0, found.sha256 or "", url)
+            new = replace(old, index=_index_of(old))
         if new.size and self._cache.has(new):
             return new
         there = self._cache.path_of(new)
@@ -256,7 +280,7 @@ class _Work:
             self._progress.received(str(locked), there, total)
 
         variable = PYTHON_VARIABLE if replaced else None
-        wanted = Download(str(locked), url, path, locked.sha256 or None, variable)
+        wanted = Download(str(locked), url, path, locked.sha256 or None, locked.size, variable)
         downloaded = self._downloader.get(wanted, advanced)
         sha256, size = hash_file(path)
         if locked.size and locked.size != size:  # cannot be with the same hash
@@ -264,6 +288,8 @@ class _Work:
         whole = replace(locked, sha256=sha256, size=size)
         if downloaded:
             self._progress.got(whole, "copied" if url.startswith("file:") else "downloaded", url)
+        if not locked.sha256:
+            self._progress.note(f"{whole} has no published hash; from {url}: SHA-256 {sha256}")
         return whole
 
     def _directory_with(self, locked: LockedFile) -> Path | None:
