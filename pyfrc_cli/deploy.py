@@ -45,6 +45,11 @@ if TYPE_CHECKING:
     help="Go back to the previous program if the new one ends during its start.",
 )
 @click.option(
+    "--reinstall",
+    is_flag=True,
+    help="Compare the robot's packages with their hashes, send again what differs, and compile everything again.",
+)
+@click.option(
     "--rollback",
     metavar="[ID]",
     is_flag=False,
@@ -68,6 +73,7 @@ def command(
     in_place: bool,
     dry_run: bool,
     auto_rollback: bool,
+    reinstall: bool,
     rollback: str | None,
     netconsole: bool,
     nc_ds: bool,
@@ -89,6 +95,8 @@ def command(
         raise click.UsageError("--in-place and --auto-rollback are mutually exclusive: --in-place restarts nothing.")
     if rollback is not None and (in_place or dry_run or auto_rollback):
         raise click.UsageError("--rollback excludes --in-place, --dry-run and --auto-rollback: it deploys nothing.")
+    if reinstall and (in_place or dry_run or rollback is not None):
+        raise click.UsageError("--reinstall excludes --in-place, --dry-run and --rollback.")
     if rollback and not rollback.isdecimal():
         raise click.UsageError(f"--rollback {rollback!r}: a release is a number; pyfrc deploy-info lists them.")
     with errors_shown(choice, as_json):
@@ -113,6 +121,7 @@ def command(
                 in_place=in_place,
                 dry_run=dry_run,
                 auto_rollback=auto_rollback,
+                reinstall=reinstall,
             )
             address = session.deploy(project, options, talk)
     if netconsole or nc_ds:

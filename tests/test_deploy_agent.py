@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ast
 import io
+import json
 import os
 import sys
 import zlib
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -15,6 +17,7 @@ from hypothesis import strategies as st
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_memory, project_of
 
+from pyfrc_core import wheel_files
 from pyfrc_core.deploy import agent
 from pyfrc_core.deploy.agent import console, wire
 from pyfrc_core.deploy.agent_client import DeployRequest, Watched
@@ -22,7 +25,7 @@ from pyfrc_core.deploy.agent_stream import agent_command, agent_package
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
-SOURCES = sorted(Path(agent.__file__).parent.glob("*.py"))
+SOURCES = [*sorted(Path(agent.__file__).parent.glob("*.py")), Path(wheel_files.__file__)]
 
 
 def pythons() -> dict[str, str]:
@@ -41,7 +44,8 @@ def test_python_39_and_its_standard_library_are_enough(source: Path) -> None:
             assert node.module is not None
             assert node.module.split(".")[0] in sys.stdlib_module_names
         elif isinstance(node, ast.ImportFrom):
-            assert node.level == 1, "from the agent's own modules only"
+            own = node.level == 1 and source.parent == SOURCES[0].parent
+            assert own or (node.level, node.module) == (3, "wheel_files"), "from the agent's own modules only"
         elif isinstance(node, ast.Import):
             assert {each.name.split(".")[0] for each in node.names} <= sys.stdlib_module_names
 
@@ -58,6 +62,20 @@ def test_it_runs_as_it_is_sent(robot: LocalRobot, tmp_path: Path, python: str) -
     session = robot.start(agents)
     assert session.rollback().release.number == 1
     session.close()
+
+
+def test_only_docstrings_are_left_out_of_what_is_sent() -> None:
+    """And lines keep their numbers, for tracebacks."""
+    for name, text in json.loads(zlib.decompress(agent_package()[8:])):
+        source = Path(str(import_module(name).__file__)).read_text("utf-8")
+        trees = [ast.parse(text), ast.parse(source)]
+        for node in (node for tree in trees for node in ast.walk(tree)):
+            documented = isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)
+            if documented and ast.get_docstring(node) is not None:
+                del node.body[0]
+        assert ast.dump(trees[0]) == ast.dump(trees[1]), name
+        sent, written = ([getattr(node, "lineno", 0) for node in ast.walk(tree)] for tree in trees)
+        assert sent == written, name
 
 
 def test_nothing_of_the_user_stands_in_the_command() -> None:

@@ -6,6 +6,7 @@ import contextlib
 import hashlib
 import io
 import os
+import subprocess
 import sys
 from collections import defaultdict
 from collections.abc import Generator, Mapping
@@ -32,6 +33,7 @@ PYTHON = "0123456789abcdef"
 FIRST, SECOND = "aaaaaaaaaaaaaaaa", "bbbbbbbbbbbbbbbb"
 OLD, NEW = {"robot.py": ROBOT_PY.encode()}, {"robot.py": b"# new\n" + ROBOT_PY.encode()}
 SPINNER = "spinner/__init__.py"
+TOOL = "#!python\nimport sys\nprint(sys.prefix, sys.argv[1:])\n"
 
 
 def wheel(directory: Path, name: str, files: Mapping[str, str | bytes]) -> Entry:
@@ -53,7 +55,7 @@ class Packages:
         directory.mkdir()
         kept = wheel(directory, "kept-1.0", {"kept.py": "A = 1\n" * 200, "kept-1.0.dist-info/METADATA": "Name: kept\n"})
         first, second = (wheel(directory, f"spinner-{n}.0", {SPINNER: f"VERSION = {n}\n"}) for n in (1, 2))
-        more = wheel(directory, "more-1.0", {"more.py": "B = 1\n", "more-1.0.data/scripts/tool": "#!python\npass\n"})
+        more = wheel(directory, "more-1.0", {"more.py": "B = 1\n", "more-1.0.data/scripts/tool": TOOL})
         self.wheels = {FIRST: Manifest((kept, first)), SECOND: Manifest((kept, second, more))}
         self.content: dict[str | None, Files] = {None: {}}
         self.content[FIRST] = {"kept.py": b"A = 1\n" * 200, SPINNER: b"VERSION = 1\n"}
@@ -164,8 +166,8 @@ def test_a_change_sends_only_what_is_new_and_a_rollback_undoes_it(
 def check_scripts(robot: LocalRobot, environment: str) -> None:
     place = robot.home.resolve() / ".pyfrc/environments" / environment
     tool = place / "bin/tool"
-    assert tool.read_text().startswith(f"#!{place}/bin/python3\n")
-    assert os.access(tool, os.X_OK)
+    printed = subprocess.run([tool, "a b"], check=True, capture_output=True, text=True).stdout
+    assert printed == f"{place} ['a b']\n", "it runs in its own environment"
 
 
 def test_scripts_of_a_wheel_that_another_environment_has(directory: Path, packages: Packages, agents: Agents) -> None:

@@ -58,6 +58,7 @@ FACTS: dict[str, Any] = {
     "machine": "armv7l",
     "other_languages": [],
     "program_age": 12.5,
+    "remains": False,
 }
 DEPLOYED = {
     "release": 2,

@@ -105,6 +105,28 @@ def test_from_nothing_to_two_rollbacks(blank: Computer, laptop: Laptop, project:
 
 
 @nightly
+def test_a_damaged_package_is_sent_again_when_the_program_ends(
+    blank: Computer, laptop: Laptop, project: RobotProject
+) -> None:
+    laptop.sync(spinner="1.0")
+    laptop.deploy(blank)
+    blank.said("program 1 with spinner 1.0")
+    (file,) = blank.home.glob(".pyfrc/environments/*/lib/python3*/site-packages/spinner/__init__.py")
+    (compiled,) = file.parent.glob("__pycache__/__init__.*.pyc")
+    good = file.read_bytes()
+    for each in (file, compiled):
+        with each.open("r+b") as stream:  # as a worn disk does: the same file, with another content
+            stream.write(b"\0" * 20)
+    project.write({"robot.py": ROBOT.format(number=2)})
+    again = laptop.deploy(blank)
+    assert "damaged on the robot's disk: lib/python3" in again
+    assert "install    1 package of 3 sent" in again
+    blank.said("program 2 with spinner 1.0")
+    assert file.read_bytes() == good
+    assert "install    0 packages of 3 sent" in laptop.deploy(blank, "--reinstall")
+
+
+@nightly
 def test_what_todays_tool_has_installed_is_kept_for_the_releases_that_use_it(
     laptop: Laptop, project: RobotProject
 ) -> None:

@@ -257,6 +257,7 @@ def test_a_file_that_is_left_out_of_the_upload(facts: RobotFacts, tmp_path: Path
         ("requires = ['Phoenix6>=26.1']", {}, ":2: requires has 'Phoenix6>=26.1', but the robot has no"),
         ("\nrequires = ['phoenix6>=26.1']", {"phoenix6": "25.3"}, ":3: requires has 'phoenix6>=26.1', but the "),
         ("requires = ['phoenix6>=26.1', 'robotpy_rev']", {"phoenix6": "26.1.1", "robotpy-rev": "2026.0"}, None),
+        ("requires = ['reefscape>=2027.0.0a1']", {"reefscape": "2027.0.0a7"}, None),
         ("requires = ['colorama; sys_platform == \"win32\"']", {}, None),
         ("requires = ['numpy; platform_machine != \"roborio\"']", {}, None),
         ("requires = ['numpy; python_version >= \"3.14\"']", {}, ":2: requires has "),

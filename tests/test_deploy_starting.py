@@ -54,6 +54,7 @@ class Watching(AgentClient):
         self.recovery_hint: RecoveryHint | None = None
         self.went_back_to: list[int | None] = []
         self.states: list[StartState] = []
+        self.different: list[tuple[str, ...]] = []
 
     def restart(self) -> None:
         self.recovery_hint = recovery_hints.started(2, 1)
@@ -66,6 +67,9 @@ class Watching(AgentClient):
             on_state(state)
         self.recovery_hint = None
         return watched
+
+    def check(self, on_progress=None) -> tuple[str, ...]:  # type: ignore[no-untyped-def]
+        return self.different.pop(0) if self.different else ()
 
     def rollback(self, release=None, on_progress=None, *, only_from_deployed=False) -> RolledBack:  # type: ignore[no-untyped-def]
         self.went_back_to.append(release)
@@ -176,6 +180,34 @@ def test_going_back_is_watched_in_the_same_way(talk: UserInterface) -> None:
         with pytest.raises(DeployError) as caught:
             go_back(Watching(watched), talk, None)
         assert caught.value.exit_code == code
+
+
+DAMAGED = ("arm.py", "lib/python3.14/site-packages/rev.py", "c")
+NAMED = "damaged on the robot's disk: arm.py, lib/python3.14/site-packages/rev.py and 1 more"
+
+
+def test_what_is_damaged_is_sent_again_and_started_again(talk: UserInterface) -> None:
+    robot, sent = Watching(CRASHED, RUNS), []
+    robot.different = [DAMAGED]
+    assert start(robot, talk, None, reinstall=lambda: sent.append(True)) == RUNNING
+    assert sent == [True]
+
+
+def test_a_program_that_ends_after_that_too_is_gone_back_from(talk: UserInterface) -> None:
+    robot = Watching(CRASHED, CRASHED, RUNS)
+    robot.different = [DAMAGED, DAMAGED]
+    with pytest.raises(ProgramDiedError, match="release 1 runs again"):
+        start(robot, talk, None, auto_rollback=True, reinstall=lambda: 3)
+    assert robot.went_back_to == [3]
+
+
+def test_what_is_damaged_is_named_after_a_rollback_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    robot = Watching(CRASHED)
+    robot.different = [DAMAGED]
+    printed = io.StringIO()
+    with pytest.raises(ProgramDiedError, match="is current again, but ended"):
+        go_back(robot, UserInterface(DeployProgress(printed), None), 1)
+    assert f"{NAMED}. To send it again: pyfrc deploy --reinstall" in printed.getvalue()
 
 
 # -- exit codes of failures on the way: 1 only where the robot has the program that it had ---------------------------

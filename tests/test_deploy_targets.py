@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,6 +15,7 @@ import pyfrc_core.deploy
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.layout import Layout
 from pyfrc_core.deploy.targets import CONTROLLERS, ControllerKind
+from pyfrc_core.deploy.targets.controller import remove_remains
 
 #: One user, one file with the start command, a service manager.
 ONE_USER = Layout(
@@ -97,6 +101,46 @@ def test_programs_of_other_languages_are_found(robot: AgentDisk) -> None:
     (robot.home / layout.command).write_text(f"java -jar {layout.home}/Robot.jar")
     (facts,) = robot.ask({"op": "info"})
     assert facts["done"]["other_languages"] == [f"{layout.home}/{layout.command}", f"{layout.home}/Robot.jar"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="it asks /proc which processes run")
+def test_what_an_interrupted_installation_leaves_is_removed(tmp_path: Path) -> None:
+    place = tmp_path / "installing"
+    place.mkdir()
+    with subprocess.Popen(["sh", "-c", f"read line # {place}"], stdin=subprocess.PIPE) as running:
+        # Its number may be another process's now, such as ours.
+        ours = f"{os.getpid()}.ipk", f"{os.getpid()}.tmp/opkg-1/file"
+        for name in (f"{running.pid}.ipk", *ours, "0123456789abcdef/x"):
+            (place / name).parent.mkdir(parents=True, exist_ok=True)
+            (place / name).touch()
+        subprocess.run(["sh", "-c", remove_remains(str(place))], check=True)
+        assert sorted(each.name for each in place.iterdir()) == sorted(["0123456789abcdef", f"{running.pid}.ipk"])
+        running.communicate(b"")
+    subprocess.run(["sh", "-c", remove_remains(str(place))], check=True)
+    assert [each.name for each in place.iterdir()] == ["0123456789abcdef"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="a robot runs Linux")
+@pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda each: each.name)
+def test_a_lost_connection_leaves_nothing_of_an_installation(controller: ControllerKind, tmp_path: Path) -> None:
+    place, installer = tmp_path / "installing", controller.install_python
+    script = installer.script.format(name="0123456789abcdef", size=1000, kilobytes=1, sha256="0" * 64)
+    script = script.replace(controller.layout.installing, str(place))
+    done = subprocess.run(["sh", "-c", script], input=b"too little", capture_output=True, check=False)
+    assert done.stdout == b"send\n"
+    assert done.returncode != 0
+    assert list(place.iterdir()) == []
+
+
+@pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda each: each.name)
+def test_remains_are_reported(controller: ControllerKind, tmp_path: Path) -> None:
+    robot = AgentDisk(tmp_path / "disk", controller.layout)
+    place = robot.places.of(controller.layout.installing)
+    (place / "0123456789abcdef").mkdir(parents=True)
+    for remains in (False, True):
+        (facts,) = robot.ask({"op": "info"})
+        assert facts["done"]["remains"] is remains
+        (place / "123.ipk").touch()
 
 
 @pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda each: each.name)

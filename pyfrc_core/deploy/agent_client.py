@@ -11,6 +11,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from ..file_hash import open_file
+from ..terminal_text import one_line
 from . import recovery_hints
 from .agent import start_monitor, wire
 from .agent_stream import AgentChannel, AgentStream, TimeLimits, agent_command, agent_package
@@ -121,6 +122,11 @@ class AgentClient:
         with self._reporting(on_progress):
             return self._request(Plan.of, "plan", files=_as_lists(manifest))
 
+    def check(self, on_progress: OnProgress | None = None) -> tuple[str, ...]:
+        """Compare the robot's code with what was deployed and installed. Return the paths of files that differ."""
+        with self._reporting(on_progress):
+            return self._request(lambda fields: tuple(map(one_line, fields.texts("different"))), "check")
+
     def install(
         self,
         environment: str,
@@ -130,6 +136,8 @@ class AgentClient:
         on_progress: OnProgress | None = None,
     ) -> int:
         """Make an environment on the robot, beside the current one. Return how many wheels were sent.
+
+        Damaged files, also of other environments, are replaced.
 
         :param environment: its name
         :param python: the name of its Python, which is on the robot; None: the system's

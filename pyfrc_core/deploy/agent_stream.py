@@ -19,6 +19,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
+from .. import wheel_files
 from ..terminal_text import one_line
 from .agent import wire
 from .errors import ConnectionFailedError, DeployError, NoPythonError, OtherComputerError, RefusedError
@@ -316,6 +317,7 @@ _MODULES = (
     "__init__",
     "system",
     "wire",
+    "activity",
     "disk",
     "imports",
     "layout",
@@ -323,12 +325,13 @@ _MODULES = (
     "release_record",
     "console",
     "virtual",
-    "activity",
     "carrying",
     "compiling",
     "wheels",
+    "environment_files",
     "environments",
     "releases",
+    "integrity",
     "content_index",
     "transaction",
     "start_monitor",
@@ -336,6 +339,14 @@ _MODULES = (
     "program",
     "serve",
 )
+
+
+_DOCSTRING = re.compile(r'^( *)"""(.*?)"""$', re.MULTILINE | re.DOTALL)
+
+
+def _emptied(docstring: re.Match[str]) -> str:
+    """Return an empty docstring with as many lines, so that those of the code keep their numbers."""
+    return docstring[1] + '""' + "\n" * docstring[2].count("\n")
 
 
 def agent_command(python: str) -> str:
@@ -351,7 +362,8 @@ def agent_package() -> bytes:
     """Return the agent's modules in the format that the bootstrap reads."""
     package = wire.__name__.rpartition(".")[0]
     directory = Path(wire.__file__).parent
-    names = {each: package if each == "__init__" else f"{package}.{each}" for each in _MODULES}
-    modules = [[name, (directory / f"{each}.py").read_text("utf-8")] for each, name in names.items()]
-    packed = zlib.compress(json.dumps(modules).encode())
+    files = {wheel_files.__name__: Path(wheel_files.__file__)}
+    files |= {f"{package}.{each}".removesuffix(".__init__"): directory / f"{each}.py" for each in _MODULES}
+    modules = [[name, _DOCSTRING.sub(_emptied, file.read_text("utf-8"))] for name, file in files.items()]
+    packed = zlib.compress(json.dumps(modules).encode(), 9)
     return b"%08d" % len(packed) + packed

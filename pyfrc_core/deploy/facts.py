@@ -93,6 +93,7 @@ class RobotFacts:
     :param other_languages: files and directories of programs in Java and C++
     :param environment:  the environment in which the agent runs, if pyfrc has made it
     :param program_age:  seconds since the program's start; None if unknown or no program runs
+    :param remains:      whether there is something that an interrupted installation may have left
     """
 
     controller: str
@@ -116,6 +117,7 @@ class RobotFacts:
     machine: str
     other_languages: tuple[str, ...]
     program_age: float | None = None
+    remains: bool = False
     environment: str | None = None
 
     @classmethod
@@ -152,6 +154,7 @@ class RobotFacts:
             machine=fields.line("machine"),
             other_languages=tuple(map(one_line, fields.texts("other_languages"))),
             program_age=fields.seconds_or_none("program_age"),
+            remains=fields.flag("remains"),
             environment=fields.line_or_none("environment") if "environment" in fields else None,
         )
 
@@ -184,6 +187,7 @@ class DeployRequest:
     :param program:     files that the program imports at its start, which the robot's Python must be able to compile
     :param restart:     restart the program after the deploy
     :param environment: the environment on the robot that it runs in; None: the current one
+    :param reinstall:   make a new release in any case, compile everything again, and mend damaged files of others
     """
 
     main: str
@@ -193,6 +197,7 @@ class DeployRequest:
     program: Sequence[str] = ()
     restart: bool = False
     environment: str | None = None
+    reinstall: bool = False
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,15 @@ import contextlib
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from zipfile import BadZipFile, ZipFile
 
 from ..project import Project
 from ..season import CURRENT
 from ..sync import Lock, cached_file, load_lock, lock_file_of
 from ..terminal_text import one_line
+from ..wheel_files import WheelError, open_wheel
 from ..wording import counted
 from .connection import Connection, connection_lost
 from .errors import DeployError, NoPythonError, OtherComputerError, RefusedError
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from .facts import RobotFacts
 
 #: The version of how environments are made; it is part of their names.
-_FORMAT = "1"
+_FORMAT = "2"
 _NAME_LENGTH = 16
 _CHUNK_BYTES = 1 << 16
 _UNPACK_SECONDS = 600.0
@@ -50,9 +51,9 @@ class Environment:
 
     @property
     def name(self) -> str:
-        """Its name on the robot: the same files give the same name."""
+        """Its name on the robot: the same files in the same order give the same name."""
         files = [f"{each.sha256} {each.file}" for each in self.lock.packages]
-        text = "\n".join([_FORMAT, self.lock.python.sha256, *sorted(files)])
+        text = "\n".join([_FORMAT, self.lock.python.sha256, *files])
         return hashlib.sha256(text.encode()).hexdigest()[:_NAME_LENGTH]
 
     @property
@@ -65,6 +66,15 @@ class Environment:
         """The path of its Python on the robot."""
         layout = self.controller.layout
         return layout.python or f"{layout.home}/.pyfrc/pythons/{self.python_name}/bin/python3"
+
+    @cached_property
+    def wheels(self) -> Manifest:
+        """Its packages' files on this computer.
+
+        :raises NotSyncedError: if they are not here
+        """
+        packages = [(each, cached_file(each, CURRENT)) for each in self.lock.packages]
+        return Manifest(tuple(Entry(each.file, each.size, each.sha256, False, file) for each, file in packages))
 
     def is_met_by(self, facts: RobotFacts) -> bool:
         """Return whether the robot has all of it already, in this environment or in another tool's."""
@@ -86,10 +96,11 @@ def wanted_environment(project: Project, controller: ControllerKind) -> Environm
 
 
 def start_agent(
-    connection: Connection, wanted: Environment | None, hello: Mapping[str, Any] | None
+    connection: Connection, wanted: Environment | None, hello: Mapping[str, Any] | None, reinstall: bool = False
 ) -> AgentClient | None:
     """Start the agent: in the wanted environment, if that is there. Return None if it has to be installed with Python.
 
+    :param reinstall: start it outside of the environment, which may be damaged
     :raises NoPythonError: if the robot has no Python, and no environment is wanted
     """
     from .agent_client import AgentClient
@@ -97,7 +108,8 @@ def start_agent(
     if wanted is None:
         return AgentClient.start(connection, hello=hello, python=connection.python())
     with contextlib.suppress(NoPythonError):
-        return AgentClient.start(connection, hello=hello, python=connection.python(wanted.name))
+        python = wanted.python if reinstall else connection.python(wanted.name)
+        return AgentClient.start(connection, hello=hello, python=python)
     return None
 
 
@@ -108,7 +120,7 @@ def install(
     progress: DeployProgress,
     hello: Mapping[str, Any] | None,
 ) -> AgentClient:
-    """Install an environment, and start the agent in it.
+    """Install an environment, or replace its damaged files, and start the agent in it.
 
     :param robot: the agent that runs in another Python, which then ends; None without one
     :raises RefusedError: if the robot has another problem, which an installation does not solve
@@ -134,11 +146,7 @@ def install(
 def _install(connection: Connection, robot: AgentClient | None, wanted: Environment, phase: Phase) -> AgentClient:
     from .agent_client import AgentClient
 
-    files = {each: cached_file(each, CURRENT) for each in wanted.lock.files}
-    wheels = Manifest(
-        tuple(Entry(each.file, each.size, each.sha256, False, files[each]) for each in wanted.lock.packages)
-    )
-    unpacked = [_unpacked_size(entry.file) for entry in wheels.entries]
+    wheels = wanted.wheels  # first: all of them have to be here
     installer, has_place = wanted.controller.install_python, bool(wanted.controller.layout.python)
     sent_python = False
     if robot is None or not has_place:
@@ -147,29 +155,33 @@ def _install(connection: Connection, robot: AgentClient | None, wanted: Environm
             user = connection
             if installer.user != wanted.controller.layout.user:
                 user = stack.enter_context(connection.as_user(installer.user))
-            then = wheels.total_bytes + sum(unpacked) if robot is None else 0
-            sent_python = _send_python(user, wanted, files[wanted.lock.python], then, phase)
+            then = wheels.total_bytes + sum(map(_unpacked_size, wheels.entries)) if robot is None else 0
+            sent_python = _send_python(user, wanted, cached_file(wanted.lock.python, CURRENT), then, phase)
     if robot is None:
         robot = AgentClient.start(connection, python=wanted.python)
-    sent = robot.install(wanted.name, None if has_place else wanted.python_name, wheels, unpacked, phase.work)
-    phase.detail = f"{counted(sent, 'package')} of {len(wheels.entries)} sent"
+    install_packages(robot, wanted, phase)
     if sent_python:
         phase.detail = f"{wanted.lock.python}, {phase.detail}"
     return robot
 
 
-def _unpacked_size(wheel: Path) -> int:
+def install_packages(robot: AgentClient, wanted: Environment, phase: Phase) -> None:
+    """Make an environment on a robot that has its Python, and replace damaged files of all environments."""
+    wheels, python = wanted.wheels, None if wanted.controller.layout.python else wanted.python_name
+    sent = robot.install(wanted.name, python, wheels, [_unpacked_size(each) for each in wheels.entries], phase.work)
+    phase.detail = f"{counted(sent, 'package')} of {len(wheels.entries)} sent"
+
+
+def _unpacked_size(wheel: Entry) -> int:
     try:
-        with ZipFile(wheel) as archive:
+        with open_wheel(wheel.file, wheel.path) as archive:
             # Blocks of 4096 bytes, and compiled files of about the same size.
             return sum(
                 (each.file_size // 4096 + 1) * 4096 * (2 if each.filename.endswith(".py") else 1)
                 for each in archive.infolist()
             )
-    except (BadZipFile, OSError) as error:
-        raise RefusedError(
-            f"this is not a wheel: {error}", where=wheel, remedy="Remove it; then: pyfrc sync"
-        ) from error
+    except WheelError as error:
+        raise RefusedError(str(error), where=wheel.file, remedy="Remove it; then: pyfrc sync") from error
 
 
 def _send_python(connection: Connection, wanted: Environment, archive: Path, then: int, phase: Phase) -> bool:

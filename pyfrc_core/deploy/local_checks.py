@@ -46,6 +46,7 @@ class DeployOptions:
     :param in_place: overwrite the running program's files, delete nothing, do not restart
     :param dry_run: only show what would be done
     :param auto_rollback: roll back if the new program ends during the watch
+    :param reinstall: compare what is installed with its hashes, send again what differs, and make a new release
     """
 
     choice: RobotChoice = field(default_factory=RobotChoice)
@@ -58,6 +59,7 @@ class DeployOptions:
     in_place: bool = False
     dry_run: bool = False
     auto_rollback: bool = False
+    reinstall: bool = False
 
 
 @dataclass(frozen=True)

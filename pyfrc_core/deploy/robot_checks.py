@@ -130,7 +130,7 @@ INSTALL_PACKAGES = "with internet: pyfrc sync; then at the robot: pyfrc deploy"
 PREPARE = f"Prepare the robot: {INSTALL_PACKAGES}. {_SECTION}"
 
 _REMOVE_OTHER_LANGUAGES = "To remove it: pyfrc undeploy --java-cpp"
-_MAX_NAMED = 2  # files of other languages
+_MAX_NAMED = 2  # files
 
 #: How to install a package for a virtual robot, without the package's name.
 INSTALL_FOR_VIRTUAL_ROBOT = "in the environment in which pyfrc virtual-robot runs: python -m pip install"
@@ -157,10 +157,13 @@ def other_languages_notice(found: Sequence[str]) -> tuple[str, str]:
 
     :param found: their files and directories
     """
-    named = ", ".join(found[:_MAX_NAMED])
-    if len(found) > _MAX_NAMED:
-        named += f" and {len(found) - _MAX_NAMED} more"
-    return f"Java or C++ takes disk space and memory on the robot ({named})", _REMOVE_OTHER_LANGUAGES
+    return f"Java or C++ takes disk space and memory on the robot ({named(found)})", _REMOVE_OTHER_LANGUAGES
+
+
+def named(files: Sequence[str]) -> str:
+    """Return the first of these files, and how many more there are."""
+    more = f" and {len(files) - _MAX_NAMED} more" if len(files) > _MAX_NAMED else ""
+    return ", ".join(files[:_MAX_NAMED]) + more
 
 
 def same_version_on_both(version: str) -> str:

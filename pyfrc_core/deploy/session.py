@@ -14,7 +14,7 @@ from .console import follow_console
 from .discovery import Address
 from .errors import DeployError, RefusedError
 from .facts import Release, RobotFacts
-from .installing import wanted_environment
+from .installing import Environment, install_packages, wanted_environment
 from .local_checks import CheckedProgram, DeployOptions, prepare
 from .manifest import ascii_path
 from .program_output import follow_output
@@ -43,7 +43,8 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
     progress = talk.progress
     installs = options.check_versions and not (options.dry_run or options.in_place)
     wanted = wanted_environment(project, target.controller) if installs else None
-    with connected_agent(target, options.choice, progress, program.imports.modules, wanted) as (connection, robot):
+    modules, reinstall = program.imports.modules, options.reinstall
+    with connected_agent(target, options.choice, progress, modules, wanted, reinstall) as (connection, robot):
         if robot.facts.other_languages:
             progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))
         _note_unfit_releases(robot.facts, progress)
@@ -63,25 +64,44 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
                 plan = robot.plan(program.manifest, phase.work)
             progress.result({"host": connection.host, "plan": asdict(plan)}, _plan_as_text(plan), requested=True)
         else:
-            _replace_program(robot, connection, program, options, talk)
+            _replace_program(robot, connection, program, wanted, options, talk)
     return connection.address
 
 
 def _replace_program(
-    robot: AgentClient, connection: Connection, program: CheckedProgram, options: DeployOptions, talk: UserInterface
+    robot: AgentClient,
+    connection: Connection,
+    program: CheckedProgram,
+    wanted: Environment | None,
+    options: DeployOptions,
+    talk: UserInterface,
 ) -> None:
     """Upload the program, and start it."""
     from .starting import start
 
-    memory = BackgroundTask(connection.controller.save_memory if robot.facts.wastes_memory else None, connection)
+    controller = connection.controller
+    tasks = [
+        BackgroundTask(controller.save_memory if robot.facts.wastes_memory else None, connection),
+        BackgroundTask(controller.remove_remains if robot.facts.remains else None, connection),
+    ]
     deployed = _upload(robot, program, options, talk)
+
+    def reinstall() -> int | None:
+        nonlocal deployed
+        if wanted is not None and robot.facts.environment == wanted.name:
+            with talk.progress.phase("install") as phase:
+                install_packages(robot, wanted, phase)
+        deployed = _upload(robot, program, replace(options, reinstall=True), talk)
+        return deployed.fallback
+
     verdict = None
     try:
         if not options.in_place:
-            verdict = start(robot, talk, deployed.fallback, options.auto_rollback)
+            verdict = start(robot, talk, deployed.fallback, options.auto_rollback, reinstall)
     finally:
         _repair_stop(robot, connection, talk.progress)
-        memory.report(talk.progress)  # last, since a failing login as administrator may take half a minute
+        for task in tasks:  # last, since a failing login as administrator may take half a minute
+            task.report(talk.progress)
     result = {"host": connection.host, **asdict(deployed), "in_place": options.in_place, "program": verdict}
     text = "Its files were overwritten; the program was not restarted." if options.in_place else "Deployed."
     talk.progress.result(result, text)
@@ -231,6 +251,7 @@ def _upload(robot: AgentClient, program: CheckedProgram, options: DeployOptions,
         program=program.imports.program(),
         restart=not options.in_place,
         environment=robot.facts.environment,
+        reinstall=options.reinstall,
     )
     with talk.progress.phase("upload") as phase:
         deployed = robot.deploy(program.manifest, request, phase.work)

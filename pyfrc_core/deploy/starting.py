@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
+
 from .agent import start_monitor
 from .agent_client import AgentClient
 from .errors import DeployError, NotSeenToRunError, ProgramDiedError, RefusedError
 from .facts import StartState, Watched
 from .progress import Phase, UserInterface
+from .robot_checks import named
 
 #: Seconds after which a program is reported as still starting. On a robot of 667 MHz, imports take 5 to 10 s, large
 #: libraries 5 s more, and a `robotInit` that configures twenty devices 5 to 10 s: 25 s in all. The limit is more than
@@ -22,15 +26,26 @@ _NO_OUTPUT = "(no output of the program was received: a robot's console may be s
 _GO_BACK = "Go back to the previous program with: pyfrc deploy --rollback"
 
 
-def start(robot: AgentClient, talk: UserInterface, previous: int | None, auto_rollback: bool = False) -> str:
+def start(
+    robot: AgentClient,
+    talk: UserInterface,
+    previous: int | None,
+    auto_rollback: bool = False,
+    reinstall: Callable[[], int | None] | None = None,
+) -> str:
     """Start the new program, and watch its start. Return the verdict, ``running`` or ``unheard``.
 
     :param previous: the release for a rollback, if there is one
     :param auto_rollback: roll back without asking if the program ends
+    :param reinstall: is called if the program ends and its code or packages are damaged on the robot: sends them again,
+        and returns the release for a rollback
     :raises ProgramDiedError: if it ends; after a rollback, the previous program runs again
     :raises NotSeenToRunError: if it is still starting at the end of the watch
     """
     watched = _restart(robot, talk)
+    if reinstall is not None and not watched.alive and _note_damage(robot, talk):
+        previous = reinstall()
+        watched = _restart(robot, talk)
     if watched.verdict == start_monitor.STARTING:
         raise _still_starting(watched, "the new program was started")
     if watched.alive:
@@ -70,11 +85,22 @@ def go_back(robot: AgentClient, talk: UserInterface, release: int | None, *, onl
     if watched.verdict == start_monitor.STARTING:
         raise _still_starting(watched, f"release {back.release.number} is current again and was started")
     if not watched.alive:
+        _note_damage(robot, talk)
         raise ProgramDiedError(
             f"release {back.release.number} is current again, but {_end_of(watched)}",
             remedy="Choose another with --rollback ID: pyfrc deploy-info lists them.",
         )
     return back.release.number
+
+
+def _note_damage(robot: AgentClient, talk: UserInterface) -> bool:
+    """Return whether code on the robot differs from what was deployed or installed, and name it."""
+    with suppress(DeployError):  # the program's end is what matters
+        if different := robot.check():
+            text = f"  damaged on the robot's disk: {named(different)}. To send it again: pyfrc deploy --reinstall"
+            talk.progress.note(text)
+            return True
+    return False
 
 
 def _restart(robot: AgentClient, talk: UserInterface) -> Watched:

@@ -95,16 +95,18 @@ def connected_agent(
     progress: DeployProgress,
     modules: Callable[[], Sequence[str]] = tuple,
     wanted: Environment | None = None,
+    reinstall: bool = False,
 ) -> Iterator[tuple[Connection, AgentClient]]:
     """Find the robot, connect to it and start the agent. The agent ends after the ``with`` block.
 
     :param modules: returns the modules to look for in the robot's Python
     :param wanted: an environment, which is installed if the robot does not have all of it
+    :param reinstall: compare the files of that environment, and send those again that are damaged
     :raises RefusedError: if there is no Python on the robot
     """
     found = find(target, choice, progress)
     with connected(target, found, choice, progress) as connection:
-        robot = _start_agent(connection, progress, modules(), wanted)
+        robot = _start_agent(connection, progress, modules(), wanted, reinstall)
         try:
             with explain_interruption(robot):
                 yield connection, robot
@@ -113,7 +115,11 @@ def connected_agent(
 
 
 def _start_agent(
-    connection: Connection, progress: DeployProgress, modules: Sequence[str], wanted: Environment | None
+    connection: Connection,
+    progress: DeployProgress,
+    modules: Sequence[str],
+    wanted: Environment | None,
+    reinstall: bool,
 ) -> AgentClient:
     from .installing import install, start_agent
 
@@ -122,7 +128,7 @@ def _start_agent(
         wanted = None  # its program runs in this computer's environment
     with progress.phase("look") as phase:
         try:
-            robot = start_agent(connection, wanted, hello)
+            robot = start_agent(connection, wanted, hello, reinstall)
         except NoPythonError as error:
             from .robot_checks import RobotWithoutPython  # not before, since it is rare
 
@@ -130,7 +136,7 @@ def _start_agent(
         phase.detail = "there is no Python on it yet"
         if robot is not None:
             phase.detail = f"wpilib {robot.facts.wpilib or 'missing'}, image {robot.facts.image or 'unknown'}"
-    if wanted is not None and (robot is None or not wanted.is_met_by(robot.facts)):
+    if wanted is not None and (reinstall or robot is None or not wanted.is_met_by(robot.facts)):
         return install(connection, robot, wanted, progress, hello)
     assert robot is not None
     return robot

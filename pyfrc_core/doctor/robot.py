@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator, Sequence
+from contextlib import closing
 
 from ..config.robotpy import load_robot_packages
 from ..deploy.agent_client import AgentClient
@@ -11,7 +12,7 @@ from ..deploy.connection import Connection, connect
 from ..deploy.discovery import RobotNotFoundError, addresses_of, find_robot, parse_address
 from ..deploy.errors import HostKeyError, NoPythonError, OnTheFieldError
 from ..deploy.facts import RobotFacts
-from ..deploy.robot_checks import RobotWithoutPython, image_it, image_problem, obstacles, other_languages_notice
+from ..deploy.robot_checks import RobotWithoutPython, image_it, image_problem, named, obstacles, other_languages_notice
 from ..deploy.robot_packages import unfit_packages
 from ..deploy.target_connection import load_robot_keys
 from ..deploy.targets import ControllerKind, controller_of
@@ -132,10 +133,13 @@ class RobotSearch:
             yield from (problem(_TOPIC, each.text, each.remedy) for each in obstacles)
             yield from _check_other_languages(there.other_languages)
         else:
-            robot.close()
-            found = list(check_robot_facts(robot.facts, connection.controller, project))
-            self._next = missing_on_robot(robot.facts, connection.controller, found)
-            yield from found
+            with closing(robot):
+                found = list(check_robot_facts(robot.facts, connection.controller, project))
+                self._next = missing_on_robot(robot.facts, connection.controller, found)
+                yield from found
+                if robot.facts.not_controller is None and (different := robot.check()):
+                    text = f"damaged on its disk, or changed there: {named(different)}"
+                    yield problem(_TOPIC, text, "To send it again: pyfrc deploy --reinstall")
 
     def _not_found(self) -> CheckResult:
         text = f"{self._whose}: no robot found"

@@ -5,19 +5,29 @@ from __future__ import annotations
 import hashlib
 import io
 import os
+import py_compile
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
+from zipfile import ZipFile, ZipInfo
 
+from pyfrc_core.deploy.agent.activity import Activity
+from pyfrc_core.deploy.agent.content_index import ContentIndex, parse_manifest
+from pyfrc_core.deploy.agent.environment_files import EnvironmentFiles, Wheel
+from pyfrc_core.deploy.agent.environments import Environments
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.layout import Layout
+from pyfrc_core.deploy.agent.releases import Releases
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent.serve import Agent
 from pyfrc_core.deploy.agent.wire import CONTENT, Wire, frame, message_frame, parse_message, read_frame
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 Message = dict[str, Any]
+#: The name of the Python that environments have, and where their packages are.
+PYTHON = "0123456789abcdef"
+PACKAGES = "lib/python3.14/site-packages"
 
 
 def manifest(files: Mapping[str, str], executable: tuple[str, ...] = ()) -> list[list[Any]]:
@@ -33,6 +43,30 @@ def contents(*texts: str) -> bytes:
     return frame(CONTENT, zlib.compress("".join(texts).encode()))
 
 
+def wheel(files: Mapping[str, str]) -> bytes:
+    """A wheel with these files."""
+    content = io.BytesIO()
+    with ZipFile(content, "w") as archive:
+        for path, text in files.items():
+            archive.writestr(ZipInfo(path), text)
+    return content.getvalue()
+
+
+def run_quickly(files: EnvironmentFiles, command: list[str], check: bool = True) -> None:
+    """What `venv` and `compileall` do, in place of `EnvironmentFiles._run`, without the time that they take."""
+    place = Path(command[-1])
+    if "venv" in command:
+        (place / PACKAGES).mkdir(parents=True)
+        (place / "bin").mkdir()
+        (place / "bin/python3").symlink_to(command[0])
+        (place / "pyvenv.cfg").write_text(f"command = {command[0]} -m venv {place}\n")
+        return
+    for source in place.rglob("*.py"):
+        target = source.parent / "__pycache__" / f"{source.stem}.cpython-314.opt-1.pyc"
+        if not target.exists():
+            py_compile.compile(str(source), str(target))
+
+
 class AgentDisk:
     """A robot's disk, and an agent on it."""
 
@@ -40,8 +74,8 @@ class AgentDisk:
         self.root = root
         self.places = RobotPaths(layout, str(root))
         self.home = self.places.home
-        self.home.mkdir(parents=True)
-        (root / "tmp").mkdir()
+        self.home.mkdir(parents=True, exist_ok=True)
+        (root / "tmp").mkdir(exist_ok=True)
 
     def ask(self, *requests: Message | bytes, hello: Message | None = None) -> list[Message]:
         """Send requests to an agent, and return its messages after the facts.
@@ -69,6 +103,38 @@ class AgentDisk:
         """Deploy these files, and send the contents that are expected to be asked for."""
         request = {"op": "deploy", "files": manifest(files), "main": main, "deploy_json": {"by": "Ada"}, **more}
         return self.ask(request, *([contents(*sent)] if sent else []))
+
+    def install(self, environment: str, wheels: Mapping[str, Mapping[str, str]]) -> list[str]:
+        """Install an environment with these wheels, and return those that were sent."""
+        python = None if self.places.layout.python else PYTHON
+        interpreter = self.places.of(self.places.layout.python)
+        if python is not None:
+            interpreter = self.places.own / "pythons" / python / "bin/python3"
+        interpreter.parent.mkdir(parents=True, exist_ok=True)
+        interpreter.touch()
+        content = {file: wheel(files) for file, files in wheels.items()}
+        listed = [[file, len(each), hashlib.sha256(each).hexdigest(), 0] for file, each in content.items()]
+        sent: list[str] = []
+
+        def receive(missing: Sequence[Wheel], files: Sequence[Path]) -> None:
+            for each, file in zip(missing, files, strict=True):
+                file.write_bytes(content[each.file])
+                sent.append(each.file)
+
+        self.environments.install({"environment": environment, "python": python, "wheels": listed}, receive)
+        return sent
+
+    @property
+    def environments(self) -> Environments:
+        """Its environments, as an agent finds them."""
+        return Environments(self.places, Activity(lambda **said: None))
+
+    def needed(self, files: Mapping[str, str]) -> list[str]:
+        """The contents that a deploy of these files asks for; remains of an interrupted one are removed."""
+        releases = Releases(self.places, Activity(lambda **said: None))
+        releases.recover()
+        wanted = parse_manifest(manifest(files))
+        return [files[each.path] for each in ContentIndex(releases, wanted, releases.activity).missing(wanted)]
 
     def read(self, name: str) -> str | None:
         """The text of a file in the robot's home; None without one."""

@@ -8,7 +8,7 @@ import os
 import py_compile
 import select
 import sys
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from importlib.util import cache_from_source
 from pathlib import Path
@@ -16,7 +16,7 @@ from types import TracebackType
 from typing import Any
 
 from .activity import Activity
-from .disk import files_below, link_or_copy
+from .disk import files_below, link_or_copy, sha256_of
 from .robot_paths import Refusal
 from .system import KILL, end_with_parent
 
@@ -212,6 +212,19 @@ def compile_below(
         compiler.finish(activity)
 
 
+def compiled_hashes(
+    directory: Path, paths: Iterable[str], activity: Activity, known: Mapping[str, str] | None = None
+) -> dict[str, str]:
+    """Return the SHA-256 of the compiled files of sources, by their paths.
+
+    :param paths: of files below the directory; those that are no sources have none
+    :param known: hashes that are not calculated again
+    """
+    forms, cut = CompiledForms(), len(f"{directory}/")
+    files = [form for path in paths for form in forms.of(f"{directory}/{path}")]
+    return {each[cut:]: (known or {}).get(each[cut:]) or sha256_of(each, activity) for each in files}
+
+
 class CompiledForms:
     """Compiled files in ``__pycache__`` directories. Each directory is listed once."""
 
@@ -228,11 +241,15 @@ class CompiledForms:
         """Return whether a source has the compiled file that the robot will use."""
         return Path(_cache_of(source, debug)).name in self._forms(source)[1]
 
-    def link(self, source: str, target: str) -> None:
-        """Link the compiled files of `source` for `target`, which is a link to the same file."""
-        directory, forms = self._forms(source)
+    def link(self, source: str, target: str, is_good: Callable[[str], bool] = lambda form: True) -> bool:
+        """Link the compiled files of `source` for `target`, which is a link to the same file. Return whether all are.
+
+        :param is_good: returns whether to link a compiled file
+        """
+        directory, there = self._forms(source)
+        forms = [form for form in there if is_good(f"{directory}/__pycache__/{form}")]
         if not forms:
-            return
+            return not there
         cache = os.path.split(target)[0] + "/__pycache__"
         if cache not in self._made:
             Path(cache).mkdir(exist_ok=True)
@@ -240,6 +257,7 @@ class CompiledForms:
         for form in forms:
             with suppress(OSError):  # the program compiles it when it imports it
                 link_or_copy(f"{directory}/__pycache__/{form}", f"{cache}/{form}")
+        return len(forms) == len(there)
 
     def _forms(self, source: str) -> tuple[str, list[str]]:
         directory, name = os.path.split(source)

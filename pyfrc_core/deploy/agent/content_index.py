@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from .activity import Activity
-from .disk import BLOCK, files_below
+from .disk import files_below, sha256_of
 from .releases import Releases
 from .robot_paths import Refusal
 
@@ -116,16 +115,3 @@ class ContentIndex:
         """Return whether the directory `code` has this file with the wanted content."""
         file, same = code / wanted.path, self.same_file(wanted)
         return same is not None and file.is_file() and (same == str(file) or file.samefile(same))
-
-
-def sha256_of(file: str, activity: Activity) -> str:
-    """Return the SHA-256 of a file's content in hexadecimal."""
-    digest = hashlib.sha256()
-    descriptor = os.open(file, os.O_RDONLY)
-    try:
-        while block := os.read(descriptor, BLOCK):
-            digest.update(block)
-            activity.step(0)
-    finally:
-        os.close(descriptor)
-    return digest.hexdigest()

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import errno
+import hashlib
 import os
 import stat
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 
+from .activity import Activity
 from .system import link_file, linked_directory, user
 
 BLOCK = 1 << 16
@@ -103,6 +105,60 @@ def allow_changes(path: Path) -> None:
 
 def _is_directory(path: Path) -> bool:
     return path.is_dir() and linked_directory(path) is None
+
+
+def sha256_of(file: str, activity: Activity) -> str:
+    """Return the SHA-256 of a file's content in hexadecimal."""
+    digest = hashlib.sha256()
+    descriptor = os.open(file, os.O_RDONLY)
+    try:
+        while block := os.read(descriptor, BLOCK):
+            digest.update(block)
+            activity.step(0)
+    finally:
+        os.close(descriptor)
+    return digest.hexdigest()
+
+
+def fingerprint(file: str, activity: Activity) -> str:
+    """Return the SHA-256 of a file's content, or a link's target."""
+    if os.path.islink(file):  # noqa: PTH114 - thousands of files
+        return f"-> {os.readlink(file)}"  # noqa: PTH115
+    return sha256_of(file, activity)
+
+
+def different_files(
+    directory: Path, hashes: Mapping[str, str], activity: Activity, known: dict[tuple[int, int], str]
+) -> list[str]:
+    """Return the files below a directory that are missing, or whose content differs.
+
+    :param hashes: the fingerprint of each file by its path
+    :param known:  fingerprints by device and inode, so that a file of several directories is read once; is extended
+    """
+    found = []
+    for path, wanted in hashes.items():
+        activity.step()
+        file = f"{directory}/{path}"
+        try:
+            state = os.lstat(file)
+            identity = (state.st_dev, state.st_ino)
+            if identity not in known:
+                known[identity] = fingerprint(file, activity)
+            if known[identity] == wanted:
+                continue
+        except OSError:
+            pass  # missing, or unreadable
+        found.append(path)
+    return found
+
+
+def replace_by_link(source: Path, target: Path) -> None:
+    """Replace a file, which may be a link to a file of other directories, by a link to another one."""
+    beside = target.with_name(f".{target.name}.new")
+    remove(beside)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    link_or_copy(str(source), str(beside))
+    beside.replace(target)
 
 
 class SpecialFileError(OSError):

@@ -3,7 +3,7 @@
 Each release's record names its environment. The one that programs start with is a link, as the code is, and a switch to
 a release replaces both links (`releases`). Where the system has a Python, the start command names the environment
 instead. An environment is complete when it has its record, which is written last. Its files are never changed, so
-environments share those of the same wheel.
+environments share those of the same wheel. What a disk has damaged is replaced by new files (`mend`).
 """
 
 from __future__ import annotations
@@ -16,32 +16,20 @@ from collections.abc import Iterable
 from contextlib import suppress
 from itertools import count
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from .activity import Activity
-from .compiling import CompiledForms
-from .disk import free_bytes, remove, text_of, write_whole
+from .disk import different_files, free_bytes, remove, write_whole
+from .environment_files import RECORD, EnvironmentFiles, Record, Wheel, files_in, read_record, wheels_in
 from .robot_paths import Refusal, RobotPaths
 from .system import exchange, flush, linked_directory, make_link
-from .wheels import link_wheel, unpack_wheel
 
-#: An environment's record: the name of its Python (None: the system's), and its files, by the SHA-256 of their wheel.
-RECORD = "environment.json"
 _NAME, _TAKEN = re.compile(r"[0-9a-f]{16}"), re.compile(r"taken-\d+")
 _SHA256 = re.compile(r"[0-9a-f]{64}")
-#: Memory for compiling packages, in kB. A robot with 256 MB runs its program meanwhile.
-_COMPILING_KILOBYTES = 40_000
+#: The directory of files that are to replace damaged ones.
+_NEW = "new"
 #: Bytes of disk space that stay free.
 _RESERVE = 8 << 20
-
-
-class Wheel(NamedTuple):
-    """A wheel for an environment; `unpacked` are the bytes that its files take on the disk."""
-
-    file: str
-    size: int
-    sha256: str
-    unpacked: int
 
 
 class Environments:
@@ -59,6 +47,7 @@ class Environments:
         self._directory = paths.own / "environments"
         self._pythons = paths.own / "pythons"
         self._wheels = paths.own / "wheels"
+        self._files = EnvironmentFiles(self._wheels, self.link is not None, activity)
 
     def directory(self, name: str) -> Path:
         """Return the directory of an environment."""
@@ -134,7 +123,7 @@ class Environments:
                 link.replace(place)
 
     def install(self, request: dict[str, Any], receive: Any) -> None:
-        """Make an environment, unless it is there.
+        """Make an environment, unless it is there, and replace damaged files of all environments.
 
         :param request: ``environment``, its name; ``python``, that of its Python, which is on the robot (None: the
             system's); ``wheels``, each as a `Wheel`
@@ -146,41 +135,86 @@ class Environments:
         names = [name] if python is None else [name, str(python)]
         if not all(map(_NAME.fullmatch, names)) or not all(_SHA256.fullmatch(each.sha256) for each in wheels):
             raise Refusal("protocol", "an environment has a name that is not one")
-        interpreter = self._paths.of(self._paths.layout.python)
-        if python is not None:
-            interpreter = self._pythons / python / "bin/python3"
+        interpreter = self._python(python)
         if not os.path.lexists(interpreter):
             what = "the Python that was sent is no longer there: another computer has deployed meanwhile"
             raise Refusal("environment", what, "Run the command again.")
-        complete = self.is_usable(name)
+        complete, damaged = self.is_usable(name), self.damaged()
         there = {} if complete else self._unpacked(python, {each.sha256 for each in wheels})
-        missing = [] if complete else [each for each in wheels if each.sha256 not in there]
-        if not complete:
+        lacking = [] if complete else [each for each in wheels if each.sha256 not in there]
+        missing = [each for each in wheels if each in lacking or self._is_in(each.sha256, damaged)]
+        if missing or not complete:
             self._check_disk_space(sum(each.size + each.unpacked for each in missing))
         self._wheels.mkdir(parents=True, exist_ok=True)
         receive(missing, [self._wheels / each.sha256 for each in missing])
-        if complete:
-            return
-        record = {"python": python, "wheels": self._make(self.directory(name), interpreter, wheels, there)}
-        self._flush()
-        write_whole(self.directory(name) / RECORD, json.dumps(record))
-        self._flush()
+        if damaged:
+            self._mend(damaged, missing)
+        if not complete:
+            sources = {sha256: self.directory(each) for sha256, each in there.items()}
+            made = self._files.make(self.directory(name), interpreter, wheels, sources)
+            self._write_record(name, {"python": python, **made})
+        if damaged or not complete:
+            self._flush()
         remove(self._wheels)
 
     def _flush(self) -> None:
         self._activity.begin("sync")
         self._activity.wait_for(flush, self._paths.own)
 
-    def _unpacked(self, python: str | None, wanted: set[str]) -> dict[str, tuple[str, list[str]]]:
-        """Return where wanted wheels are unpacked already: the environment, and their files there."""
-        found = {}
-        for place in self._directory.iterdir() if self._directory.is_dir() else ():
-            record = self._record(place.name) if self.is_usable(place.name) else {}
-            wheels = record.get("wheels")
-            if record.get("python") == python and isinstance(wheels, dict):
-                for sha256 in wanted & wheels.keys():
-                    if all((place / file).is_file() for file in wheels[sha256]):
-                        found[sha256] = place.name, wheels[sha256]
+    def _write_record(self, name: str, record: Record) -> None:
+        self._flush()  # what it is about
+        write_whole(self.directory(name) / RECORD, json.dumps(record))
+
+    def _python(self, name: str | None) -> Path:
+        """Return the path of a Python; None: the system's."""
+        return self._paths.of(self._paths.layout.python) if name is None else self._pythons / name / "bin/python3"
+
+    def _mend(self, damaged: dict[str, list[str]], received: list[Wheel]) -> None:
+        """Replace damaged files of environments by new ones, with the content of wheels that were received."""
+        new = self._paths.own / _NEW
+        remove(new)
+        good = self._files.unpack_again(received, new)
+        for name, paths in damaged.items():
+            record = self._record(name)
+            if made := [path for path in paths if path in record["made"]]:
+                good |= self._files.make_again(self.directory(name), self._python(record["python"]), made, new / name)
+        self._flush()
+        for name, paths in damaged.items():
+            self._write_record(name, self._files.mend(self.directory(name), paths, good))
+        remove(new)
+
+    def damaged(self) -> dict[str, list[str]]:
+        """Return the files that differ from what was installed, by environment."""
+        found: dict[str, list[str]] = {}
+        known: dict[tuple[int, int], str] = {}
+        for name in self._complete():
+            files = files_in(self._record(name))
+            self._activity.begin("check", len(files))
+            found[name] = different_files(self.directory(name), files, self._activity, known)
+        return {name: paths for name, paths in found.items() if paths}
+
+    def _complete(self) -> list[str]:
+        places = self._directory.iterdir() if self._directory.is_dir() else ()
+        return sorted(each.name for each in places if _NAME.fullmatch(each.name) and self.is_usable(each.name))
+
+    def _is_in(self, sha256: str, damaged: dict[str, list[str]]) -> bool:
+        """Return whether a wheel has one of these files."""
+        found = ((wheels_in(self._record(name)).get(sha256, {}), paths) for name, paths in damaged.items())
+        return any(not files.keys().isdisjoint(paths) for files, paths in found)
+
+    def _unpacked(self, python: str | None, wanted: set[str]) -> dict[str, str]:
+        """Return the environments in which all files of wanted wheels are, undamaged, by wheel."""
+        found: dict[str, str] = {}
+        known: dict[tuple[int, int], str] = {}
+        for name in self._complete():
+            record = self._record(name)
+            files, wheels = files_in(record), wheels_in(record) if record.get("python") == python else {}
+            for sha256 in (wanted & wheels.keys()) - found.keys():
+                hashes = wheels[sha256]
+                if all(files[path] == hashes[path] for path in hashes) and not different_files(
+                    self.directory(name), hashes, self._activity, known
+                ):
+                    found[sha256] = name
         return found
 
     def _check_disk_space(self, needed: int) -> None:
@@ -195,58 +229,9 @@ class Environments:
                 free=free,
             )
 
-    def _make(
-        self, place: Path, python: Path, wheels: list[Wheel], there: dict[str, tuple[str, list[str]]]
-    ) -> dict[str, list[str]]:
-        """Make an environment, and return its files by their wheel.
-
-        :param there: the wheels that another environment has
-        """
-        remove(place)
-        place.parent.mkdir(parents=True, exist_ok=True)
-        self._activity.begin("environment")
-        self._run([str(python), "-m", "venv", *self.without_pip(python), str(place)])
-        packages = next(iter(place.glob("lib/python3*/site-packages")), None)
-        if packages is None:
-            raise Refusal("environment", f"{python} has made no environment")
-        files, forms = {}, CompiledForms()
-        self._activity.begin("unpack", len(wheels))
-        for each in wheels:
-            if each.sha256 in there:
-                name, files[each.sha256] = there[each.sha256]
-                link_wheel(files[each.sha256], self.directory(name), place, forms, self._activity)
-            else:
-                wheel = self._wheels / each.sha256
-                files[each.sha256] = unpack_wheel(wheel, each.file, place, packages, self._activity)
-                remove(wheel)
-        self._activity.begin("environment")
-        # As programs are started. A package may have files for another version of Python, which do not count, and files
-        # that need too much memory: the program compiles them when it imports them.
-        limited = ["sh", "-c", f'ulimit -d {_COMPILING_KILOBYTES}; exec "$@"', "sh"]
-        compiling = [str(place / "bin/python3"), "-O", "-m", "compileall", "-q", str(packages)]
-        self._run([*limited, *compiling], check=False)
-        return files
-
-    def without_pip(self, python: Path) -> list[str]:
-        """Return the option of `venv` for a Python that cannot install pip, as Debian's, or that has it already."""
-        with_pip = self.link is not None and list(python.parent.parent.glob("lib/python3*/ensurepip"))
-        return [] if with_pip else ["--without-pip"]
-
-    def _run(self, command: list[str], check: bool = True) -> None:
-        import subprocess
-
-        run = self._activity.wait_for(
-            lambda: subprocess.run(
-                command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False
-            )
-        )
-        if check and run.returncode:
-            said = run.stdout.decode(errors="replace").strip().splitlines()[-1:]
-            raise Refusal("environment", f"{command[0]} cannot make an environment: {''.join(said)}")
-
     def remove_remains(self) -> None:
         """Remove what interrupted installations have left."""
-        for name in ("venv", "python"):
+        for name in ("venv", "python", _NEW):
             remove(self._paths.own / name)
         for place in self._directory.iterdir() if self._directory.is_dir() else ():
             # Of a taken environment that is not in its place yet, there is only the link for the exchange.
@@ -271,9 +256,5 @@ class Environments:
             if _NAME.fullmatch(place.name) and place.name not in pythons:
                 remove(place)
 
-    def _record(self, name: str) -> dict[str, Any]:
-        try:
-            record = json.loads(text_of(self.directory(name) / RECORD) or "{}")
-        except ValueError:
-            return {}
-        return record if isinstance(record, dict) else {}
+    def _record(self, name: str) -> Record:
+        return read_record(self.directory(name))

@@ -34,6 +34,7 @@ class Layout(NamedTuple):
     :param shown_python:  where other tools look for its Python
     :param python:        the system's Python, in the start commands; a program with an environment of its own starts
         with the Python of that instead
+    :param installing:    the directory in which scripts of pyfrc write, in names that begin with their process's number
     :param output:        a command that prints what the program prints from then on; without one, the console service
         on the robot sends that
     """
@@ -62,6 +63,7 @@ class Layout(NamedTuple):
     environment: str = ""
     shown_python: str = ""
     python: str = ""
+    installing: str = ""
 
     @property
     def by_administrator(self) -> str:

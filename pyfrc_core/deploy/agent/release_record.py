@@ -92,6 +92,11 @@ def _is_table(key: Callable[[Any], bool], value: Callable[[Any], bool]) -> Calla
     return lambda table: isinstance(table, dict) and all(key(each) and value(table[each]) for each in table)
 
 
+def _has_texts(table: Any) -> bool:
+    """Return whether this is an object of texts, without a call for each: it may have thousands."""
+    return isinstance(table, dict) and {*map(type, table.values())} <= {str}
+
+
 def _is_text(value: Any) -> bool:
     return isinstance(value, str)
 
@@ -118,7 +123,8 @@ def _is_process(value: Any) -> bool:
 
 #: Whether the value of each field is valid.
 _FIELDS: dict[str, Callable[[Any], bool]] = {
-    "files": _is_table(_is_text, _is_text),
+    "files": _has_texts,
+    "compiled": _has_texts,
     "carried": _is_carried,
     "main": lambda value: value is None or _is_text(value),
     "debug": lambda value: value is None or isinstance(value, bool),

@@ -11,12 +11,14 @@ from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from ...wheel_files import WheelError
 from .activity import Activity
-from .content_index import WantedFile, sha256_of
-from .disk import disk_problem, files_below, free_bytes, remove, text_of
-from .environments import Wheel
+from .content_index import WantedFile
+from .disk import disk_problem, files_below, free_bytes, remove, sha256_of, text_of
+from .environment_files import Wheel
 from .host import Host, RealRobot, age_of
 from .imports import look_up
+from .integrity import different_code
 from .layout import Layout
 from .program import Program
 from .release_record import after_watch, now
@@ -29,6 +31,8 @@ from .virtual import VirtualRobotClient
 from .wire import EndedError, LaptopPipe, Message, Wire, WireError
 
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
+#: Files that a check names; any laptop can read this many.
+_MAX_NAMED = 1000
 
 
 def main(source: BinaryIO) -> None:
@@ -71,6 +75,7 @@ class Agent:
         self._has_run: int | None = None
         self._requests: dict[str, Callable[[Message], Message]] = {
             "plan": lambda request: plan(self._releases, request["files"]),
+            "check": lambda request: {"different": different_code(self._releases)[:_MAX_NAMED]},
             "install": self._install,
             "deploy": self._deploy,
             "restart": lambda request: self._restart(),
@@ -104,6 +109,8 @@ class Agent:
             raise  # the laptop has disconnected, or violates the protocol
         except Refusal as refusal:
             self._send_error(refusal.kind, str(refusal), refusal.remedy, **refusal.details)
+        except WheelError as error:
+            self._send_error("wheel", str(error), "")
         except OSError as error:
             if isinstance(error, ConnectionError):
                 raise
@@ -128,7 +135,7 @@ class Agent:
 
     def facts(self, request: Message) -> Message:
         """Return the robot's facts: versions, releases, the state of its program."""
-        releases, python = self._releases, look_up(request.get("modules") or ())
+        releases, python, layout = self._releases, look_up(request.get("modules") or ()), self._paths.layout
         program = self._host.processes()
         self._review(program)
         return {
@@ -136,7 +143,7 @@ class Agent:
             "wpilib": python["packages"].get("wpilib"),
             "python": ".".join(map(str, sys.version_info[:3])),
             "virtual": self._host.is_virtual,
-            "texts": {name: text_of(self._paths.of(file)) for name, file in self._paths.layout.texts.items()},
+            "texts": {name: text_of(self._paths.of(file)) for name, file in layout.texts.items()},
             "can_restart": self._host.can_restart(),
             "free": free_bytes(self._paths.home) if self._paths.home.is_dir() else 0,
             "user": user(),
@@ -145,11 +152,12 @@ class Agent:
             "releases": [self._summary(number) for number in releases.numbers()],
             "other_code": releases.is_other_tools() and any(True for _ in files_below(self._paths.code)),
             "deploy_json": text_of(self._paths.code / "deploy.json"),
-            "command": text_of(self._paths.home / self._paths.layout.command),
+            "command": text_of(self._paths.home / layout.command),
             "debug": self._paths.is_debug(),
             "running": bool(program),
             "environment": None if releases.environments is None else releases.environments.of_this_process(),
             "program_age": age_of(program),
+            "remains": bool(layout.installing and list(self._paths.of(layout.installing).glob("[0-9]*.*"))),
             "other_languages": self._host.other_languages(),
         }
 

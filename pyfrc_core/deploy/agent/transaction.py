@@ -13,9 +13,10 @@ from typing import Any
 
 from .activity import Activity
 from .carrying import Carried
-from .compiling import CompiledForms, Compiler, compile_below
-from .content_index import DEPLOY_JSON, ContentIndex, WantedFile, parse_manifest, sha256_of
-from .disk import BLOCK, files_below, free_bytes, link_or_copy, remove, write_whole
+from .compiling import CompiledForms, Compiler, compile_below, compiled_hashes
+from .content_index import DEPLOY_JSON, ContentIndex, WantedFile, parse_manifest
+from .disk import BLOCK, files_below, free_bytes, link_or_copy, remove, sha256_of, write_whole
+from .integrity import compiled_files, mend_releases
 from .release_record import NEVER_RUN, Record
 from .releases import Releases
 from .robot_paths import Refusal, start_commands
@@ -91,6 +92,10 @@ class Deploy:
         #: Whether a restart follows, which removes old releases.
         self._restarts = bool(request.get("restart"))
         self._environment = request.get("environment")
+        #: Hashes of compiled files that are links, by their paths.
+        self._linked: dict[str, str] = {}
+        #: Whether to compile everything again, and to replace damaged files of other releases.
+        self._reinstall = bool(request.get("reinstall"))
         self._program = frozenset(request.get("program") or ())
         self._commands = start_commands(self._paths.layout, self._main, self._debug, self._environment)
 
@@ -122,7 +127,7 @@ class Deploy:
         directory = self._releases.directory(current).resolve()
         same = files == {each.path: each.sha256 for each in self._wanted}
         same = same and self._releases.record(current).get("environment") == self._environment
-        return same and all(at_hand.has(each, directory) for each in self._wanted)
+        return same and not self._reinstall and all(at_hand.has(each, directory) for each in self._wanted)
 
     def _redeploy(self, current: int) -> Message:
         """Update only the record of the current release, which already has the same files."""
@@ -132,6 +137,8 @@ class Deploy:
         has_run = bool(same and record.get("ran") and not record.get("ended"))
         record.update(deploy=self._about, main=self._main, debug=self._debug, commands=self._commands)
         compile_below(directory, self._debug, self._activity, self._paths.layout.code, self._program)
+        self._linked = record.get("compiled", {})
+        record["compiled"] = self._compiled(directory)
         write_whole(directory / DEPLOY_JSON, json.dumps(self._about, indent=2))
         self._releases.write_record(current, record)
         self._switch(current, None)
@@ -210,16 +217,29 @@ class Deploy:
         :return: for each linked path, whether it has a compiled file
         """
         incoming, forms, linked = str(self._paths.incoming), CompiledForms(), {}
+        recorded = {} if self._reinstall else compiled_files(self._releases)
+
+        def is_good(form: str) -> bool:
+            with suppress(OSError):
+                if form in recorded and sha256_of(form, self._activity) == recorded[form]:
+                    above, name = each.path.rpartition("/")[0], form.rpartition("/")[2]
+                    self._linked[f"{above}/__pycache__/{name}".lstrip("/")] = recorded[form]
+                    return True
+            return False
+
         self._activity.begin("link", len(wanted))
         for each in wanted:
             same = at_hand.same_file(each)
             if same is not None:
                 file = f"{incoming}/{each.path}"
                 link_or_copy(same, file)
-                forms.link(same, file)
-                linked[each.path] = forms.includes(same, self._debug)
+                all_linked = forms.link(same, file, is_good)
+                linked[each.path] = all_linked and forms.includes(same, self._debug)
             self._activity.step()
         return linked
+
+    def _compiled(self, directory: Path) -> dict[str, str]:
+        return compiled_hashes(directory, (each.path for each in self._wanted), self._activity, self._linked)
 
     def _release(self) -> Message:
         releases, paths = self._releases, self._paths
@@ -232,6 +252,7 @@ class Deploy:
         number = releases.next_number()
         record: Record = {
             "files": {each.path: each.sha256 for each in self._wanted},
+            "compiled": self._compiled(paths.incoming),
             "main": self._main,
             "debug": self._debug,
             "commands": self._commands,
@@ -257,6 +278,8 @@ class Deploy:
                 with suppress(OSError):
                     releases.discard(number)
             raise
+        if self._reinstall:
+            mend_releases(releases, number)
         if not self._restarts:
             with suppress(OSError):  # the next deploy removes the rest
                 releases.prune()
@@ -288,6 +311,7 @@ class Deploy:
         if current is not None:
             record = self._releases.record(current)
             record["files"] = {**record.get("files", {}), **{each.path: each.sha256 for each in self._wanted}}
+            record["compiled"] = compiled_hashes(code, record["files"], self._activity)
             record.update(deploy=self._about, main=self._main, debug=self._debug, commands=self._commands)
             self._releases.write_record(current, record)
         for name in self._paths.layout.command_files:

@@ -1,81 +1,59 @@
-"""Wheels in an environment: unpacked, or linked from another one. pip on the robot does not know the robot's tags."""
+"""Unpack wheels. pip on the robot does not know the robot's tags."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import hashlib
+import os
+from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
-from zipfile import BadZipFile, ZipFile
+from zipfile import ZipFile
 
+from ...wheel_files import WheelFile, files_of, open_wheel
 from .activity import Activity
-from .compiling import CompiledForms
-from .disk import BLOCK, link_or_copy
-from .robot_paths import Refusal
+from .disk import BLOCK
 
 _SCRIPT = b"#!python"
+#: The beginning of a script, for sh and for Python: it starts with the Python beside it, so it is the same everywhere.
+_START = b"#!/bin/sh\n'''exec' \"$(dirname \"$0\")/python3\" \"$0\" \"$@\"\n' '''\n"
+#: The modification time of all files: compiled files stay valid when a file is replaced by the same one.
+_TIME = 315_532_800
 
 
-def unpack_wheel(wheel: Path, name: str, environment: Path, packages: Path, activity: Activity) -> list[str]:
-    """Unpack a wheel as the specification of wheels says. Its console scripts are not made.
+def unpack_wheel(
+    wheel: Path, name: str, place: Path, packages: str, activity: Activity, is_wanted: Callable[[str], bool]
+) -> dict[str, str]:
+    """Unpack a wheel as the specification of wheels says. No file that exists is written to.
 
-    Return the paths of its files in the environment.
+    Return the SHA-256 of each of its files by path.
 
-    :param name:     the wheel's name, for messages
-    :param packages: the directory of the environment's packages
-    :raises Refusal: if it is damaged, or has a path that leads out of the environment
+    :param is_wanted: whether it is the wheel from which the file of a path comes; others are only hashed
+    :raises WheelError: if it is damaged, or cannot be installed
     """
-    unpacked = []
-    try:
-        with ZipFile(wheel) as archive:
-            for member in archive.infolist():
-                if not member.is_dir():
-                    target = _target(member.filename, name, environment, packages)
-                    target.parent.mkdir(parents=True, exist_ok=True)
-                    with archive.open(member) as content, target.open("wb") as file:
-                        block = content.read(BLOCK)
-                        if block.startswith(_SCRIPT) and target.parent == environment / "bin":
-                            block = f"#!{environment}/bin/python3".encode() + block[len(_SCRIPT) :]
-                        while block:
-                            file.write(block)
-                            block = content.read(BLOCK)
-                            activity.step(0)
-                    executable = (member.external_attr >> 16) & 0o111 or target.parent == environment / "bin"
-                    target.chmod(0o755 if executable else 0o644)
-                    unpacked.append(target.relative_to(environment).as_posix())
-    except (BadZipFile, NotImplementedError, EOFError) as error:
-        raise Refusal("wheel", f"{name} cannot be unpacked: {error}") from error
+    with open_wheel(wheel, name) as archive:
+        hashes = {
+            each.path: _unpack(archive, each, place / each.path if is_wanted(each.path) else None, activity)
+            for each in files_of(archive, name, packages)
+        }
     activity.step()
-    return unpacked
+    return hashes
 
 
-def link_wheel(files: Iterable[str], source: Path, environment: Path, forms: CompiledForms, activity: Activity) -> None:
-    """Link the files of a wheel, with their compiled files, from another environment with the same Python.
-
-    :param files: their paths in it
-    :param forms: the compiled files of the other environment
-    """
-    for file in files:
-        target = environment / file
+def _unpack(archive: ZipFile, file: WheelFile, target: Path | None, activity: Activity) -> str:
+    if target is not None:
         target.parent.mkdir(parents=True, exist_ok=True)
-        if target.parent == environment / "bin":  # it may begin with the environment's path
-            there = (source / file).read_bytes()
-            target.write_bytes(there.replace(f"#!{source}/".encode(), f"#!{environment}/".encode(), 1))
-            target.chmod(0o755)
-        else:
-            link_or_copy(f"{source}/{file}", str(target))
-            forms.link(f"{source}/{file}", str(target))
-        activity.step(0)
-    activity.step()
-
-
-def _target(member: str, wheel: str, environment: Path, packages: Path) -> Path:
-    """Return where a member of a wheel belongs."""
-    parts = member.split("/")
-    if "\\" in member or "\0" in member or any(part in ("", ".", "..") for part in parts):
-        raise Refusal("wheel", f"{wheel} has a file that leads out of it: {member!r}")
-    if not parts[0].endswith(".data"):
-        return packages.joinpath(*parts)
-    places = {"purelib": packages, "platlib": packages, "scripts": environment / "bin", "data": environment}
-    places["headers"] = environment / "include" / "site"
-    if len(parts) < 3 or parts[1] not in places:
-        raise Refusal("wheel", f"{wheel} has a file for an unknown place: {member!r}")
-    return places[parts[1]].joinpath(*parts[2:])
+    digest = hashlib.sha256()
+    with archive.open(file.member) as content, nullcontext() if target is None else target.open("xb") as stream:
+        block = content.read(BLOCK)
+        if block.startswith(_SCRIPT) and file.path.startswith("bin/"):
+            block = _START + block.partition(b"\n")[2]
+        while block:
+            digest.update(block)
+            if stream is not None:
+                stream.write(block)
+            block = content.read(BLOCK)
+            activity.step(0)
+    if target is not None:
+        target.chmod(0o555 if file.executable else 0o444)
+        os.utime(target, (_TIME, _TIME))
+    return digest.hexdigest()

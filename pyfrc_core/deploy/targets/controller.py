@@ -114,6 +114,12 @@ class ControllerKind:
         """Its product name."""
         return self.layout.name
 
+    @property
+    def remove_remains(self) -> AdministratorTask:
+        """Removes what interrupted installations have left."""
+        script, what = remove_remains(self.layout.installing), "what an interrupted installation had left on the robot"
+        return AdministratorTask(script, f"{what} was removed", f"{what} could not be removed")
+
     def python_command(self, environment: str | None = None) -> str:
         """Return the beginning of a shell command: the Python that the current program starts with.
 
@@ -135,6 +141,17 @@ def team_of_address(host: str) -> int | None:
 def address_of_team(team: int) -> str:
     """Return the address 10.TE.AM.2 of a team's robot."""
     return f"10.{team // 100}.{team % 100}.2"
+
+
+def remove_remains(directory: str) -> str:
+    """Return shell commands that remove what interrupted scripts have left in a directory.
+
+    Each name there begins with the number of a process, whose command line has the directory's name while it runs.
+    """
+    return f"""for each in {directory}/[0-9]*.*; do
+    process=$(basename "$each" | cut -d. -f1)
+    grep -q {directory} /proc/$process/cmdline 2> /dev/null || rm -rf "$each"
+done"""
 
 
 def removal_script(layout: Layout, paths: str) -> str:

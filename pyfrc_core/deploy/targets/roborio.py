@@ -19,6 +19,7 @@ from .controller import (
     Texts,
     address_of_team,
     removal_script,
+    remove_remains,
     team_of_address,
 )
 
@@ -32,6 +33,8 @@ _USB_CABLE = "172.22.11.2"
 _MEMORY_SETTINGS = "/etc/natinst/share/ni-rt.ini"
 #: Libraries of programs in Java and C++. The directory is empty in the image.
 _LIBRARIES = "/usr/local/frc/third-party/lib"
+#: The directory of files that the administrator writes for pyfrc.
+_OWN = "/usr/local/pyfrc"
 _PROGRAMS = (f"{_HOME}/*.jar", f"{_HOME}/frcUserProgram")
 
 _LAYOUT = Layout(
@@ -54,6 +57,7 @@ _LAYOUT = Layout(
     other_start="[.]jar|frcUserProgram",
     other_files=(*_PROGRAMS, "/usr/local/frc/JRE/bin/java", f"{_LIBRARIES}/"),
     python=_PYTHON,
+    installing=_OWN,
 )
 
 
@@ -116,17 +120,18 @@ def _wastes_memory(texts: Texts) -> bool:
 # Each file is complete before it gets its final name, since power may be cut. The image's script is kept once.
 _REPLACE_KILL_SCRIPT = """
 set -e
+mkdir -p {own}
 cd /usr/local/frc/bin
 if [ ! -e frcKillRobot.image.sh ]; then
-    cp -p frcKillRobot.sh frcKillRobot.image.new
-    chmod 755 frcKillRobot.image.new
+    cp -p frcKillRobot.sh {own}/$$.image
+    chmod 755 {own}/$$.image
     sync
-    mv frcKillRobot.image.new frcKillRobot.image.sh
+    mv {own}/$$.image frcKillRobot.image.sh
 fi
-printf %s {text} > frcKillRobot.new
-chmod 755 frcKillRobot.new
+printf %s {text} > {own}/$$.new
+chmod 755 {own}/$$.new
 sync
-mv frcKillRobot.new frcKillRobot.sh
+mv {own}/$$.new frcKillRobot.sh
 """
 
 
@@ -138,7 +143,7 @@ def _repair_stop() -> AdministratorTask:
     """
     text = files(__package__).joinpath("frcKillRobot.sh").read_text("utf-8")
     return AdministratorTask(
-        _REPLACE_KILL_SCRIPT.format(text=quote(text)),
+        _REPLACE_KILL_SCRIPT.format(text=quote(text), own=_OWN),
         "frcKillRobot.sh was replaced; the old script is kept as frcKillRobot.image.sh",
         "frcKillRobot.sh, which did not end the old program, could not be replaced",
     )
@@ -156,32 +161,31 @@ sync
 """
 )
 
+# Files are in /usr/local/pyfrc, named by the number of the process that writes them: on the disk of what they replace.
 # While the file `installing` is there, Python is not complete: opkg was interrupted, and runs again. Then it finds
 # files that no package has, so it must overwrite. Its messages go to a file: it must not end with the connection. Its
 # usual directory for temporary files is in memory.
-_OWN = "/usr/local/pyfrc"
 _INSTALL_PYTHON = f"""
 set -e
 umask 022
 mkdir -p {_OWN}
 cd {_OWN}
-for each in *.ipk; do
-    kill -0 "${{{{each%.ipk}}}}" 2> /dev/null || rm -f "$each"
-done
+{remove_remains(_OWN)}
 set -- $(df -Pk . | tail -n 1)
 [ "$4" -ge {{kilobytes}} ] || {{{{ echo "full $4"; exit 0; }}}}
 echo send
+trap "rm -rf {_OWN}/$$.*" EXIT
+mkdir $$.tmp
 cat > $$.ipk
 [ "$(wc -c < $$.ipk)" -eq {{size}} ]
 : > installing
 sync
-if ! opkg --tmp-dir {_OWN} --force-overwrite install ./$$.ipk > $$.log 2>&1 || ! {_PYTHON} -c "" 2> $$.log; then
+if ! opkg --tmp-dir {_OWN}/$$.tmp --force-overwrite install ./$$.ipk > $$.log 2>&1 || ! {_PYTHON} -c "" 2> $$.log; then
     tail -n 1 $$.log >&2
-    rm -f $$.*
     exit 1
 fi
 sync
-rm -f $$.* installing
+rm -f installing
 """
 _ENVIRONMENTS = f"{_LAYOUT.environments}/[0-9a-f]*/bin/python3"
 _FIND_PYTHON = (

@@ -18,6 +18,7 @@ from .controller import (
     PythonInstaller,
     address_of_team,
     removal_script,
+    remove_remains,
     team_of_address,
 )
 from .roborio import NI_STATION
@@ -26,6 +27,7 @@ _USER = "systemcore"
 _HOME = f"/home/{_USER}"
 _ENVIRONMENT = f"{_HOME}/venv"
 _PYTHON = f"{_ENVIRONMENT}/bin/python3"
+_PYTHONS = f"{_HOME}/.pyfrc/pythons"
 _PROGRAMS = (f"{_HOME}/*.jar", f"{_HOME}/frcUserProgram")
 _SUDO = ("/usr/bin/sudo", "-n")
 # systemd refuses to start a service that has crashed too often within a few seconds, until its failures are forgotten.
@@ -57,6 +59,7 @@ _LAYOUT = Layout(
     command_mode=0o755,
     environment=_ENVIRONMENT,
     shown_python=f"{_HOME}/.python",
+    installing=_PYTHONS,
     can_fail=True,
     # The messages of the program's processes; with --unit, those of systemd about it would come, too.
     output=("journalctl", "--follow", "--lines=0", "--output=cat", "_SYSTEMD_UNIT=robot.service"),
@@ -85,16 +88,15 @@ def _station_robot(message: Mapping[str, Any]) -> tuple[str | None, bool]:
 _INSTALL_PYTHON = f"""
 set -e
 umask 022
-mkdir -p {_HOME}/.pyfrc/pythons
-cd {_HOME}/.pyfrc/pythons
+mkdir -p {_PYTHONS}
+cd {_PYTHONS}
 [ ! -e {{name}} ] || {{{{ echo there; exit 0; }}}}
-for each in .new.*; do
-    kill -0 "${{{{each##*.}}}}" 2> /dev/null || rm -rf "$each"
-done
+{remove_remains(_PYTHONS)}
 set -- $(df -Pk . | tail -n 1)
 [ "$4" -ge {{kilobytes}} ] || {{{{ echo "full $4"; exit 0; }}}}
-mkdir .new.$$
-cd .new.$$
+trap "rm -rf {_PYTHONS}/$$.new" EXIT
+mkdir $$.new
+cd $$.new
 echo send
 cat > archive
 echo "{{sha256}}  archive" | sha256sum -c > /dev/null
@@ -104,7 +106,6 @@ set -- */
 "$1/bin/python3" -c ""
 sync
 [ -e ../{{name}} ] || mv "$1" ../{{name}}
-rm -rf ../.new.$$
 """
 
 
