@@ -116,12 +116,11 @@ def test_a_table_has_statistics_of_what_is_in_view(drove: Seen) -> None:
     page.locator(PLOT).get_by_role("button", name="Table", exact=True).click()
     cells = page.locator(f"{PLOT} tbody tr", has_text="Robot x").locator("td.number")
     cells.first.wait_for()
-    value, low, mean, high, low5, median, high95 = (
+    value, low, mean, high = (
         float(each) for each in cells.locator("b").all_inner_texts() + cells.all_inner_texts()[1:]
     )
     assert low == pytest.approx(10, abs=0.01)
     assert value == pytest.approx(drove.simulation.snapshot.scene.robot.x, abs=1e-3)
-    assert low <= low5 <= median <= high95 <= high
     assert low < mean < high
     drove.drag(page.locator(f"{PLOT} .u-over"), (0.3, 0.5), (0.6, 0.5))
     drove.button("Follow again").wait_for()

@@ -86,7 +86,7 @@ test("a difference is that of the values in force, at every moment", () => {
 
 test("statistics weigh a value by how long it holds", () => {
   const found = statistics({ t: [0, 9], v: [1, 5] }, 0, 10);
-  assert.deepEqual([found.min, found.max, found.mean, found.percentiles], [1, 5, 1.4, [1, 1, 5]]);
+  assert.deepEqual([found.min, found.max, found.mean], [1, 5, 1.4]);
   assert.deepEqual(statistics({ t: [0, 9], v: [1, 5] }, 9.5, 9.5).mean, 5);
   assert.equal(statistics({ t: [0], v: [null] }, 0, 1), null);
   assert.equal(statistics({ t: [5], v: [1] }, 0, 1), null);
@@ -97,13 +97,10 @@ test("statistics are those of the same curve sampled in each packet", () => {
     const [from, to] = [0.5, 2.5];
     const samples = [];
     for (let packet = 25; packet < 125; packet++) samples.push(at(curve, packet * PACKET));
-    const sorted = samples.toSorted((a, b) => a - b);
     const found = statistics(curve, from, to);
     close(found.mean, samples.reduce((sum, value) => sum + value, 0) / samples.length);
-    close(found.percentiles[1], sorted[49]);
-    assert.ok(found.min <= found.percentiles[0] && found.percentiles[0] <= found.percentiles[1]);
-    assert.ok(found.percentiles[1] <= found.percentiles[2] && found.percentiles[2] <= found.max);
-    close(found.percentiles[2], sorted[94]);
+    close(found.min, Math.min(...samples));
+    close(found.max, Math.max(...samples));
   });
 });
 

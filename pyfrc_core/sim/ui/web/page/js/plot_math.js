@@ -64,34 +64,24 @@ export function mapped({ t, v }, change) {
   return { t, v: v.map((value) => (value === null ? null : change(value))) };
 }
 
-// Minimum, maximum, mean and percentiles between two moments, weighed by how long each value holds; null without a number.
-export function statistics({ t, v }, from, to, percentiles = [5, 50, 95]) {
+// Minimum, maximum and mean between two moments, weighed by how long each value holds; null without a number.
+export function statistics({ t, v }, from, to) {
   const held = [];
   for (let index = Math.max(indexAfter(t, from) - 1, 0); index < t.length && t[index] <= to; index++) {
     const seconds = Math.min(t[index + 1] ?? to, to) - Math.max(t[index], from);
     if (v[index] !== null && Number.isFinite(v[index]) && seconds >= 0) held.push([v[index], seconds]);
   }
   if (!held.length) return null;
-  held.sort(([one], [other]) => one - other);
-  let whole = 0;
-  for (const [, seconds] of held) whole += seconds;
-  if (whole === 0) for (const each of held) each[1] = 1; // one moment
-  whole ||= held.length;
-  let mean = 0;
-  for (const [value, seconds] of held) mean += value * (seconds / whole);
-  const min = held[0][0];
-  const max = held[held.length - 1][0];
-  return { min, max, mean: Math.min(Math.max(mean, min), max), percentiles: percentiles.map((each) => percentile(held, (each / 100) * whole)) };
-}
-
-// The value that the sorted ones do not exceed for so many seconds.
-function percentile(held, seconds) {
-  let passed = 0;
-  for (const [value, each] of held) {
-    passed += each;
-    if (passed >= seconds - 1e-9 && each > 0) return value;
+  const isMoment = held.every(([, seconds]) => seconds === 0);
+  let [min, max, mean, whole] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY, 0, 0];
+  for (const [value, seconds] of held) {
+    const weight = isMoment ? 1 : seconds;
+    whole += weight;
+    mean += (value - mean) * (weight / (whole || 1));
+    min = Math.min(min, value);
+    max = Math.max(max, value);
   }
-  return held[held.length - 1][0];
+  return { min, max, mean: Math.min(Math.max(mean, min), max) };
 }
 
 function between(one, other, compute) {

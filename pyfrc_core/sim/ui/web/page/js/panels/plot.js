@@ -104,7 +104,7 @@ export class PlotPanel extends Live {
         <${PlotPicker} add=${(path) => addToPlot(path, id)} />
         ${curves.length > 0 && html`<${PlotAxes} axes=${this.axes()} ranges=${() => this.ranges} limits=${this.limits} setRange=${this.setRange}
           hold=${Boolean(this.zoom)} setHold=${(hold) => (hold ? this.zoomTo(...this.range()) : this.follow(seconds))} />
-        <button class=${classes({ quiet: true, chosen: isTable })} aria-pressed=${Boolean(isTable)} title="Minimum, mean, maximum and percentiles of what is in view" onClick=${() => this.set({ table: !isTable })}>Table</button>`}
+        <button class=${classes({ quiet: true, chosen: isTable })} aria-pressed=${Boolean(isTable)} title="Minimum, mean and maximum of what is in view" onClick=${() => this.set({ table: !isTable })}>Table</button>`}
         <button class="quiet" title="Save the values as CSV" aria-label="Save the values as CSV" disabled=${!curves.length} onClick=${this.save}><${Icon} name="download" />CSV</button>
         <button class="quiet" title="Remove all curves" disabled=${!curves.length} onClick=${() => this.set({ curves: absent, ranges: {}, x: null })}>Clear</button>
       </div>`}

@@ -4,7 +4,7 @@ import { shownNumber, valueText } from "#js/format.js";
 import { Icon, classes, html } from "#js/view.js";
 import { CurveName, CurveSettings } from "#js/panels/curve_settings.js";
 
-const COLUMNS = ["Minimum", "Mean", "Maximum", "5 %", "Median", "95 %"];
+const COLUMNS = ["Minimum", "Mean", "Maximum"];
 
 // bare: names and values alone, as in a widget
 // plot: { curves, x, change(curve, changes), remove(curve), … } as `CurveSettings` needs it
@@ -31,7 +31,7 @@ export function PlotLegend({ plot, bare, isTable, hasBranch, isNumber, shownOf, 
     <thead><tr><th>Curve</th><th class="number">Value</th>${COLUMNS.map((each) => html`<th key=${each} class="number">${each}</th>`)}<th></th></tr></thead>
     <tbody>${rows.map((curve) => {
       const found = isNumber(curve) ? statisticsOf(curve) : null;
-      const numbers = found && [found.min, found.mean, found.max, ...found.percentiles];
+      const numbers = found && [found.min, found.mean, found.max];
       return html`<tr key=${`${keyOf(curve)}${curve.other ? " in the branch" : ""}`} class=${classes({ off: curve.hidden })}>
         <td>${curve.other ? html`<span class="faint">in the branch</span>` : html`<${Name} curve=${curve} plot=${plot} isNumber=${isNumber} />`}</td>
         <td class="number"><${Value} curve=${curve} value=${shownOf(curve)} /></td>
