@@ -377,13 +377,13 @@ def test_a_server_that_was_silent_is_connected_again(browser, server) -> None:
             page.get_by_text("The connection to pyfrc sim was lost, reconnecting").wait_for()
             assert person.button("E-STOP").is_disabled()
             server.simulation.choose_mode("autonomous")
-            person.choose("Layout", "Review")
-            page.wait_for_function("() => sessionStorage.getItem('pyfrc-unsaved')?.includes('review')")
+            person.choose("Layout", "Tuning")
+            page.wait_for_function("() => sessionStorage.getItem('pyfrc-unsaved')?.includes('tuning')")
         finally:
             awake.set()
         page.get_by_text("reconnecting").wait_for(state="detached")
         saved = server.simulation.project.root / ".pyfrc" / "sim-layout.json"
-        while not (saved.exists() and '"layout": "review"' in saved.read_text("utf-8")):
+        while not (saved.exists() and '"layout": "tuning"' in saved.read_text("utf-8")):
             page.wait_for_timeout(50)  # it is saved with the new connection
         assert page.locator(".notice").count() == 0
         person.state("Autonomous disabled")
@@ -404,7 +404,7 @@ def test_everything_fits_and_can_be_read(browser, server, scheme) -> None:
         assert page.locator("html").get_attribute("data-theme") == scheme
         for size in ((1366, 768), (3840, 2160), (820, 1180)):
             page.set_viewport_size({"width": size[0], "height": size[1]})
-            for layout in ("Driving", "Tuning", "Mechanism", "Presentation"):
+            for layout in ("Driving", "Tuning", "Dashboard"):
                 person.choose("Layout", layout)
                 page.locator(".tabs").first.wait_for()
                 whole = page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")

@@ -46,6 +46,7 @@ class Settings {
       if (given === undefined || typeof given !== typeof value || Array.isArray(given) !== Array.isArray(value)) continue;
       this.values[name] = structuredClone(given);
     }
+    if (!PRESETS[this.values.layout] && !this.values.trees[this.values.layout]) this.values.layout = DEFAULTS.layout;
   }
 
   get(name) {
@@ -83,7 +84,7 @@ class Settings {
   // The panels' arrangement in the chosen layout.
   get tree() {
     const name = this.values.layout;
-    return this.values.trees[name] ?? (PRESETS[name] ?? PRESETS.driving).tree;
+    return this.values.trees[name] ?? PRESETS[name].tree;
   }
 
   set tree(tree) {
@@ -93,6 +94,7 @@ class Settings {
   // Give the chosen layout its first arrangement again.
   resetTree() {
     const { [this.values.layout]: _, ...others } = this.values.trees;
+    if (!PRESETS[this.values.layout]) this.set("layout", DEFAULTS.layout);
     this.set("trees", others);
   }
 }

@@ -2,7 +2,7 @@
 import { command } from "#js/connection.js";
 import { countdown } from "#js/format.js";
 import { toggle } from "#js/layout/open.js";
-import { PRESETS, panelsOf } from "#js/layout/presets.js";
+import { layoutTitle, offeredLayouts, panelsOf } from "#js/layout/presets.js";
 import { robotState } from "#js/link.js";
 import { Menu } from "#js/menu.js";
 import { model } from "#js/model.js";
@@ -131,15 +131,14 @@ function switchTheme() {
 
 function LayoutMenu() {
   const chosen = settings.get("layout");
-  const offered = Object.entries(PRESETS).filter(([, { looks }]) => !looks || (!model.isDriven && looks === model.hello.source?.kind));
   /** @type {any[]} */
-  const items = offered.map(([name, preset]) => ({
-    text: preset.title,
+  const items = offeredLayouts(model.hello.source?.kind, model.isDriven, settings.get("trees")).map((name) => ({
+    text: layoutTitle(name),
     checked: name === chosen,
     act: () => settings.set("layout", name),
   }));
   items.push({ separator: true }, { text: "Reset this layout", act: () => settings.resetTree() });
-  return html`<${Menu} label=${PRESETS[chosen]?.title ?? "Layout"} icon="layout" title="Layout" items=${items} />`;
+  return html`<${Menu} label=${layoutTitle(chosen)} icon="layout" title="Layout" items=${items} />`;
 }
 
 function PanelsMenu() {

@@ -12,6 +12,7 @@ export function column(sizes, ...children) {
   return { kind: "column", sizes, children };
 }
 
+// With `looks`, a layout is only for what cannot be driven, and is this: a robot, a log, a run that is over.
 /** @type {Record<string, { title: string, looks?: string, tree: any }>} */
 export const PRESETS = {
   robot: {
@@ -26,12 +27,22 @@ export const PRESETS = {
   },
   log: {
     title: "Log",
-    looks: "log", // only for what cannot be driven, and is this
+    looks: "log",
     tree: row(
       [24, 48, 28],
       tabs("networktables", "changes", "devices"),
       column([50, 50], tabs("field", "mechanism"), tabs("plot:1", "plot:2")),
       column([58, 42], tabs("console"), tabs("joysticks", "match", "widgets")),
+    ),
+  },
+  run: {
+    title: "Review",
+    looks: "simulation",
+    tree: row(
+      [22, 46, 32],
+      tabs("devices", "networktables"),
+      column([64, 36], tabs("field", "mechanism"), tabs("console")),
+      column([58, 42], tabs("plot:1", "plot:2"), tabs("joysticks", "match", "widgets")),
     ),
   },
   driving: {
@@ -60,33 +71,21 @@ export const PRESETS = {
       column([45, 55], tabs("field", "mechanism"), tabs("widgets", "match", "joysticks")),
     ),
   },
-  mechanism: {
-    title: "Mechanism",
-    tree: row(
-      [24, 36, 40],
-      tabs("devices", "networktables"),
-      tabs("mechanism", "field"),
-      column([60, 40], tabs("plot:1"), tabs("console", "joysticks", "keys")),
-    ),
-  },
-  review: {
-    title: "Review",
-    tree: row(
-      [22, 46, 32],
-      tabs("devices", "networktables"),
-      column([64, 36], tabs("field", "mechanism"), tabs("console")),
-      column([58, 42], tabs("plot:1", "plot:2"), tabs("joysticks", "match", "widgets")),
-    ),
-  },
   dashboard: {
     title: "Dashboard",
     tree: row([22, 78], tabs("networktables", "widgets", "match"), tabs("dashboard")),
   },
-  presentation: {
-    title: "Presentation",
-    tree: row([68, 32], tabs("field"), column([50, 50], tabs("plot:1"), tabs("mechanism", "console"))),
-  },
 };
+
+// The names of the layouts to choose from: also those that a person has arranged when there were more of them.
+export function offeredLayouts(kind, isDriven, trees) {
+  const offered = Object.keys(PRESETS).filter((name) => !PRESETS[name].looks || (!isDriven && PRESETS[name].looks === kind));
+  return [...offered, ...Object.keys(trees).filter((name) => !PRESETS[name])];
+}
+
+export function layoutTitle(name) {
+  return PRESETS[name]?.title ?? name.charAt(0).toUpperCase() + name.slice(1);
+}
 
 // On a narrow screen: the field and plots above, everything else in tabs below; or beside them.
 export function stacked(tree, isLow = false) {
