@@ -1,31 +1,11 @@
 // A button that opens a list of actions. Escape or a click elsewhere closes it; arrow keys move in it.
-import { showBeside } from "#js/popup.js";
-import { Component, Icon, classes, createRef, html } from "#js/view.js";
+import { Popup } from "#js/popup.js";
+import { Icon, classes, html } from "#js/view.js";
 
-export class Menu extends Component {
-  state = { open: false };
-  element = createRef();
-
-  componentDidMount() {
-    document.addEventListener("pointerdown", this.outside);
-  }
-
-  componentWillUnmount() {
-    document.removeEventListener("pointerdown", this.outside);
-  }
-
-  componentDidUpdate() {
-    if (this.state.open) showBeside(this.element.current.querySelector(".menu-list"), this.element.current);
-  }
-
-  outside = (event) => {
-    if (this.state.open && !this.element.current.contains(event.target)) this.setState({ open: false });
-  };
-
+export class Menu extends Popup {
   render({ label, title, items, icon, disabled }, { open }) {
     return html`<div class="menu" ref=${this.element} onKeyDown=${this.key}>
-      <button class="quiet" aria-haspopup="menu" aria-expanded=${open} title=${title} disabled=${disabled}
-        onClick=${() => this.setState({ open: !open })}>
+      <button class="quiet" aria-haspopup="menu" aria-expanded=${open} title=${title} disabled=${disabled} onClick=${this.toggle}>
         ${icon && html`<${Icon} name=${icon} />`}<span>${label}</span><i class="caret"></i></button>
       ${open && html`<ul class="menu-list" popover="manual" role="menu">
         ${items.map((item, index) => item.separator
@@ -39,7 +19,7 @@ export class Menu extends Component {
   }
 
   act(item) {
-    this.setState({ open: false });
+    this.close();
     item.act();
   }
 
@@ -48,7 +28,7 @@ export class Menu extends Component {
     const buttons = [...this.element.current.querySelectorAll(".menu-list button:not(:disabled)")];
     const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     if (event.key === "Escape") {
-      this.setState({ open: false });
+      this.close();
       this.element.current.querySelector("button").focus();
     } else if (by) buttons[(buttons.indexOf(document.activeElement) + by + buttons.length) % buttons.length]?.focus();
     else return;

@@ -3,36 +3,29 @@ import { valueText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { nameOf } from "#js/names.js";
 import { elementsOf, valueIn } from "#js/parts.js";
-import { showBeside } from "#js/popup.js";
-import { Component, Icon, createRef, html } from "#js/view.js";
+import { Popup } from "#js/popup.js";
+import { Icon, html } from "#js/view.js";
 
 const MOST = 60;
 const LAST = /^nt:\/(LiveWindow|\.schema)|^event\.|\/\.\w+$|raw_value$/;
 const FROM_OUTSIDE = /^nt:\/(FMSInfo|DS|DSLog|DriverStation)\//;
 
-export class PlotPicker extends Component {
+export class PlotPicker extends Popup {
   state = { open: false, search: "" };
-  element = createRef();
-
-  componentDidMount() {
-    document.addEventListener("pointerdown", this.outside);
-  }
 
   componentWillUnmount() {
+    super.componentWillUnmount();
     model.need(this, []);
-    document.removeEventListener("pointerdown", this.outside);
   }
 
-  componentDidUpdate(_, before) {
+  componentDidUpdate(props, before) {
     model.need(this, this.state.open ? [""] : []);
-    if (!this.state.open) return;
-    showBeside(this.element.current.querySelector(".menu-list"), this.element.current);
-    if (!before.open) this.element.current.querySelector("input").focus();
+    super.componentDidUpdate(props, before);
   }
 
-  outside = (event) => {
-    if (this.state.open && !this.element.current.contains(event.target)) this.setState({ open: false });
-  };
+  opened(list) {
+    list.querySelector("input").focus();
+  }
 
   // more: [{ key, name, note, add() }], above the values
   render({ label = "Add value", more = [] }, { open, search }) {
@@ -57,7 +50,7 @@ export class PlotPicker extends Component {
   }
 
   choose(act) {
-    this.setState({ open: false });
+    this.close();
     act();
   }
 
@@ -65,7 +58,7 @@ export class PlotPicker extends Component {
     if (!this.state.open) return;
     const items = [...this.element.current.querySelectorAll("input, li button")];
     const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (event.key === "Escape") this.setState({ open: false });
+    if (event.key === "Escape") this.close();
     else if (event.key === "Enter" && event.target.matches("input")) items[1]?.click();
     else if (by) items[(items.indexOf(document.activeElement) + by + items.length) % items.length].focus();
     else return;
