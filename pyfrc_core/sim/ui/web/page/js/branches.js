@@ -4,7 +4,7 @@ import { compared } from "#js/compare.js";
 import { FirstDifference, showComparison } from "#js/comparison.js";
 import { askText } from "#js/dialog.js";
 import { clock, typedNumber } from "#js/format.js";
-import { Menu } from "#js/menu.js";
+import { Menu } from "#js/popup.js";
 import { model } from "#js/model.js";
 import { chooseLog } from "#js/open_log.js";
 import { isRecorded } from "#js/recorded.js";

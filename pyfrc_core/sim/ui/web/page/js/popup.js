@@ -1,5 +1,5 @@
-// Lists that open beside a button, above everything else on the page.
-import { Component, createRef } from "#js/view.js";
+// Lists and boxes of settings that open beside a button, above everything else on the page.
+import { Component, Icon, classes, createRef, html } from "#js/view.js";
 
 const GAP = 5; // pixels between the button and its list
 
@@ -46,5 +46,73 @@ export class Popup extends Component {
 
   outside = (event) => {
     if (this.state.open && !this.element.current.contains(event.target)) this.close();
+  };
+}
+
+// A button that opens a list of actions; arrow keys move in it.
+export class Menu extends Popup {
+  render({ label, title, items, icon, disabled }, { open }) {
+    return html`<div class="menu" ref=${this.element} onKeyDown=${this.key}>
+      <button class="quiet" aria-haspopup="menu" aria-expanded=${open} title=${title} disabled=${disabled} onClick=${this.toggle}>
+        ${icon && html`<${Icon} name=${icon} />`}<span>${label}</span><i class="caret"></i></button>
+      ${open && html`<ul class="menu-list" popover="manual" role="menu">
+        ${items.map((item, index) => item.separator
+          ? html`<li key=${index} class="menu-separator" role="separator"></li>`
+          : html`<li key=${index} role="none"><button role=${item.checked === undefined ? "menuitem" : "menuitemcheckbox"}
+              aria-checked=${item.checked} disabled=${item.disabled} onClick=${() => this.act(item)}>
+              <i class=${classes({ tick: true, on: item.checked })}></i><span>${item.text}</span>
+              ${item.note && html`<small>${item.note}</small>`}</button></li>`)}
+      </ul>`}
+    </div>`;
+  }
+
+  act(item) {
+    this.close();
+    item.act();
+  }
+
+  key = (event) => {
+    if (!this.state.open) return;
+    const buttons = [...this.element.current.querySelectorAll(".menu-list button:not(:disabled)")];
+    const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (event.key === "Escape") {
+      this.close();
+      this.element.current.querySelector("button").focus();
+    } else if (by) buttons[(buttons.indexOf(document.activeElement) + by + buttons.length) % buttons.length]?.focus();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  };
+}
+
+// A button with a box of settings below it.
+export class Dropdown extends Popup {
+  componentDidMount() {
+    super.componentDidMount();
+    document.addEventListener("keydown", this.key); // a list that was chosen from gives the keyboard back to driving
+  }
+
+  componentWillUnmount() {
+    super.componentWillUnmount();
+    document.removeEventListener("keydown", this.key);
+  }
+
+  opened(box) {
+    box.querySelector("select, input, button").focus();
+  }
+
+  // `content` returns what the box shows, and is given a function that closes it.
+  render({ label, title, name, className = "quiet", content }, { open }) {
+    return html`<div class="menu dropdown" ref=${this.element}>
+      <button class=${className} aria-expanded=${open} aria-label=${name} title=${title} onClick=${this.toggle}>${label}</button>
+      ${open && html`<div class="menu-list settings-box" popover="manual" role="group" aria-label=${title}>${content(this.close)}</div>`}
+    </div>`;
+  }
+
+  key = (event) => {
+    if (!this.state.open || event.key !== "Escape") return;
+    event.preventDefault();
+    this.close();
+    this.element.current.querySelector("button").focus();
   };
 }

@@ -4,7 +4,7 @@ import { countdown } from "#js/format.js";
 import { toggle } from "#js/layout/open.js";
 import { layoutTitle, offeredLayouts, panelsOf } from "#js/layout/presets.js";
 import { robotState } from "#js/link.js";
-import { Menu } from "#js/menu.js";
+import { Menu } from "#js/popup.js";
 import { model } from "#js/model.js";
 import { PANELS, panelTitle } from "#js/panels/all.js";
 import { live } from "#js/past.js";

@@ -4,7 +4,7 @@ import { askText, askWhether } from "#js/dialog.js";
 import { BranchesMenu } from "#js/branches.js";
 import { clock, speedText } from "#js/format.js";
 import { link } from "#js/link.js";
-import { Menu } from "#js/menu.js";
+import { Menu } from "#js/popup.js";
 import { model } from "#js/model.js";
 import { driveOn, live, lookByPackets } from "#js/past.js";
 import { positionOf, speedAt } from "#js/speeds.js";

@@ -5,7 +5,7 @@ import { KINDS } from "#js/dashboard/kinds.js";
 import { isFree, movedBy } from "#js/dashboard/grid.js";
 import { isPublished, pathOf } from "#js/dashboard/topics.js";
 import { WidgetSettings } from "#js/dashboard/widget_settings.js";
-import { Dropdown } from "#js/dropdown.js";
+import { Dropdown } from "#js/popup.js";
 import { Component, Icon, classes, createRef, html } from "#js/view.js";
 
 const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };

@@ -1,9 +1,10 @@
 // What a widget may be: its title, its first size in cells, the settings that it has, and what draws it. What is
 // published decides which kinds are suggested.
-import { ChooserWidget, CommandWidget, AlertsWidget, PidWidget, ValuesWidget } from "#js/dashboard/published_widgets.js";
-import { CameraWidget, FieldWidget, GraphWidget, MechanismWidget, SwerveWidget } from "#js/dashboard/panel_widgets.js";
+import {
+  AlertsWidget, CameraWidget, ChooserWidget, CommandWidget, FieldWidget, GraphWidget, MatchTime, MechanismWidget, PidWidget,
+  RobotState, SwerveWidget, ValuesWidget,
+} from "#js/dashboard/panel_widgets.js";
 import { Gauge, InputBox, Lamp, NumberText, Switch, Text } from "#js/dashboard/value_widgets.js";
-import { MatchTime, RobotState } from "#js/dashboard/match_widgets.js";
 import { typeOf } from "#js/dashboard/topics.js";
 import { plain } from "#js/format.js";
 import { model } from "#js/model.js";

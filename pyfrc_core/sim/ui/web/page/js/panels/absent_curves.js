@@ -1,7 +1,7 @@
 // The curves of a plot whose values this log or robot does not have: they are those of another log or of the simulation,
 // arranged in the same place. They are not drawn, and kept for what has them, unless a person removes them.
 import { keyOf, titleOf } from "#js/curves.js";
-import { Dropdown } from "#js/dropdown.js";
+import { Dropdown } from "#js/popup.js";
 import { model } from "#js/model.js";
 import { Icon, html } from "#js/view.js";
 

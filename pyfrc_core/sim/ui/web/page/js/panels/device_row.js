@@ -33,6 +33,7 @@ export class DeviceRow extends Component {
 // A part of a row that draws a path's value in `paint(value)` whenever it changes.
 export class Painted extends Component {
   element = createRef();
+  name = ""; // the class of an element that has nothing in it at first
 
   paint(_value, _index) {}
 
@@ -46,6 +47,10 @@ export class Painted extends Component {
 
   componentDidUpdate() {
     this.props.row.paths.forEach((path, index) => this.paint(plain(model.shown.values.get(path)), index));
+  }
+
+  render() {
+    return html`<span class=${this.name} ref=${this.element}></span>`;
   }
 }
 
@@ -90,6 +95,7 @@ class Lamps extends Painted {
 }
 
 class Relay extends Painted {
+  name = "word";
   states = [false, false];
 
   paint(value, index) {
@@ -98,10 +104,6 @@ class Relay extends Painted {
     const text = forwards && backwards ? "on" : forwards ? "forward" : backwards ? "reverse" : "off";
     this.element.current.textContent = text;
     this.element.current.classList.toggle("on", forwards || backwards);
-  }
-
-  render() {
-    return html`<span class="word" ref=${this.element}></span>`;
   }
 }
 
@@ -114,38 +116,32 @@ function paintEach(element, value, paint) {
 }
 
 class Bars extends Painted {
+  name = "bars";
+
   paint(value) {
     const { high } = this.props.row;
     paintEach(this.element.current, value, (each, style) => {
       style.height = `${Math.min(Math.max(each / high, 0), 1) * 100}%`;
     });
   }
-
-  render() {
-    return html`<span class="bars" ref=${this.element}></span>`;
-  }
 }
 
 class Leds extends Painted {
+  name = "leds";
+
   paint(value) {
     paintEach(this.element.current, value, (each, style) => {
       const { r = 0, g = 0, b = 0 } = Array.isArray(each) ? { r: each[0], g: each[1], b: each[2] } : (each ?? {});
       style.background = `rgb(${Number(r)}, ${Number(g)}, ${Number(b)})`;
     });
   }
-
-  render() {
-    return html`<span class="leds" ref=${this.element}></span>`;
-  }
 }
 
 class Text extends Painted {
+  name = "text-value";
+
   paint(value) {
     this.element.current.textContent = this.element.current.title = valueText(value);
-  }
-
-  render() {
-    return html`<span class="text-value" ref=${this.element}></span>`;
   }
 }
 

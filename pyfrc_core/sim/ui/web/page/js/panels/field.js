@@ -6,10 +6,9 @@ import { numberText } from "#js/format.js";
 import { COORDINATES, originOf, unitOf, written } from "#js/field/coordinates.js";
 import * as draw from "#js/field/draw.js";
 import { drawParts } from "#js/field/draw_parts.js";
-import { placeLabel } from "#js/field/labels.js";
 import { fieldNeeds, fieldObjects, swerveStates } from "#js/field/published.js";
 import { Viewport } from "#js/field/viewport.js";
-import { Menu } from "#js/menu.js";
+import { Menu } from "#js/popup.js";
 import { model } from "#js/model.js";
 import { compared } from "#js/compare.js";
 import { color, settings } from "#js/settings.js";
@@ -170,7 +169,7 @@ export class FieldPanel extends Drawn {
       const { width, fontBoundingBoxAscent: ascent, fontBoundingBoxDescent: descent } = context.measureText(object.name);
       const half = width / 2 + 2;
       const middle = Math.min(Math.max(x, half), this.view.width - half);
-      const bottom = placeLabel(labels, middle, y - above, 2 * half, ascent + descent);
+      const bottom = draw.placeLabel(labels, middle, y - above, 2 * half, ascent + descent);
       context.strokeStyle = color("carpet"); // lines and tags behind it would make it hard to read
       context.lineWidth = 3;
       context.lineJoin = "round";

@@ -83,6 +83,28 @@ class Axis extends Bound {
   }
 }
 
+// What a button does while the mouse, a finger, Space or Enter holds it.
+function whileHeld(hold, letGo) {
+  const isKey = (event) => [" ", "Enter"].includes(event.key);
+  return {
+    onPointerDown(event) {
+      if (event.button !== 0) return;
+      event.currentTarget.setPointerCapture(event.pointerId);
+      hold();
+    },
+    onPointerUp: letGo,
+    onPointerCancel: letGo,
+    onBlur: letGo,
+    onKeyDown(event) {
+      if (!isKey(event) || event.repeat) return;
+      event.preventDefault();
+      event.stopPropagation();
+      hold();
+    },
+    onKeyUp: (event) => isKey(event) && letGo(),
+  };
+}
+
 export class Button extends Bound {
   element = createRef();
 
@@ -98,7 +120,7 @@ export class Button extends Bound {
 
   componentWillUnmount() {
     super.componentWillUnmount();
-    if (this.holding) this.press(false);
+    this.letGo();
   }
 
   press(pressed) {
@@ -110,38 +132,22 @@ export class Button extends Bound {
   render({ button, label, touch }) {
     const title = touch ? `Button ${button}` : `${label || `Button ${button}`}: the right mouse button keeps it pressed`;
     return html`<button ref=${this.element} class="stick-button" title=${title}
-      disabled=${!model.mayDrive} onPointerDown=${this.down} onPointerUp=${this.up} onPointerCancel=${this.up}
-      onContextMenu=${this.keep} onKeyDown=${this.key} onKeyUp=${this.keyUp} onBlur=${this.up}><b>${button}</b><small>${label}</small></button>`;
+      disabled=${!model.mayDrive} onContextMenu=${this.keep} ...${whileHeld(this.hold, this.letGo)}><b>${button}</b><small>${label}</small></button>`;
   }
 
-  down = (event) => {
-    if (event.button !== 0) return;
-    event.currentTarget.setPointerCapture(event.pointerId);
+  hold = () => {
     this.holding = true;
     this.press(true);
   };
 
-  up = () => {
-    if (!this.holding) return;
+  letGo = () => {
+    if (this.holding) this.press(false);
     this.holding = false;
-    this.press(false);
   };
 
   keep = (event) => {
     event.preventDefault();
     if (!this.props.touch) this.press(!this.pressed); // a long touch is none of the right mouse button
-  };
-
-  key = (event) => {
-    if (![" ", "Enter"].includes(event.key) || event.repeat) return;
-    event.preventDefault();
-    event.stopPropagation();
-    this.holding = true;
-    this.press(true);
-  };
-
-  keyUp = (event) => {
-    if ([" ", "Enter"].includes(event.key)) this.up();
   };
 }
 
@@ -181,11 +187,8 @@ class Pov extends Bound {
       ${POVS.map((angle) => angle === -1
         ? html`<i key=${angle}>POV</i>`
         : html`<button key=${angle} aria-label=${`POV ${angle}°`} disabled=${!model.mayDrive}
-          onPointerDown=${(event) => event.button === 0 && (event.currentTarget.setPointerCapture(event.pointerId), this.hold(angle))}
-          onPointerUp=${this.letGo} onPointerCancel=${this.letGo} onBlur=${this.letGo}
           onContextMenu=${(event) => (event.preventDefault(), this.turn(this.angle === angle ? -1 : angle))}
-          onKeyDown=${(event) => [" ", "Enter"].includes(event.key) && !event.repeat && (event.preventDefault(), event.stopPropagation(), this.hold(angle))}
-          onKeyUp=${(event) => [" ", "Enter"].includes(event.key) && this.letGo()}>${ARROWS[angle]}</button>`)}
+          ...${whileHeld(() => this.hold(angle), this.letGo)}>${ARROWS[angle]}</button>`)}
     </div>`;
   }
 }

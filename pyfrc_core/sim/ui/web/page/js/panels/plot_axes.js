@@ -1,5 +1,5 @@
 // The limits of a plot's axes: automatic, or those that the person has typed or locked.
-import { Dropdown } from "#js/dropdown.js";
+import { Dropdown } from "#js/popup.js";
 import { shownNumber, typedNumber } from "#js/format.js";
 import { model } from "#js/model.js";
 import { TextBox } from "#js/text_box.js";
