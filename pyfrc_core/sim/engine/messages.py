@@ -103,7 +103,7 @@ class Update:
     :param recorded: how many of them are in the recorded steps; a command in a pause is recorded when time goes on
     :param base: all values of `hal_data`, where `lines` do not continue those sent before
     :param lines: the new lines of the trace (see `pyfrc_core.runtime.scripts.trace`)
-    :param network_base: all values of NetworkTables, together with `base`; see `robot_side.network_trace`
+    :param network_base: all values of NetworkTables, together with `base`; see `robot_side.traces`
     :param network_lines: the new changes of NetworkTables, in the form of `lines`
     :param trail: the robot's places since the last update
     :param distance: the whole distance that it has driven, in feet

@@ -26,10 +26,9 @@ from ..scene import Pose, Target
 from ..snapshot import Opmode
 from .driven_path import DrivenPath
 from .network import Choosers, Served, written_target
-from .network_trace import NetworkTrace
 from .pace import Pace, wall
 from .station import Station
-from .traces import Traces
+from .traces import NetworkTrace, Traces
 from .user_renderer import UserRenderer
 
 #: Above real time, the shortest interval of updates, in wall seconds; otherwise each packet has one. Unrecorded

@@ -1,11 +1,21 @@
-"""What the robot does, packet by packet, until it is reported: the lines of `hal_data` and of NetworkTables."""
+"""What the robot does, packet by packet, until it is reported: the lines of `hal_data` and of NetworkTables.
+
+NetworkTables are for front ends that draw them. The paths of their lines are those of `TopicValues`, and `MODE` and
+`POSE`, which `hal_data` does not have.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from ....runtime.scripts.trace import Trace
-from .network_trace import NetworkTrace
+from ....runtime.scripts.trace_lines import trace_line
+from ....wpi import network, station
+from ..messages import MODE, POSE
+from ..scene import Pose
+from ..structs import SCHEMA
+from ..topic_values import TopicValues
 
 
 class _Lines(list[str]):
@@ -13,6 +23,45 @@ class _Lines(list[str]):
 
     def write(self, lines: str) -> None:
         self += [f"{line}\n" for line in lines.split("\n")[:-1]]
+
+
+class NetworkTrace:
+    """The changes of the robot's own tables.
+
+    :param pose: returns the robot's place
+    """
+
+    def __init__(self, pose: Callable[[], Pose | None]) -> None:
+        self._pose = pose
+        self._news = network.listen_for_values(current=True, gone=True)
+        self._topics = TopicValues()
+        self._lines: list[str] = []
+
+    def look(self, now: float) -> None:
+        """Note what has changed by `now`, in seconds of robot time."""
+        self._topics.note(MODE, station.mode_name())
+        if (pose := self._pose()) is not None:
+            self._topics.note(POSE, [pose.x, pose.y, pose.angle])
+        for update in sorted(self._news.read(), key=lambda each: SCHEMA not in each.name):
+            self._topics.take(update.name, "" if update.value is None else update.type_name, update.value)
+        changed, lost = self._topics.changes()
+        if changed or lost:
+            self._lines.append(trace_line(round(now, 6), changed, lost) + "\n")
+
+    def skip(self, now: float) -> None:
+        """Take over what has changed by `now` without a line: it is known from the run before."""
+        self.look(now)
+        self._lines.clear()
+
+    def report(self, now: float, is_base: bool, is_known: bool) -> tuple[dict[str, Any], tuple[str, ...]]:
+        """Return all values, where the report is a base, and the lines since the last report.
+
+        :param is_known: whether the changes are those of a replay, which need no lines
+        """
+        self.look(now)
+        lines = () if is_known else tuple(self._lines)
+        self._lines.clear()
+        return dict(self._topics.values) if is_base else {}, lines
 
 
 class Traces:

@@ -1,12 +1,16 @@
-"""The window's keys: passes on which go down and up, without the keyboard's automatic repeat."""
+"""The window's keys: which go down and up, without the keyboard's automatic repeat, and the choice of their layout."""
 
 from __future__ import annotations
 
 import tkinter as tk
+from collections.abc import Callable
 from tkinter import ttk
 
 from ..models.driver_station_keys import REPEATING, DriverStationKeys
-from ..models.keyboard import canonical
+from ..models.keyboard import BUTTON_KEYS_TEXT, LAYOUTS, canonical
+from . import theme as colors
+from .boxes import tame
+from .theme import Theme
 
 #: On X11, a held key repeats as pairs of a release and a press. It counts as released when no press follows within
 #: this time. The time is longer than a packet, so that the robot sees the shortest press.
@@ -15,6 +19,7 @@ _REPEAT_MS = 25
 _CONTROL = 0x4
 
 _TYPED_INTO = ("Entry", "TEntry", "TCombobox", "Listbox")
+_OTHERS = f". Shift: gently. {BUTTON_KEYS_TEXT}: buttons of joystick 0"
 
 
 class Keys:
@@ -70,3 +75,35 @@ class Keys:
         if isinstance(widget, ttk.Combobox) and "readonly" in widget.state():
             return False
         return not isinstance(widget, tk.Misc) or widget.winfo_class() in _TYPED_INTO
+
+
+class DriveView:
+    """Chooses the layout of the keys that drive.
+
+    :param done: called when the user has chosen, so that keys drive again
+    """
+
+    def __init__(self, parent: tk.Misc, theme: Theme, keys: DriverStationKeys, done: Callable[[], None]) -> None:
+        px = theme.px
+        self._keys, self._done = keys, done
+        self.frame = colors.card(parent, theme)
+        inside = ttk.Frame(self.frame, style="Card.TFrame")
+        inside.pack(fill="x", padx=px(10), pady=px(8))
+        head = ttk.Frame(inside, style="Card.TFrame")
+        head.pack(fill="x")
+        ttk.Label(head, text="Keys", style="Title.TLabel").pack(side="left", padx=(0, px(10)))
+        self.layout = ttk.Combobox(
+            head, values=[each.name for each in LAYOUTS], state="readonly", width=16, font=theme.body, takefocus=False
+        )
+        self.layout.current(LAYOUTS.index(keys.layout))
+        self.layout.bind("<<ComboboxSelected>>", lambda event: self._choose())
+        tame(self.layout, done)
+        self.layout.pack(side="right", fill="x", expand=True)
+        self._help = ttk.Label(inside, style="CardMuted.TLabel", wraplength=px(256), text=keys.layout.help + _OTHERS)
+        self._help.pack(anchor="w", pady=(px(4), 0))
+
+    def _choose(self) -> None:
+        layout = LAYOUTS[self.layout.current()]
+        self._keys.layout = layout
+        self._help.configure(text=layout.help + _OTHERS)
+        self._done()

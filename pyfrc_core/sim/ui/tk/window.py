@@ -22,10 +22,9 @@ from ..models.wording import status_texts
 from .center_view import CenterView
 from .column import Column
 from .device_view import DeviceView
-from .drive_view import DriveView
 from .joystick_view import WIDTH as JOYSTICK_WIDTH
 from .joystick_view import JoystickView
-from .keys import Keys
+from .keys import DriveView, Keys
 from .match_view import MatchView
 from .station_bar import StationBar
 from .theme import make_theme
