@@ -9,7 +9,9 @@ from datetime import datetime
 from time import monotonic
 from types import MappingProxyType
 
+from ...deploy.console import ConnectionReports, lines_of_one_connection
 from ...deploy.discovery import Address
+from ...deploy.errors import NoConsoleError
 from ...deploy.targets import controller_of
 from ...project import Project
 from ...season import CURRENT
@@ -25,7 +27,6 @@ from ..engine.scene import Scene
 from ..engine.snapshot import Snapshot, Status
 from ..engine.source import Abilities, ChangeFeed, FedReader
 from .addresses import RobotAddresses
-from .robot_console import RobotConsole
 from .runs import RobotRuns
 from .search import reasons
 from .tuning import Tuner, checked_write
@@ -34,11 +35,50 @@ from .tuning import Tuner, checked_write
 _LOOK_SECONDS, _TIME_SECONDS = 0.02, 0.1
 #: How long a robot may take to respond before the reasons are looked for, in wall seconds.
 _PATIENCE_SECONDS = 2.0
+#: How long to wait before the next connection to a console, in wall seconds.
+_BETWEEN_SECONDS = 2.0
 
 
 def console_of(host: str) -> Address | None:
     """Return where a robot's console is; None: it needs a login."""
     return None if controller_of(CURRENT).layout.output else Address(host)
+
+
+class RobotConsole:
+    """Reads one robot's console service, as `pyfrc console` does, on a thread of its own, until it is closed.
+
+    A roboRIO sends its output only while a Driver Station is connected to it. None is imitated here.
+
+    :param add: called with each line
+    :param say: called once with a sentence, if there is no console
+    """
+
+    def __init__(self, address: Address, add: Callable[[str], object], say: Callable[[str], object]) -> None:
+        self._address = address
+        self._add, self._say = add, say
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._follow, name="pyfrc view: robot's console", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """End."""
+        self._over.set()
+        self._thread.join()
+
+    def _follow(self) -> None:
+        report = ConnectionReports(quiet=True)
+        is_known = False
+        while not self._over.is_set():
+            try:
+                for line in lines_of_one_connection(self._address, False, report, self._over.is_set):
+                    is_known = True
+                    self._add(f"{line}\n")
+            except NoConsoleError:
+                return
+            if not is_known and "connected" not in report.made and not self._over.is_set():
+                self._say(f"What the robot prints is not shown: there is no console at {self._address}.")
+            is_known = True
+            self._over.wait(_BETWEEN_SECONDS)
 
 
 class LiveRobot:
