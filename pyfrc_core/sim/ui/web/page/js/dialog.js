@@ -1,57 +1,31 @@
 // A question, with one line of text or a button as the answer. The browser's own dialogs would stop the page: it would
 // no longer read what the server sends, and count as gone.
+import { html, render } from "#js/view.js";
 
 // Ask for a text; the promise has it, or null if the person gave up.
 export async function askText(question, text) {
-  const box = document.createElement("input");
-  box.type = "text";
-  box.value = text;
-  const agreed = await ask(question, "OK", box);
-  return (agreed && box.value.trim()) || null;
+  const dialog = await ask(html`${question}<input type="text" value=${text} />`, "OK");
+  return (dialog.returnValue === "ok" && dialog.querySelector("input").value.trim()) || null;
 }
 
 // Ask whether to do something; the promise is true for the button with this text.
-export function askWhether(question, yes) {
-  return ask(question, yes, null);
+export async function askWhether(question, yes) {
+  return (await ask(question, yes)).returnValue === "ok";
 }
 
-function ask(question, yes, box) {
+// The promise has the dialog when it is closed. Enter accepts: the other button submits nothing.
+/** @returns {Promise<HTMLDialogElement>} */
+function ask(question, yes) {
   const dialog = document.createElement("dialog");
-  const form = document.createElement("form");
-  form.method = "dialog";
-  const label = document.createElement("label");
-  label.textContent = question;
-  const buttons = document.createElement("div");
-  buttons.className = "dialog-buttons";
-  const cancel = button("Cancel", "cancel");
-  const accept = button(yes, "ok");
-  accept.className = "primary";
-  buttons.append(cancel, accept);
-  if (box) label.append(box);
-  form.append(label, buttons);
-  dialog.append(form);
+  render(html`<form method="dialog"><label>${question}</label><div class="dialog-buttons">
+    <button type="button" onClick=${() => dialog.close("cancel")}>Cancel</button><button class="primary" value="ok">${yes}</button></div></form>`, dialog);
   document.body.append(dialog);
-  // Enter accepts, whichever button comes first.
-  box?.addEventListener("keydown", (event) => {
-    if (event.key !== "Enter") return;
-    event.preventDefault();
-    dialog.close("ok");
-  });
-  cancel.type = "button";
-  cancel.addEventListener("click", () => dialog.close("cancel"));
   dialog.showModal();
-  box?.select();
+  dialog.querySelector("input")?.select();
   return new Promise((resolve) => {
     dialog.addEventListener("close", () => {
       dialog.remove();
-      resolve(dialog.returnValue === "ok");
+      resolve(dialog);
     });
   });
-}
-
-function button(text, value) {
-  const made = document.createElement("button");
-  made.textContent = text;
-  made.value = value;
-  return made;
 }

@@ -1,9 +1,8 @@
 // Why the robot program has ended: the user's own line first, and the ways to go on.
-import { command } from "#js/connection.js";
 import { clock } from "#js/format.js";
 import { goTo } from "#js/input/moment_keys.js";
 import { model } from "#js/model.js";
-import { live } from "#js/past.js";
+import { commandLive } from "#js/past.js";
 import { SourceLink } from "#js/source.js";
 import { Icon, Live, html } from "#js/view.js";
 
@@ -29,28 +28,13 @@ export class FailureBar extends Live {
         </div>
         <div class="failure-actions">
           ${model.isOver && failure.t > 0 && html`<button onClick=${() => goTo(failure.t - BACK)}>2 s before</button>`}
-          ${goesBack && model.isDriven && html`<button class="primary" onClick=${() => goBack(failure.t)} disabled=${!model.mayDrive}>Go back 2 s and drive on</button>`}
+          ${goesBack && model.isDriven && html`<button class="primary" onClick=${() => commandLive("rewind", { t: Math.max(failure.t - BACK, 0) })} disabled=${!model.mayDrive}>Go back 2 s and drive on</button>`}
           ${failure.t > 0 && html`<button onClick=${() => goTo(failure.t)}>Values of that moment</button>`}
-          ${!watch && model.isDriven && html`<button onClick=${reload} disabled=${!model.mayDrive} title="After you have corrected it: run it with the same inputs until this moment">Load the code again</button>`}
-          ${model.isDriven && html`<button onClick=${restart} disabled=${!model.mayDrive}><${Icon} name="restart" />Restart</button>`}
+          ${!watch && model.isDriven && html`<button onClick=${() => commandLive("reload")} disabled=${!model.mayDrive} title="After you have corrected it: run it with the same inputs until this moment">Load the code again</button>`}
+          ${model.isDriven && html`<button onClick=${() => commandLive("restart")} disabled=${!model.mayDrive}><${Icon} name="restart" />Restart</button>`}
         </div>
       </div>
       ${failure.details && html`<details><summary>Traceback</summary><pre>${failure.details}</pre></details>`}
     </section>`;
   }
-}
-
-function goBack(t) {
-  live();
-  command("rewind", { t: Math.max(t - BACK, 0) });
-}
-
-function reload() {
-  live();
-  command("reload");
-}
-
-function restart() {
-  live();
-  command("restart");
 }

@@ -81,10 +81,14 @@ export function live() {
   if (model.past) model.show(null);
 }
 
+// Carry out a command whose effect the person sees, also after a look at the past.
+export function commandLive(name, fields = {}) {
+  live();
+  command(name, fields);
+}
+
 // Go back to the moment that is shown, and drive on from there. What came later is kept as a branch.
 export function driveOn() {
   const t = model.past?.t;
-  if (t === undefined) return;
-  live();
-  command("rewind", { t });
+  if (t !== undefined) commandLive("rewind", { t });
 }

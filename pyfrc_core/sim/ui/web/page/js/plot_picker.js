@@ -4,6 +4,7 @@ import { model } from "#js/model.js";
 import { nameOf } from "#js/names.js";
 import { elementsOf, valueIn } from "#js/parts.js";
 import { Popup } from "#js/popup.js";
+import { SearchBox } from "#js/text_box.js";
 import { Icon, html } from "#js/view.js";
 
 const MOST = 60;
@@ -12,6 +13,7 @@ const FROM_OUTSIDE = /^nt:\/(FMSInfo|DS|DSLog|DriverStation)\//;
 
 export class PlotPicker extends Popup {
   state = { open: false, search: "" };
+  search = (search) => this.setState({ search });
 
   componentWillUnmount() {
     super.componentWillUnmount();
@@ -34,8 +36,7 @@ export class PlotPicker extends Popup {
     return html`<div class="menu picker" ref=${this.element} onKeyDown=${this.key}>
       <button class="quiet" aria-expanded=${open} onClick=${() => this.setState({ open: !open, search: "" })}><${Icon} name="plus" />${label}</button>
       ${open && html`<div class="menu-list" popover="manual">
-        <label class="search"><${Icon} name="search" /><input type="search" value=${search} placeholder="Search all values"
-          aria-label="Search all values" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
+        <${SearchBox} label="Search all values" text=${search} search=${this.search} />
         <ul>${others.map(({ key, name, note, add }) => html`<li key=${key}><button title=${key} onClick=${() => this.choose(add)}><b>${name}</b><small>${note}</small></button></li>`)}
           ${found.map((path) => html`<li key=${path}><button title=${path} onClick=${() => this.add(path)}>
           <span class="long-name"><bdi>${nameOf(path)}</bdi></span><small>${valueText(valueIn(model.values, path)).slice(0, 24)}</small></button></li>`)}</ul>

@@ -7,7 +7,7 @@ import { robotState } from "#js/link.js";
 import { Menu } from "#js/popup.js";
 import { model } from "#js/model.js";
 import { PANELS, panelTitle } from "#js/panels/all.js";
-import { live } from "#js/past.js";
+import { commandLive } from "#js/past.js";
 import { isRecorded } from "#js/recorded.js";
 import { SourceLabel } from "#js/recorded_bar.js";
 import { applyTheme, isDark, settings } from "#js/settings.js";
@@ -66,7 +66,7 @@ export class StationBar extends Live {
         <button class="go" disabled=${!this.ready || present.enabled} title="Enable the robot: Ctrl+E, or [ ] \\ together"
           onClick=${() => command("enable")}>Enable</button>
         <button class="stop" disabled=${!this.ready || !present.enabled} title="Disable the robot: Enter"
-          onClick=${() => stop("disable")}>Disable</button>
+          onClick=${() => commandLive("disable")}>Disable</button>
       </div>
       <button class="practice" disabled=${!this.ready} title="Practice match: autonomous, a pause and teleop"
         onClick=${() => command("practice")}><${Icon} name="flag" /><span>Practice</span></button>`;
@@ -74,7 +74,7 @@ export class StationBar extends Live {
 
   emergencyStop() {
     return html`<button class="estop" disabled=${!this.ready && !this.stuck} title="Emergency stop: the space bar. Only a restart enables the robot again."
-        onClick=${() => stop("e_stop")}>E-STOP</button>`;
+        onClick=${() => commandLive("e_stop")}>E-STOP</button>`;
   }
 }
 
@@ -104,12 +104,6 @@ function OpmodeChooser({ disabled }) {
       return group ? html`<optgroup key=${group} label=${group}>${options}</optgroup>` : options;
     })}
   </select>`;
-}
-
-// Stop the robot where the person sees it, also after a look at the past.
-function stop(name) {
-  live();
-  command(name);
 }
 
 // The server's text without the seconds, which have a place of their own.

@@ -1,5 +1,5 @@
 // A box for text that shows a changing value, but leaves what a person types alone.
-import { Component, createRef, html } from "#js/view.js";
+import { Component, Icon, createRef, html } from "#js/view.js";
 
 export class TextBox extends Component {
   element = createRef();
@@ -15,4 +15,9 @@ export class TextBox extends Component {
   render({ text: _, ...attributes }) {
     return html`<input type="text" ref=${this.element} ...${attributes} />`;
   }
+}
+
+export function SearchBox({ label, text, search }) {
+  return html`<label class="search"><${Icon} name="search" /><input type="search" placeholder=${label} value=${text} aria-label=${label}
+    onInput=${(event) => search(event.target.value)} /></label>`;
 }

@@ -6,7 +6,7 @@ import { clock, speedText } from "#js/format.js";
 import { link } from "#js/link.js";
 import { Menu } from "#js/popup.js";
 import { model } from "#js/model.js";
-import { driveOn, live, lookByPackets } from "#js/past.js";
+import { commandLive, driveOn, live, lookByPackets } from "#js/past.js";
 import { positionOf, speedAt } from "#js/speeds.js";
 import { Timeline } from "#js/timeline.js";
 import { Icon, Live, html } from "#js/view.js";
@@ -124,15 +124,11 @@ function figures(status) {
 }
 
 function RunMenu() {
-  const act = (name) => () => {
-    live();
-    command(name);
-  };
   const end = { text: model.isDriven ? "End the simulation" : "End this command", act: () => command("quit"), disabled: model.readonly };
   if (!model.isDriven) return html`<${Menu} label="Run" title="End" items=${[end]} />`;
   const items = [
-    { text: "Restart the robot", note: "F9", act: act("restart"), disabled: model.readonly },
-    { text: "Load the code again", act: act("reload"), disabled: model.readonly },
+    { text: "Restart the robot", note: "F9", act: () => commandLive("restart"), disabled: model.readonly },
+    { text: "Load the code again", act: () => commandLive("reload"), disabled: model.readonly },
     { text: model.station.attached === false ? "Connect the driver station" : "Disconnect the driver station", note: "F8",
       act: () => command("attach", { attached: model.station.attached === false }), disabled: model.readonly },
     { separator: true },

@@ -3,7 +3,7 @@
 // Names of keys are those of the server: "w", "bracketleft", "return", "shift_l".
 import { atRest, command, refusedInPast, write } from "#js/connection.js";
 import { model } from "#js/model.js";
-import { live, lookByPackets } from "#js/past.js";
+import { commandLive, lookByPackets } from "#js/past.js";
 import { settings } from "#js/settings.js";
 
 const BY_CODE = {
@@ -39,9 +39,8 @@ let starts = null;
 // A command whose effect the person sees, also after a look at the past.
 function seen(name, fields) {
   return () => {
-    live();
     if (document.activeElement?.matches(".timeline")) /** @type {any} */ (document.activeElement).blur(); // arrows drive again
-    command(name, fields);
+    commandLive(name, fields);
   };
 }
 

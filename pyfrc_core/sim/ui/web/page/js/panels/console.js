@@ -4,7 +4,8 @@ import { goTo } from "#js/input/moment_keys.js";
 import { model } from "#js/model.js";
 import { settings } from "#js/settings.js";
 import { SourceLink } from "#js/source.js";
-import { Icon, Live, classes, createRef, html } from "#js/view.js";
+import { SearchBox } from "#js/text_box.js";
+import { Live, classes, createRef, html } from "#js/view.js";
 
 const LEVELS = [["info", "Output"], ["warning", "Warnings"], ["error", "Errors"], ["pyfrc", "pyfrc"]];
 const MOST_SHOWN = 150;
@@ -13,6 +14,7 @@ export class ConsolePanel extends Live {
   parts = ["console", "shown", "settings", "hello"];
   interval = 150;
   state = { search: "", shown: MOST_SHOWN };
+  search = (search) => this.setState({ search });
   list = createRef();
   follow = true;
 
@@ -38,8 +40,7 @@ export class ConsolePanel extends Live {
     const visible = lines.slice(-shown);
     return html`<div class="console">
       <div class="panel-tools">
-        <label class="search"><${Icon} name="search" /><input type="search" placeholder="Search the output" value=${search}
-          aria-label="Search the output" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
+        <${SearchBox} label="Search the output" text=${search} search=${this.search} />
         <div class="segments small" role="group" aria-label="Levels">
           ${LEVELS.map(([level, text]) => html`<button key=${level} aria-pressed=${levels.has(level)}
             class=${classes({ chosen: levels.has(level), [`level-${level}`]: true })} onClick=${() => toggle(level)}>${text}

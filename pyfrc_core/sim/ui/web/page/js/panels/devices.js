@@ -5,6 +5,7 @@ import { motorsOf } from "#js/motors.js";
 import { DeviceRow, Meter, Painted } from "#js/panels/device_row.js";
 import { addToPlot, carryPath } from "#js/plotting.js";
 import { settings } from "#js/settings.js";
+import { SearchBox } from "#js/text_box.js";
 import { Icon, Live, classes, html } from "#js/view.js";
 
 const READINGS = ["current", "velocity", "temperature"]; // of a motor
@@ -13,6 +14,7 @@ const MANY = 100; // rows of a group that is closed at first
 export class DevicesPanel extends Live {
   parts = ["panels", "settings", "hello"];
   state = { search: "", closed: {} };
+  search = (search) => this.setState({ search });
 
   render(_, { search, closed }) {
     const words = search.toLowerCase().split(/\s+/).filter(Boolean);
@@ -26,8 +28,7 @@ export class DevicesPanel extends Live {
     const isClosed = (title, rows) => !words.length && (closed[title] ?? rows.length > MANY);
     const toggle = (title, rows) => this.setState({ closed: { ...closed, [title]: !isClosed(title, rows) } });
     return html`<div class="devices">
-      <label class="search"><${Icon} name="search" /><input type="search" placeholder="Search devices" value=${search}
-        aria-label="Search devices" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
+      <${SearchBox} label="Search devices" text=${search} search=${this.search} />
       <div class="scroll">
         ${pinned.length > 0 && html`<${Group} title="Pinned" rows=${pinned} pins=${pins} />`}
         ${motors.length > 0 && html`<${Group} key="Motors" title="Motors" rows=${motors} closed=${isClosed("Motors", [])} toggle=${() => toggle("Motors", [])}

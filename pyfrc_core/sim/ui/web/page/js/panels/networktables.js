@@ -7,6 +7,7 @@ import { model } from "#js/model.js";
 import { elementsOf } from "#js/parts.js";
 import { addToPlot, carryPath, carryTable } from "#js/plotting.js";
 import { ValueBox } from "#js/value_box.js";
+import { SearchBox } from "#js/text_box.js";
 import { Bound, Icon, Live, classes, createRef, html } from "#js/view.js";
 
 const START = "nt:";
@@ -14,6 +15,7 @@ const START = "nt:";
 export class NetworkTablesPanel extends Live {
   parts = ["paths", "types", "hello", "shown", "settings"];
   state = { search: "", open: Object.fromEntries(model.hello.options.dashboard.tables.map((table) => [table, true])) };
+  search = (search) => this.setState({ search });
 
   render(_, { search, open }) {
     const words = search.toLowerCase().split(/\s+/).filter(Boolean);
@@ -32,8 +34,7 @@ export class NetworkTablesPanel extends Live {
     };
     visit(tree, 0);
     return html`<div class="networktables">
-      <label class="search"><${Icon} name="search" /><input type="search" placeholder="Search NetworkTables" value=${search}
-        aria-label="Search NetworkTables" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
+      <${SearchBox} label="Search NetworkTables" text=${search} search=${this.search} />
       <div class="scroll" role="tree">${rows}${!rows.length && html`<p class="empty">${search ? "No value is called that." : "The robot has published nothing yet."}</p>`}</div>
     </div>`;
   }
