@@ -12,7 +12,7 @@ from ...engine.snapshot import Snapshot, Status
 from ..models.viewport import RobotDrag, Viewport, grid_lines, is_on_robot, robot_polygons, tag_marks
 from ..models.wording import station_name
 from . import theme as colors
-from .drawings import Drawings, Trail
+from .drawings import Drawings
 from .field_image import FieldImage
 from .theme import Theme
 
