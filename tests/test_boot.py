@@ -162,10 +162,10 @@ def test_code_that_needs_the_alliance_at_boot_fails_everywhere(make_project: Mak
     result = project.run("test", "--builtin")
     assert result.code == 1
     assert "passed" not in result.output, result.output
-    assert f"{place}: KeyError: None" in result.output
+    assert f"{place}: the alliance is None: it is not known until the driver station is connected" in result.output
     simulated = project.run("sim", "--ui", "none", "--seconds", "1")
     assert simulated.code == 1, simulated.output
-    assert f"{place}: KeyError: None" in simulated.output
+    assert f"{place}: the alliance is None: it is not known until the driver station is connected" in simulated.output
     fuzzed = project.run("fuzz", "--runs", "1", "-j1")
     assert fuzzed.code == 1, fuzzed.output
     assert place in fuzzed.output

@@ -93,7 +93,10 @@ def test_other_ways_to_run_tests(make_project: MakeProject, what: str, options: 
 @pytest.mark.parametrize(
     ("command", "last"),
     [
-        (["fuzz", "--runs", "2"], "Nothing was found.\n"),
+        (
+            ["fuzz", "--runs", "2"],
+            "But 2 matches prove little: pyfrc fuzz --time 600 plays for ten minutes.\n",
+        ),
         (["create-physics"], ""),
         (["sim", "--ui", "none", "--mode", "practice", "--seconds", "3"], ""),
         (["coverage", "test", "--builtin"], ""),
@@ -104,6 +107,7 @@ def test_other_commands(make_project: MakeProject, what: str, command: list[str]
     result = make(make_project, what).run(*command)
     assert result.code == 0, result.output
     assert "Traceback" not in result.output
+    assert ("Nothing was found." in result.stdout) == (command[0] == "fuzz")
     assert result.stdout.endswith(last)
 
 

@@ -21,10 +21,10 @@ def test_errors_are_found_when_their_line_is_whole(capfd: pytest.CaptureFixture[
         assert reports.error() is None
         assert reports.error() is None
         report("\nmore")
-        assert reports.error() == "robot.py: a fault"
+        assert reports.error() == ("robot.py: a fault", "", 0, "")
         assert reports.error() is None
         report(" output\nError at a.cpp: Joystick 3 is not available\nError at b.cpp: another fault\n")
-        assert reports.error() == "b.cpp: another fault"
+        assert reports.error() == ("b.cpp: another fault", "", 0, "")
     assert capfd.readouterr().err == (
         "some output\nError at robot.py: a fault\nmore output\n"
         "Error at a.cpp: Joystick 3 is not available\nError at b.cpp: another fault\n"
@@ -38,6 +38,6 @@ def test_errors_are_found_after_much_output(capfd: pytest.CaptureFixture[str]) -
             report(line)
             assert reports.error() is None
         report("Error at robot.py: a fault\n")
-        assert reports.error() == "robot.py: a fault"
+        assert reports.error() == ("robot.py: a fault", "", 0, "")
         assert reports.error() is None
     assert capfd.readouterr().err == "".join(lines) + "Error at robot.py: a fault\n"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from collections.abc import Callable
@@ -71,11 +72,12 @@ def test_it_stops_no_search_for_tests(tmp_path: Path, kind: str, name: str) -> N
     assert [each.partition(":")[0] for each in found] == ["tests/arm_tests.py"]
 
 
-@posix
-@pytest.mark.skipif(not hasattr(os, "getuid") or os.getuid() == 0, reason="root reads everything")
-def test_a_file_without_permission_is_named(tmp_path: Path) -> None:
+def test_a_file_without_permission_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(file: Path) -> None:  # root can read every file
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(file))
+
     make(tmp_path, "drive.py")
-    (tmp_path / "drive.py").chmod(0)
+    monkeypatch.setattr("pyfrc_core.project.walk.open_file", refuse)
     error = why_unreadable(tmp_path / "drive.py")
     assert error is not None
     assert error.message == "this cannot be read: Permission denied"
