@@ -86,7 +86,7 @@ def command(
 
     \b
     Exit codes: 0 deployed, and the program runs; 1 not deployed, the robot has its old program;
-    2 wrong usage or no project, or Ctrl-C; 3 deployed, but the program ended during its start;
+    2 wrong usage or no project; 130 Ctrl-C; 3 deployed, but the program ended during its start;
     4 deployed or possibly deployed, but not confirmed to run: the message explains the robot's state.
     """
     if (netconsole or nc_ds) and (as_json or dry_run):

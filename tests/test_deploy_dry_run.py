@@ -50,5 +50,5 @@ def test_an_error_in_the_program(tmp_path: Path, name: str, text: bytes | str, e
 def test_an_error_in_a_file_that_the_program_does_not_import(tmp_path: Path) -> None:
     text = shown(tmp_path, unused="def f(:\n    pass\n")
     assert "warning: unused.py:1: SyntaxError: invalid syntax" in text
-    assert "  The program does not import this file when it starts.\n" in text
+    assert "  No import of this file was found that runs when the program starts.\n" in text
     assert text.endswith(NOT_CHECKED)

@@ -216,9 +216,10 @@ def test_links_out_of_the_project_are_named(project: RobotProject) -> None:
         f"lib: This is a link to {beside.as_posix()}, which is not followed, so the code there stays as it is. "
         "Replace the link by what it leads to, and migrate."
     )
-    result = project.run("migrate")
-    assert result.code == 1
-    assert "Nothing is left to do" not in result.stdout
+    for _ in range(2):
+        result = project.run("migrate")
+        assert result.code == 1
+        assert "Nothing is left to do" not in result.stdout
     assert (beside / "arm.py").read_text() == "import wpilib.drive\n"
 
 

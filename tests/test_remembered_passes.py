@@ -316,6 +316,16 @@ def test_what_the_tests_write_themselves_prevents_no_deploy(make_project) -> Non
     assert result.first_error.startswith("no robot found")
 
 
+def test_a_deploy_runs_all_tests_after_a_run_that_left_some_out(make_project) -> None:
+    """They may have read the file that has changed, as data."""
+    made = make_project(FILES)
+    assert made.run("test").code == 0
+    with (made.path / "tests/test_robot.py").open("a", encoding="utf-8") as file:
+        file.write("# changed\n")
+    assert "passed before" in made.run("test", "--changed").stdout
+    assert "4 passed" in made.run(*NO_ROBOT).output
+
+
 def test_part_of_the_tests_or_a_failure_is_not_enough_for_a_deploy(make_project) -> None:
     made = make_project(FILES)
     assert made.run("test", "--", "-k", "auto").code == 0

@@ -160,4 +160,4 @@ def test_a_robot_without_physics(make_project) -> None:
     made = make_project({"robot.py": FILES["robot.py"]})
     result = made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "1")
     assert result.code == 0, result.output
-    assert "there is no physics.py (pyfrc create-physics writes one)" in result.stdout
+    assert "not known without physics.py beside robot.py (pyfrc create-physics)" in result.stdout

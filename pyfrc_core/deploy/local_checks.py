@@ -129,7 +129,7 @@ def _compile(project: Project, manifest: Manifest, program: list[str], progress:
         if wrong is not None and entry.path in program:
             raise wrong
         if wrong is not None:
-            progress.warning(f"{wrong}\n  The program does not import this file when it starts.")
+            progress.warning(f"{wrong}\n  No import of this file was found that runs when the program starts.")
     progress.note("not checked in a dry run: the tests, and whether the program can be imported")
 
 

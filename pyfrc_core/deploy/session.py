@@ -278,7 +278,7 @@ def _plan_as_text(plan: Plan) -> str:
         for path in paths
     ]
     counts = f"{len(plan.added)} to add, {len(plan.changed)} to change, {len(plan.removed)} to remove"
-    return "\n".join([*lines, f"{counts}; {size_text(plan.bytes_to_send)} to send. Nothing was changed."])
+    return "\n".join([*lines, f"{counts}; {size_text(plan.bytes_to_send)} to send. Nothing was changed on the robot."])
 
 
 _ENDED = "ended after its last start"

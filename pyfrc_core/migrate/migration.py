@@ -96,7 +96,7 @@ def migrate(
         else:
             what = f"{wrong.message[0].upper()}{wrong.message[1:]}. The file stays as it is."
             report.add(name, wrong.line or 0, what, wrong.remedy or "")
-    for link in links if first_time else ():
+    for link in links:
         what = (
             f"This is a link to {link.readlink().as_posix()}, which is not followed, so the code there stays as it is."
         )

@@ -22,8 +22,9 @@ from .._version import __version__
 from ..config.settings import DEFAULT_SEED
 from ..file_hash import hash_file
 from ..project import TEST_FILES, Project
+from ..project.git import git_output
 from ..project.loaded_modules import PACKAGES, loaded_modules
-from ..project.walk import SourceError, files_below, read_source
+from ..project.walk import LEFT_OUT, SourceError, files_below, read_source
 from ..text_files import keep_out_of_version_control, write_whole
 from ..wording import path_from
 
@@ -79,6 +80,10 @@ def project_files(project: Project) -> Iterator[Path]:
         yield from files_below(beside)
     if project.pyproject.parent != project.root and project.pyproject.is_file():
         yield project.pyproject
+    # What a team has put under version control is no tool's own, but for compiled files, which many commit unawares.
+    for name in (git_output(project.root, "ls-files", "-z", seconds=5) or "").split("\0"):
+        if LEFT_OUT.intersection(PurePath(name).parts) and not name.endswith(".pyc"):
+            yield project.root / name
 
 
 def hash_of_file(file: Path) -> str:

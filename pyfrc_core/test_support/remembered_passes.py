@@ -92,7 +92,7 @@ class RememberedPasses:
                 self._passes.record(test, self._files[test])
         if exitstatus != pytest.ExitCode.OK or self._why_not:
             self._passes.set_green(False)
-        elif self._runs_all:
+        elif self._runs_all and not self._valid:  # else some passed before a change that they do not depend on
             self._passes.set_green(True)
         self.record_files(loaded_from_elsewhere(self._project), written_files)
         if (report := getattr(session.config.option, "xmlpath", None)) is not None:  # pytest has written it now

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -11,6 +12,7 @@ from tempfile import TemporaryDirectory
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from skips import missing_programs, require
 
 from pyfrc_core.passes import memory
 from pyfrc_core.passes.memory import Passes
@@ -179,6 +181,18 @@ def test_what_cannot_matter_does_not_count(tmp_path: Path) -> None:
     ):
         make(tmp_path, name)
     assert stands(project)
+
+
+def test_what_git_tracks_counts_wherever_it_is(tmp_path: Path) -> None:
+    require("files that git tracks", missing_programs("git"))
+    project = make(tmp_path, "node_modules/speeds.json", "__pycache__/x.pyc")
+    for command in (["init", "-q"], ["add", "-f", "."]):
+        subprocess.run(["git", *command], cwd=tmp_path, check=True)
+    all_passed(project)
+    write_as_long(tmp_path / "__pycache__/x.pyc")
+    assert stands(project)
+    write_as_long(tmp_path / "node_modules/speeds.json")
+    assert not stands(project)
 
 
 def test_a_test_file_that_another_one_names_counts_for_all(tmp_path: Path) -> None:

@@ -60,7 +60,7 @@ class Summary:
             times = (f"{mode} {seconds:.1f} s" for mode, seconds in snapshot.mode_seconds.items())
             found.append(f"modes: {', '.join(times) or 'none'}")
             if snapshot.scene.robot is None:
-                found.append("distance driven: not known, there is no physics.py (pyfrc create-physics writes one)")
+                found.append("distance driven: not known without physics.py beside robot.py (pyfrc create-physics)")
             else:
                 metres = snapshot.distance * METRES_PER_FOOT
                 found.append(f"distance driven: {snapshot.distance:.1f} ft ({metres:.1f} m)")
