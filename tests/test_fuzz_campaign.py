@@ -200,8 +200,12 @@ def test_motors_that_drive_on_their_own_are_heard_through_the_drive(make_project
                 self.left, self.right = wpilib.PWMSparkMax(0), wpilib.PWMSparkMax(1)
                 self.drive = wpilib.drive.DifferentialDrive(self.left, self.right)
 
+            def disabledExit(self):
+                self.was_enabled = True
+
             def disabledPeriodic(self):
-                self.drive.arcadeDrive(0.5, 0.0)
+                if hasattr(self, "was_enabled"):
+                    self.drive.arcadeDrive(0.5, 0.0)
         """
     project = make_project({"robot.py": robot, "pyproject.toml": SHORT_MATCHES.format(20, "")})
     result = project.run("fuzz", "--runs", "2")

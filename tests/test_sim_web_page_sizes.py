@@ -9,7 +9,7 @@ import pytest
 from browser_pages import Seen, page_of, shared_browser, shared_server  # noqa: F401 - `browser`, `server`
 from conftest import sampled
 
-LAYOUTS = ["Driving", "Tablet", "Tuning", "Mechanism", "Review", "Presentation", "Dashboard"]
+LAYOUTS = ["Driving", "Tablet", "Tuning", "Dashboard"]
 #: Also those of 1366 by 768 at 150 %, and of 1280 by 800 at 133 %.
 WIDTHS = [640, 700, 800, 853, 901, 961, 1024, 1100, 1180, 1281, 1500]
 SIZES = [*((width, 400) for width in WIDTHS), (640, 900), (911, 512), (960, 600), (1366, 768)]
