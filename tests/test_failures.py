@@ -267,7 +267,7 @@ def test_an_exception_names_the_robots_line_first(
         ("test_assertion_in_on_step", "# asserted in a step", "AssertionError: assert 0.5 < 0.5"),
         ("test_wrong_key", '["valeu"]', "there is no key 'valeu' in pwm[0]"),
         ("test_wrong_top_key", '["pmw"]', "there is no key 'pmw' in hal_data"),
-        ("test_run_twice", "# again", "run_test(): the robot has run already in this test."),
+        ("test_run_twice", "# again", "run_test(): the robot has run already in this test, at tests/test_troubles.py:"),
         ("test_nothing_to_run", "control.run_test()", "run_test() needs a function to call on each step"),
         ("test_practice_match_too_late", "set_practice_match()", "must be called before run_test()"),
         ("test_too_long", "lambda tm: True", "the robot ran for more than 5 s of robot time, the limit"),

@@ -413,14 +413,16 @@ TESTS = r"""
 
     def test_outside_of_a_match_nothing_returned_ends_the_run(control, fake_time):
         control.set_autonomous()
-        with pytest.warns(UserWarning, match="returned None, which ends the run at 0.02 s: return True"):
+        with pytest.warns(UserWarning, match="returned None, which ends the run at 0.02 s: return True") as warned:
             control.run_test(lambda tm: None)
+        assert warned[0].filename == __file__
+        assert control.ended_early.startswith(f"{__file__}:{warned[0].lineno}: ")
         assert fake_time.get() == 0.02
 
 
     def test_a_second_run_is_an_assertion_error(control):
         control.run_test(lambda tm: False)
-        with pytest.raises(AssertionError, match="the robot has run already"):
+        with pytest.raises(AssertionError, match=r"has run already in this test, at tests/test_\w+\.py:\d+\. It can"):
             control.run_test(lambda tm: False)
         with pytest.raises(AssertionError, match="must be called before run_test"):
             control.set_practice_match()

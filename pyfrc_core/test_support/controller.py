@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import traceback
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
@@ -73,6 +74,9 @@ class TestController:
         #: The random seed of this test.
         self.seed = seed
         self._practice_match: _PracticeMatch | None = None
+        #: The place and the text of the warning that the run has ended at its first step.
+        self.ended_early = ""
+        self._first_run = ""
         #: The message that the field sends with autonomous mode, such as ``"LRL"``.
         self.game_specific_message: str | None = None
 
@@ -192,10 +196,27 @@ class TestController:
                     f"run_test(controller): {controller!r} is neither a function nor a class with an on_step method"
                 )
             _check_callable(on_step, "with one argument, the robot time in seconds", 0.0)
-            steps.append(_check_result(on_step) if self._practice_match is None else _until_false(on_step))
+            steps.append(self._check_result(on_step) if self._practice_match is None else _until_false(on_step))
         if not steps:
             raise WrongController("run_test() needs a function to call on each step, or set_practice_match() before it")
         return instance, steps
+
+    def _check_result(self, on_step: OnStep) -> OnStep:
+        """Wrap `on_step`: warn, at its line, when it returns None on its first call, which ends the run."""
+        is_first = iter([True])
+
+        def step(now: float) -> object:
+            __tracebackhide__ = True
+            result = on_step(now)
+            if next(is_first, False) and result is None:
+                name = getattr(on_step, "__qualname__", on_step)
+                text = f"{name}() returned None, which ends the run at {now:.2f} s: return True for the robot to go on"
+                code = getattr(on_step, "__code__", step.__code__)
+                warnings.warn_explicit(text, UserWarning, code.co_filename, code.co_firstlineno)
+                self.ended_early = f"{code.co_filename}:{code.co_firstlineno}: {text}\n"
+            return result
+
+        return step
 
     # -- running a script -----------------------------------------------------------------------------------
 
@@ -303,9 +324,14 @@ class TestController:
         self._run.check_drives_clock(f"call {how}()")
         if self._run.started:
             raise CalledTooLate(
-                f"{how}(): the robot has run already in this test. It can only run once; "
-                "write a second test, or do everything in one run."
+                f"{how}(): the robot has run already in this test{self._first_run}. It can only run once; write "
+                "a second test, or do everything in one run:\n    with control.run_robot():\n"
+                "        control.step_timing(seconds=3, autonomous=True, enabled=True)\n"
+                "        control.step_timing(seconds=3, autonomous=False, enabled=True)"
             )
+        for frame, line in traceback.walk_stack(inspect.currentframe()):
+            if not self._first_run and self.project and self.project.files.is_project_file(frame.f_code.co_filename):
+                self._first_run = f", at {self.project.files.relative(frame.f_code.co_filename)}:{line}"
         if self.check_invariants and self.project is not None:
             watch_invariants(self._run, self.project.files, self._invariants)
 
@@ -335,26 +361,6 @@ def _until_false(on_step: OnStep) -> OnStep:
         __tracebackhide__ = True
         result = on_step(now)
         return result is None or result
-
-    return step
-
-
-def _check_result(on_step: OnStep) -> OnStep:
-    """Wrap `on_step`: warn when it returns None on its first call, which ends the run."""
-    first = True
-
-    def step(now: float) -> object:
-        __tracebackhide__ = True
-        nonlocal first
-        result = on_step(now)
-        if result is None and first:
-            warnings.warn(
-                f"{getattr(on_step, '__qualname__', on_step)}() returned None, which ends the run at {now:.2f} s: "
-                "return True for the robot to go on",
-                stacklevel=1,
-            )
-        first = False
-        return result
 
     return step
 

@@ -369,7 +369,7 @@ class PyFrcPlugin(WatchedTests):
                 report.sections.append(NEVER_RUN)
             elif isinstance(error, AssertionError) and not hasattr(report, BUG):
                 report.sections += opmodes.hint_without_opmode(item)
-            report.sections.append(seed_section(self.options))
+            report.sections.append(seed_section(self.options, item))
         return report
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from typing import TYPE_CHECKING
 
@@ -64,6 +65,8 @@ def never_ran_the_robot(item: pytest.Item, failure: pytest.ExceptionInfo[BaseExc
     return all(str(entry.path) != controller.__file__ for entry in failure.traceback)
 
 
-def seed_section(options: TestOptions) -> tuple[str, str]:
-    """Return the section of a failure's report that shows the random seed."""
-    return "pyfrc", f"random seed: {options.seed} (--seed {options.seed} repeats it)"
+def seed_section(options: TestOptions, item: pytest.Item) -> tuple[str, str]:
+    """Return the section of a failure's report that shows why the run ended at once, if it did, and the random seed."""
+    control = getattr(item, "funcargs", {}).get("control")
+    early = getattr(control, "ended_early", "").removeprefix(f"{item.config.rootpath}{os.sep}")
+    return "pyfrc", f"{early}random seed: {options.seed} (--seed {options.seed} repeats it)"

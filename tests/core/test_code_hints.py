@@ -13,6 +13,7 @@ import wpilib
 
 from pyfrc_core.repeated_lines import RepeatedLines, shortened
 from pyfrc_core.runtime.checks.enum_values import find_early_reads, find_wrong_comparisons
+from pyfrc_core.runtime.checks.never_used import find_never_used
 from pyfrc_core.runtime.checks.no_effect import find_lines_without_effect
 from pyfrc_core.runtime.checks.setting_names import find_misspelled_settings
 from pyfrc_core.runtime.checks.sources import Source
@@ -29,7 +30,12 @@ def source(text: str, is_test: bool = False) -> Source:
 
 def hints(text: str, is_test: bool = False) -> list[str]:
     files = [source(text, is_test)]
-    found = [*find_lines_without_effect(files), *find_wrong_comparisons(files), *find_early_reads(files)]
+    found = [
+        *find_lines_without_effect(files),
+        *find_wrong_comparisons(files),
+        *find_early_reads(files),
+        *find_never_used(files),
+    ]
     return [f"{each.where.removeprefix('robot.py:')}: {each.text} / {each.remedy}" for each in found]
 
 
@@ -52,6 +58,8 @@ def hints(text: str, is_test: bool = False) -> list[str]:
             "Alliance is never equal to the text 'red'",
             "Write wpilib.DriverStation.Alliance.kRed",
         ),
+        ("if self.pad.getRawButton(0): pass", "there is no button 0: buttons are 1 to 32", "getAButton()"),
+        ("commands2.button.JoystickButton(self.pad, 33)", "there is no button 33", "the button's number"),
         ("side = getAlliance()\n        if side in ('Blue', 1): pass", "the text 'Blue'", "Alliance.kBlue"),
         ("if DriverStation.getMatchType() == 3: pass", "the number 3", "kPractice"),
     ],
@@ -88,6 +96,8 @@ def test_a_line_that_does_not_do_what_it_says(line: str, text: str, remedy: str)
         "if self.pad.getPOV() == 90: pass",
         "self.done = True",
         "a.onTrue(c)",
+        "self.pad.getRawButton(1)",
+        "commands2.button.JoystickButton(c, self.fire)",
     ],
 )
 def test_lines_without_a_mistake(line: str) -> None:
@@ -117,6 +127,87 @@ def test_a_command_whose_end_condition_returns_nothing() -> None:
     """
     (found,) = hints(command)
     assert found.startswith("2: isFinished returns nothing")
+
+
+@pytest.mark.parametrize(
+    ("made", "use", "start", "effect"),
+    [
+        ("Timer()", "get()", "restart()", "so it stays at 0 s"),
+        ("Timer()", "hasElapsed(2)", "start()", "so it stays at 0 s"),
+        ("AddressableLED(9)", "setData(data)", "start()", "so it stays dark"),
+        ("Notifier(print)", "setName('a')", "startPeriodic(0.1)", "so its function is never called"),
+    ],
+)
+def test_what_is_used_and_never_started(made: str, use: str, start: str, effect: str) -> None:
+    robot = f"""
+    class Robot:
+        def robotInit(self):
+            self.part = wpilib.{made}
+        def teleopPeriodic(self, data):
+            self.part.{use}
+    """
+    (found,) = hints(robot)
+    assert found.startswith(f"3: self.part is never started, {effect} / Write self.part.")
+    for started in (f"self.part.{start}", "helper(self.part)", "part = self.part"):
+        assert hints(f"{dedent(robot)}        {started}\n") == []
+
+
+def test_a_timer_that_is_never_read() -> None:
+    assert hints("timer = wpilib.Timer()\ntimer.reset()") == []
+
+
+@pytest.mark.parametrize(
+    ("line", "written"),
+    [
+        ("commands2.cmd.sequence(a, a)", "commands2.cmd.sequence"),
+        ("commands2.cmd.print_('a').withTimeout(3)", "commands2.cmd.print_"),
+        ("self.runOnce(a)", "self.runOnce"),
+        ("commands2.WaitCommand(3)", "commands2.WaitCommand"),
+    ],
+)
+def test_a_command_that_is_not_returned(line: str, written: str) -> None:
+    robot = """
+    class Robot:
+        def __init__(self, chooser):
+            chooser.addOption("Fetch", self.fetch())
+        def fetch(self, a):
+            {}
+    """
+    (found,) = hints(robot.format(line))
+    assert found == (
+        f"5: fetch() returns nothing, so robot.py:3 gets None, and not the command / Write return {written}(...)"
+    )
+    for right in (f"return {line}", f"{line}.schedule()", f"a.onTrue({line})", "self.run()", "a.fetch()"):
+        assert hints(robot.format(right)) == []
+
+
+def test_a_factory_whose_value_is_not_used() -> None:
+    assert hints("def go(a):\n    commands2.cmd.sequence(a)\ndef main(a):\n    go(a)\n") == []
+
+
+def test_a_method_that_is_defined_twice() -> None:
+    robot = """
+    class Robot:
+        def go(self): pass
+        def stop(self): pass
+        def go(self): pass
+        @property
+        def speed(self): return 1
+        @speed.setter
+        def speed(self, value): pass
+    def test_it(): pass
+    def test_it(): pass
+    def old(): pass
+    kept = old
+    def old(): pass
+    if kept:
+        def other(): pass
+    else:
+        def other(): pass
+    """
+    two, one = hints(robot)
+    assert one.startswith("4: Robot.go is defined twice: only this one is called, and the one in line 2 never")
+    assert two.startswith("10: test_it is defined twice")
 
 
 def test_the_alliance_is_read_before_it_is_known() -> None:

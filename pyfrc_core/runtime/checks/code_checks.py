@@ -9,6 +9,7 @@ from .enum_values import find_early_reads, find_wrong_comparisons
 from .foreign_paths import find_foreign_paths
 from .misplaced_physics import find_misplaced_physics
 from .misspelled_methods import find_misspelled_methods
+from .never_used import find_never_used
 from .no_effect import find_lines_without_effect
 from .opmodes_never_run import find_opmodes_never_run
 from .setting_names import find_misspelled_settings
@@ -28,6 +29,7 @@ def find_code_warnings(project: Project) -> list[CodeWarning]:
         *find_misplaced_physics(project),
         *find_foreign_paths(robots),
         *find_lines_without_effect(files),
+        *find_never_used(files),
         *find_wrong_comparisons(files),
         *find_early_reads(robots),
         *find_misspelled_settings(project),

@@ -14,13 +14,15 @@ from inspect import isfunction, isroutine
 
 from ...explain.commands import BINDINGS
 from ...explain.places import last_name
-from ...season.spelling import snake_case
+from ...season import CURRENT
 from ...wpi import names
 from .code_warning import CodeWarning
 from .sources import Source
 
 #: How methods begin that return something.
 _ASKS = re.compile(r"(get|is|has|at)(?=[A-Z_]|$)")
+#: What takes the number of a button as its last argument.
+_BUTTON = re.compile(r"(get_?raw_?button\w*|joystickbutton)", re.IGNORECASE)
 #: Code in these may only look whether an error is raised.
 _EXPECTING = frozenset({"raises", "suppress", "warns"})
 
@@ -46,13 +48,9 @@ def find_lines_without_effect(sources: list[Source]) -> Iterator[CodeWarning]:
                         yield CodeWarning(source.at(each), text, f"Write {written}()")
             elif isinstance(node, ast.Call):
                 yield from _of_call(node, source)
-            elif isinstance(node, ast.FunctionDef) and node.name in (
-                names.END_CONDITION,
-                snake_case(names.END_CONDITION),
-            ):
-                returns = any(isinstance(each, (ast.Return, ast.Raise)) for each in ast.walk(node))
-                computes = any(isinstance(each, ast.Call) for each in ast.walk(node))
-                if computes and not returns:
+            elif isinstance(node, ast.FunctionDef) and node.name in ("isFinished", "is_finished"):
+                kinds = {type(each) for each in ast.walk(node)}
+                if ast.Call in kinds and not kinds & {ast.Return, ast.Raise}:
                     text = f"{node.name} returns nothing, so the command never ends by itself"
                     yield CodeWarning(source.at(node), text, "Write return before what it computes.")
         yield from _replaced_methods(source)
@@ -109,6 +107,11 @@ def _of_call(call: ast.Call, source: Source) -> Iterator[CodeWarning]:
         written = f" {sign} ".join(map(ast.unparse, bound.values))
         text = f"{word} takes one of the triggers, and does not combine them"
         yield CodeWarning(source.at(call), text, f"Write ({written}).{last_name(call.func)}(...)")
+    if call.args and _BUTTON.fullmatch(last_name(call.func)):
+        number, first = call.args[-1], CURRENT.first_button
+        if isinstance(number, ast.Constant) and type(number.value) is int and not first <= number.value < first + 32:
+            text = f"there is no button {number.value}: buttons are {first} to {first + 31}, so it is never pressed"
+            yield CodeWarning(source.at(call), text, "Write the button's number, or use a method such as getAButton().")
 
 
 def _conditions(test: ast.expr) -> Iterator[ast.expr]:
@@ -137,9 +140,8 @@ def _replaced_methods(source: Source) -> Iterator[CodeWarning]:
                 if ast.unparse(target).startswith("self.") and isroutine(getattr(cls, last_name(target), None)):
                     name = last_name(target)
                     text = f"{ast.unparse(node)} replaces the method {name}: what calls it fails"
-                    yield CodeWarning(
-                        source.at(node), text, f"Choose another name, or call it: {ast.unparse(target)}(...)"
-                    )
+                    remedy = f"Choose another name, or call it: {ast.unparse(target)}(...)"
+                    yield CodeWarning(source.at(node), text, remedy)
 
 
 def _assigned(tree: ast.Module) -> Iterator[str]:

@@ -175,7 +175,7 @@ class IsolatedTests:
             if self._output is not None:
                 self._output.flush()
                 process.show()
-            _report(item, process, self._plugin.project.files, seed_section(self._plugin.options))
+            _report(item, process, self._plugin.project.files, seed_section(self._plugin.options, item))
             process.close()
             item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
             _stop_if_asked(session)
