@@ -13,7 +13,7 @@ from ..project.robot_files import RobotFiles, is_pyfrc
 from ..wording import counted
 from .calls import called_on_class
 from .explanation import Explanation, ask_for
-from .places import calls_at, frames_of, last_name, owner_of, robot_calls, users_frame, value_of
+from .places import calls_at, frames_of, last_name, owner_of, passed_to, robot_calls, users_frame, value_of
 from .returned import class_of
 
 _INCOMPATIBLE = re.compile(
@@ -60,11 +60,26 @@ def _wrong_object(error: AttributeError, files: RobotFiles) -> Explanation | Non
             value = value_of(each, where[0])
             if error.obj in (value, getattr(value, "__func__", value)):
                 kind = "None" if error.obj is None else f"a {type(error.obj).__name__}"
-                remedy = (
-                    f"Write {ast.unparse(each)}()" if callable(error.obj) else f"It needs an object with {error.name}."
-                )
-                return Explanation(f"{last_name(call.func)}() got {ast.unparse(each)}, which is {kind}", remedy)
+                written = ast.unparse(each)
+                remedy = f"Write {written}()" if callable(error.obj) else _taken(error, where[0], written)
+                return Explanation(f"{last_name(call.func)}() got {written}, which is {kind}", remedy)
     return None
+
+
+def _taken(error: AttributeError, frame: FrameType, written: str) -> str:
+    """Return what to write for an object of a wrong type, from the annotation of the library's parameter."""
+    called = _called_from(error, frame)
+    variables = called.f_locals if called is not None else {}
+    function = getattr(variables.get("self"), called.f_code.co_name, None) if called is not None else None
+    name = next((each for each, value in variables.items() if value is error.obj), "")
+    wanted = getattr(function, "__annotations__", {}).get(name)
+    if not isinstance(wanted, type):
+        return f"It needs an object with {error.name}."
+    for each in dir(type(error.obj)):
+        returned = getattr(getattr(type(error.obj), each), "__annotations__", {}).get("return")
+        if isinstance(returned, type) and issubclass(returned, wanted):
+            return f"It takes a {wanted.__name__}: write {written}.{each}()"
+    return f"It takes a {wanted.__name__}."
 
 
 def _wrong_struct(got: str, frame: FrameType, line: int) -> Explanation | None:
@@ -100,6 +115,9 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
     ):
         call, name = calls[0], last_name(calls[0].func)  # the library has another name for it
     takes = " or ".join(f"{name}({', '.join(form)})" for form in dict.fromkeys(map(tuple, forms)))
+    for path in dict.fromkeys(re.findall(r": ([\w.]+)", found["forms"])):
+        if members := _members(path):
+            takes += f"\n  {members}"
     if call is None:
         if passed := _text_passed(found["got"], files):
             return passed
@@ -132,10 +150,14 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
         kinds = [form[at].partition(": ")[2].partition(" = ")[0] for form in forms if at < len(form)]
         if not call.keywords and (wrong := _wrong(value, written, kinds)):
             return Explanation(f"{name}() got {wrong[0]}", f"{wrong[1]}\n  It takes: {takes}")
-    classes = [each for path in re.findall(r": ([\w.]+)", found["forms"]) if (each := class_of(path)) is not None]
-    for each in dict.fromkeys(each for each in classes if hasattr(each, "__members__")):
-        takes += f"\n  {each.__qualname__} is one of: {', '.join(each.__members__)}"
     return Explanation(f"{name}() does not take {shown}", f"It takes: {takes}")
+
+
+def _members(path: str) -> str:
+    """Return a line with the values of an enum, by its full name; empty for other classes."""
+    cls = class_of(path)
+    names = ", ".join(getattr(cls, "__members__", ()))
+    return f"{cls.__qualname__} is one of: {names}" if cls is not None and names else ""
 
 
 def _wrong(value: str, written: str, kinds: list[str]) -> tuple[str, str] | None:
@@ -148,7 +170,9 @@ def _wrong(value: str, written: str, kinds: list[str]) -> tuple[str, str] | None
     if _FUNCTION.match(value):
         return None if functions else (f"the function {written}, and not its value", f"Write {written}()")
     if value.startswith("<class "):
-        return f"the class {written}, and no object of it", f"Write {written}(...), with what its __init__ needs."
+        members = _members(value[len("<class '") : -len("'>")])
+        remedy = f"Write one of its values: {members}" if members else "with what its __init__ needs."
+        return f"the class {written}, and no object of it", remedy if members else f"Write {written}(...), {remedy}"
     if functions and (written.endswith(")") or len(functions) == len(kinds)):
         return f"the value {value}, and no function", _pass_function(written)
     is_text = value[:1] in "'\""
@@ -169,9 +193,9 @@ def _wrong(value: str, written: str, kinds: list[str]) -> tuple[str, str] | None
 
 
 def _pass_function(written: str) -> str:
-    call, _, arguments = written.partition("(")
-    without = f"Pass the function itself: {call} without (). " if arguments else ""
-    return f"{without}With arguments: lambda: {written or 'function(1)'}"
+    if re.fullmatch(r"[\w.]+\(\)", written):
+        return f"Pass the function itself: {written[:-2]} without (), or lambda: {written}"
+    return f"Write lambda: {written or 'function(1)'}"
 
 
 def _text_passed(got: str, files: RobotFiles) -> Explanation | None:
@@ -241,10 +265,16 @@ def _not_callable(error: BaseException, files: RobotFiles) -> Explanation | None
         return None
     value: Any = entry.tb_frame.f_locals.get(found[1])
     kind = "None" if value is None else f"of type {type(value).__name__}"
-    argument = next((each for call in calls_at(*where, "") for each in call.args if isinstance(each, ast.Call)), None)
-    written = ast.unparse(argument) if argument is not None else ""
-    text = f"{found[1]} must be a function, but is {kind}{f', from {written}' if written else ''}"
-    return Explanation(text, _pass_function(written))
+    called, name, written = _called_from(error, where[0]), found[1], ""
+    if called is not None:  # what the user has called, which may have another name for it
+        code, cls = called.f_code, type(called.f_locals.get("self"))
+        known = (code.co_name, cls.__name__) if code.co_name == "__init__" else (code.co_name,)
+        calls = [each for each in calls_at(*where, "") if last_name(each.func) in known]
+        passed = passed_to(calls[0], code.co_varnames[: code.co_argcount]) if len(calls) == 1 else {}
+        wrong = [each for each in passed if called.f_locals.get(each) is value]
+        name, written = (wrong[0], ast.unparse(passed[wrong[0]])) if wrong else (name, "")
+    text = f"{name} must be a function, but is {kind}{f', from {written}' if '(' in written else ''}"
+    return Explanation(text, _pass_function("" if written == "None" else written))
 
 
 def _called_from(error: BaseException, frame: FrameType) -> FrameType | None:

@@ -6,6 +6,7 @@ import ast
 import inspect
 import re
 from types import FrameType, ModuleType
+from typing import Any
 
 from ..errors import text_of
 from ..project.robot_files import RobotFiles
@@ -15,9 +16,12 @@ from .names import earlier_name
 from .places import (
     UNKNOWN,
     calls_at,
+    frames_of,
     last_name,
+    line_of_class,
     owner_of,
     parsed,
+    passed_to,
     place_of_assignment,
     robot_calls,
     statement_at,
@@ -52,6 +56,8 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return explained
     if text == "TypeError: 'module' object is not callable":
         return _module(*where)
+    if "'NoneType'" in text and frames_of(error)[-1] is where[0] and (explained := _none_from_call(*where)):
+        return explained
     if text.endswith("object is not callable"):
         return _called_value(*where, files)
     if found := _NO_NUMBER.match(text):
@@ -74,20 +80,52 @@ def _not_called(frame: FrameType, line: int, files: RobotFiles) -> Explanation |
             continue
         written, owner = ast.unparse(each), owner_of(each, frame)
         place, _, _ = place_of_assignment(type(owner), files, last_name(each))
-        remedy = f"Write () where it is set ({place})" if place else f"Write {written}()"
+        own = callable(getattr(type(owner), last_name(each), None))  # and set by no line that has run
+        remedy = f"Write () where it is set ({place})" if place and not own else f"Write {written}()"
+        if not _has_value(value, files):
+            return Explanation(f"{written} is a function, and () does not give its value", "Is the name right?")
         if isinstance(owner, type) and (instead := earlier_name(last_name(each), owner)):
             remedy = f"Instead: {instead}."
         return Explanation(f"{written} is a function, and not its value", remedy)
     return None
 
 
-def _called_where(parameter: str, frame: FrameType, line: int, files: RobotFiles) -> str:
-    """Return where the function around a line, with this parameter, is called; empty if that is unknown."""
-    functions = [each for each in ast.walk(parsed(frame.f_code.co_filename)) if isinstance(each, ast.FunctionDef)]
-    around = [each for each in functions if each.lineno <= line <= (each.end_lineno or 0)]
-    for each in (each for each in around if parameter in [argument.arg for argument in each.args.args]):
-        return next((place for place, call in robot_calls(files) if last_name(call.func) == each.name), "")
-    return ""
+def _has_value(function: Any, files: RobotFiles) -> bool:
+    """Return whether a function may have a value without arguments; not for one of the user's that returns none."""
+    code = getattr(function, "__code__", None)
+    if code is None or not files.is_project_file(code.co_filename):
+        return True
+    needed = [each for each in inspect.signature(function).parameters.values() if each.default is each.empty]
+    returns = re.search(r"\breturn [^\s#]|\blambda\b|\byield\b", inspect.getsource(function))
+    return returns is not None and all(each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD) for each in needed)
+
+
+def _no_functions(frame: FrameType, line: int, files: RobotFiles) -> Explanation | None:
+    """Explain values that a function around a line has got for parameters that it calls."""
+    called = [each.func.id for each in calls_at(frame, line, "") if isinstance(each.func, ast.Name)]
+    wrong = [each for each in called if not callable(value_of(ast.Name(each), frame))]
+    for function in ast.walk(parsed(frame.f_code.co_filename)):
+        parameters = [each.arg for each in function.args.args] if isinstance(function, ast.FunctionDef) else []
+        if not isinstance(function, ast.FunctionDef) or not function.lineno <= line <= (function.end_lineno or 0):
+            continue
+        named = [each for each in parameters if each in wrong]
+        calls = [
+            (place, passed_to(call, parameters))
+            for place, call in robot_calls(files)
+            if last_name(call.func) == function.name
+        ]
+        calls = [
+            each
+            for each in calls
+            if any(name in each[1] and not isinstance(each[1][name], ast.Lambda) for name in named)
+        ]
+        if len(calls) == 1:
+            kinds = dict.fromkeys(type(value_of(ast.Name(each), frame)).__name__ for each in named)
+            be, are = ("a function", "is a value") if len(named) == 1 else ("functions", "are values")
+            text = f"{' and '.join(named)} must be {be}, but {are} ({', '.join(kinds)})"
+            written = ", ".join(f"lambda: {ast.unparse(calls[0][1][each])}" for each in named if each in calls[0][1])
+            return Explanation(text, f"Write there: {written}", calls[0][0])
+    return None
 
 
 def _called_value(frame: FrameType, line: int, files: RobotFiles) -> Explanation | None:
@@ -99,14 +137,47 @@ def _called_value(frame: FrameType, line: int, files: RobotFiles) -> Explanation
         if value is None:
             return Explanation(f"{written} is None, and no function", ask_for(written))
         if callable(getattr(type(owner_of(call.func, frame)), last_name(call.func), None)):
-            text = f"{written} was a method, but something has set it to {value!r}"
-            return Explanation(text, f"Search for {last_name(call.func)} = and choose another name there.")
+            owner, name = owner_of(call.func, frame), last_name(call.func)
+            cls = next(each for each in type(owner).__mro__ if name in vars(each))
+            place, _, _ = place_of_assignment(type(owner), files, name)
+            if place and (method := line_of_class(cls, files, name)):
+                method = method.replace(f"{place.rpartition(':')[0]}:", "line ")
+                text = f"{place} sets {written}, which hides the method of {method}"
+                return Explanation(text, "Give one of the two another name.")
+            shown = repr(value) if isinstance(value, (bool, int, float, str)) else f"a {type(value).__name__}"
+            text = f"{written} was a method, but something has set it to {shown}"
+            return Explanation(text, f"Search for {name} = and choose another name there.")
         kind = type(value).__name__
-        if isinstance(call.func, ast.Name) and (place := _called_where(written, frame, line, files)):
-            text = f"{written} must be a function, but is a value ({kind})"
-            return Explanation(text, f"Pass a function there, as in: lambda: {value!r}", place)
+        if isinstance(call.func, ast.Name) and (explained := _no_functions(frame, line, files)):
+            return explained
         instead = f"{written}[...]" if isinstance(value, (list, tuple, dict)) else written
         return Explanation(f"{written} is a value ({kind}), and no function", f"Write {instead}, without ()")
+    return None
+
+
+def _none_from_call(frame: FrameType, line: int) -> Explanation | None:
+    """Explain a local name that is None, if its only value is that of a call in the same function."""
+    tree = parsed(frame.f_code.co_filename)
+    functions = [each for each in ast.walk(tree) if isinstance(each, ast.FunctionDef)]
+    around = [each for each in functions if each.lineno <= line <= (each.end_lineno or 0)][-1:]
+    for name in (each for each in ast.walk(statement_at(frame, line)) if isinstance(each, ast.Name)):
+        nodes = [each for function in around for each in ast.walk(function)]
+        stores = [each for each in nodes if isinstance(each, ast.Name) and each.id == name.id and each.ctx != name.ctx]
+        sets = [each for each in nodes if isinstance(each, ast.Assign) and name.id in map(last_name, each.targets)]
+        stores = [each for each in stores if isinstance(each.ctx, ast.Store)]
+        if value_of(name, frame) is not None or len(stores) != 1 or len(sets) != 1 or sets[0].lineno >= line:
+            continue
+        if isinstance(call := sets[0].value, ast.Call):
+            function, first = value_of(call.func, frame), next(iter(call.args), None)
+            text = f"{name.id} is None: {ast.unparse(call)} in line {call.lineno} returns nothing"
+            if not re.match(r".*\) -> None$", str(getattr(function, "__doc__", "")).partition("\n")[0]):
+                return Explanation(text, ask_for(ast.unparse(call)))
+            if isinstance(owner_of(call.func, frame), type) and first is not None:
+                changed = ast.unparse(first)
+                rest = ", ".join(map(ast.unparse, call.args[1:]))
+                remedy = f"Write {changed}.{last_name(call.func)}({rest}), and use {changed} in place of {name.id}."
+                return Explanation(text, remedy)
+            return Explanation(text, f"Write it without {name.id} =")
     return None
 
 

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from traceback import walk_tb
 
 from ..errors import nearest, text_of
 from ..project.robot_files import RobotFiles
 from ..season import CURRENT
 from .explanation import Explanation
 from .other_season import in_2027
-from .places import class_named, frames_of, is_in_opmode, line_of_class, users_class, users_frame
+from .places import calls_at, class_named, frames_of, is_in_opmode, line_of_class, users_class, users_frame
 
 _STACK_LINE = re.compile(r'File "([^"]+)", line (\d+)')
 _FILE_AND_LINE = re.compile(r"(?P<file>.+\.py):(?P<line>\d+)")
@@ -315,6 +316,10 @@ def _explained(row: KnownError, found: re.Match[str], error: BaseException, file
     line = line_of_class(cls, files, row.at.format_map(words)) if cls is not None and here is None else ""
     remedy = in_2027(row.remedy).format_map(words)
     if before and before == here:
+        if callers := _made_by(error, files):
+            made, place, since, remedy = callers
+            words["since"] = f": this makes a second {made}, and {since} the first"
+            return Explanation(in_2027(row.text).format_map(words), remedy, place)
         remedy = _MADE_AGAIN
     elif first is not None and is_in_opmode(*first) and (now := users_frame(error, files)) is not None:
         remedy = _MADE_BY_TWO if is_in_opmode(now[0].f_code.co_filename, now[1]) else remedy
@@ -322,6 +327,29 @@ def _explained(row: KnownError, found: re.Match[str], error: BaseException, file
 
 
 def _made_first(text: str, files: RobotFiles) -> tuple[str, int] | None:
-    """Return the file and line where a device was created before, from the stack that WPILib adds to its message."""
-    ours = [(file, int(line)) for file, line in _STACK_LINE.findall(text) if files.is_project_file(file)]
-    return ours[-1] if ours else None
+    """Return the file and line where a device was created before."""
+    return next(reversed(_first_stack(text, files)), None)
+
+
+def _first_stack(text: str, files: RobotFiles) -> list[tuple[str, int]]:
+    """Return the project's files and lines in the stack that WPILib adds to its message, outermost first."""
+    return [(file, int(line)) for file, line in _STACK_LINE.findall(text) if files.is_project_file(file)]
+
+
+def _made_by(error: BaseException, files: RobotFiles) -> tuple[str, str, str, str] | None:
+    """Return the class whose __init__ makes a device, the two places that create it, and what to do there."""
+    now = [each for each in walk_tb(error.__traceback__) if files.is_project_file(each[0].f_code.co_filename)]
+    inner = None
+    for first, (frame, line) in zip(reversed(_first_stack(str(error), files)), reversed(now), strict=False):
+        if first == (frame.f_code.co_filename, line):
+            inner = frame
+            continue
+        if inner is None or inner.f_code.co_name != "__init__":
+            return None
+        name = type(inner.f_locals["self"]).__name__
+        remedy = "Use the first here, too: keep it in a variable, and pass that."
+        if any(call.args or call.keywords for call in calls_at(frame, line, name)):
+            remedy = f"If it is the same, use the first here, too; else pass other channels to one of the two {name}."
+        place, since = f"{files.relative(frame.f_code.co_filename)}:{line}", f"{files.relative(first[0])}:{first[1]}"
+        return name, place, since, remedy
+    return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from types import FrameType, FunctionType, TracebackType
 from typing import Any
 
@@ -187,6 +187,12 @@ def value_of(expression: ast.expr, frame: FrameType) -> Any:
 def owner_of(expression: ast.expr, frame: FrameType) -> Any:
     """Return the object before the last dot; `UNKNOWN` if there is none."""
     return value_of(expression.value, frame) if isinstance(expression, ast.Attribute) else UNKNOWN
+
+
+def passed_to(call: ast.Call, parameters: Iterable[str]) -> dict[str, ast.expr]:
+    """Return the arguments of a call, by the names of the function's parameters (without `self`)."""
+    named = {each.arg: each.value for each in call.keywords if each.arg}
+    return dict(zip((each for each in parameters if each != "self"), call.args, strict=False)) | named
 
 
 def last_name(expression: ast.expr) -> str:

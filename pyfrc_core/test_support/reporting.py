@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import re
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ..compat import pytest_private
@@ -60,9 +62,20 @@ def never_ran_the_robot(item: pytest.Item, failure: pytest.ExceptionInfo[BaseExc
     error = failure.value
     if isinstance(error, PyfrcError) or isinstance(getattr(error, "obj", None), controller.TestController):
         return False  # a wrong key of `hal_data`, a misspelled method of `control`
-    if getattr(getattr(item, "function", None), "__module__", "").startswith(READY_MADE_TESTS):
+    function = getattr(item, "function", None)
+    if getattr(function, "__module__", "").startswith(READY_MADE_TESTS):
         return False  # that of docstrings looks at the robot's code only
+    if function is not None and runs_the_robot(function):
+        return False  # but has failed before
     return all(str(entry.path) != controller.__file__ for entry in failure.traceback)
+
+
+def runs_the_robot(test: Callable[..., object]) -> bool:
+    """Return whether a test has a call that runs the robot, at any of its lines."""
+    try:
+        return re.search(r"^[^#\n]*\.(run_test|run_robot)\(", inspect.getsource(test), re.MULTILINE) is not None
+    except (OSError, TypeError):
+        return False
 
 
 def seed_section(options: TestOptions, item: pytest.Item) -> tuple[str, str]:
