@@ -49,11 +49,8 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
 def _wrong_object(error: AttributeError, files: RobotFiles) -> Explanation | None:
     """Explain an object that a library's function has got from the user, and that is of a wrong type."""
     where = users_frame(error, files)
-    if (
-        where is None
-        or frames_of(error)[-1] is where[0]
-        or files.is_project_file(frames_of(error)[-1].f_code.co_filename)
-    ):
+    inner = frames_of(error)[-1] if where is not None else None
+    if where is None or inner is None or files.is_project_file(inner.f_code.co_filename):
         return None
     for call in calls_at(*where, ""):
         for each in call.args:
@@ -61,25 +58,9 @@ def _wrong_object(error: AttributeError, files: RobotFiles) -> Explanation | Non
             if error.obj in (value, getattr(value, "__func__", value)):
                 kind = "None" if error.obj is None else f"a {type(error.obj).__name__}"
                 written = ast.unparse(each)
-                remedy = f"Write {written}()" if callable(error.obj) else _taken(error, where[0], written)
+                remedy = f"Write {written}()" if callable(error.obj) else f"It needs an object with {error.name}."
                 return Explanation(f"{last_name(call.func)}() got {written}, which is {kind}", remedy)
     return None
-
-
-def _taken(error: AttributeError, frame: FrameType, written: str) -> str:
-    """Return what to write for an object of a wrong type, from the annotation of the library's parameter."""
-    called = _called_from(error, frame)
-    variables = called.f_locals if called is not None else {}
-    function = getattr(variables.get("self"), called.f_code.co_name, None) if called is not None else None
-    name = next((each for each, value in variables.items() if value is error.obj), "")
-    wanted = getattr(function, "__annotations__", {}).get(name)
-    if not isinstance(wanted, type):
-        return f"It needs an object with {error.name}."
-    for each in dir(type(error.obj)):
-        returned = getattr(getattr(type(error.obj), each), "__annotations__", {}).get("return")
-        if isinstance(returned, type) and issubclass(returned, wanted):
-            return f"It takes a {wanted.__name__}: write {written}.{each}()"
-    return f"It takes a {wanted.__name__}."
 
 
 def _wrong_struct(got: str, frame: FrameType, line: int) -> Explanation | None:
@@ -129,7 +110,8 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
         and all("self: " in form for form in found["forms"].strip().splitlines())
     ):
         return called_on_class(call, owner, where[0], files)
-    unknown = [each.arg for each in call.keywords if each.arg and not _has_parameter(forms, each.arg)]
+    known = "".join(f" {each}" for form in forms for each in form)
+    unknown = [each.arg for each in call.keywords if each.arg and f" {each.arg}: " not in known]
     if unknown:
         return Explanation(f"{name}() has no argument {unknown[0]}", f"It takes: {takes}")
     got = _written(call)
@@ -170,9 +152,9 @@ def _wrong(value: str, written: str, kinds: list[str]) -> tuple[str, str] | None
     if _FUNCTION.match(value):
         return None if functions else (f"the function {written}, and not its value", f"Write {written}()")
     if value.startswith("<class "):
-        members = _members(value[len("<class '") : -len("'>")])
-        remedy = f"Write one of its values: {members}" if members else "with what its __init__ needs."
-        return f"the class {written}, and no object of it", remedy if members else f"Write {written}(...), {remedy}"
+        members = _members(value[8:-2])
+        remedy = f"Write one of its values: {members}" if members else f"Write {written}(...), as its __init__ needs."
+        return f"the class {written}, and no object of it", remedy
     if functions and (written.endswith(")") or len(functions) == len(kinds)):
         return f"the value {value}, and no function", _pass_function(written)
     is_text = value[:1] in "'\""
@@ -220,10 +202,6 @@ def _got_none(name: str, written: str, takes: str = "") -> Explanation:
     return Explanation(f"{name}() got None, from {written}", f"{ask_for(written)}{form}")
 
 
-def _has_parameter(forms: list[list[str]], name: str) -> bool:
-    return any(each.startswith(f"{name}: ") for form in forms for each in form)
-
-
 def _parameters(text: str) -> list[str]:
     """Return the parameters of a form, such as ``["speed: number"]``, without `self`."""
     found = list(_PARAMETER.finditer(text))
@@ -266,13 +244,11 @@ def _not_callable(error: BaseException, files: RobotFiles) -> Explanation | None
     value: Any = entry.tb_frame.f_locals.get(found[1])
     kind = "None" if value is None else f"of type {type(value).__name__}"
     called, name, written = _called_from(error, where[0]), found[1], ""
-    if called is not None:  # what the user has called, which may have another name for it
-        code, cls = called.f_code, type(called.f_locals.get("self"))
-        known = (code.co_name, cls.__name__) if code.co_name == "__init__" else (code.co_name,)
-        calls = [each for each in calls_at(*where, "") if last_name(each.func) in known]
-        passed = passed_to(calls[0], code.co_varnames[: code.co_argcount]) if len(calls) == 1 else {}
-        wrong = [each for each in passed if called.f_locals.get(each) is value]
-        name, written = (wrong[0], ast.unparse(passed[wrong[0]])) if wrong else (name, "")
+    for call in calls_at(*where, "") if called is not None else ():
+        if called and last_name(call.func) in (called.f_code.co_name, type(called.f_locals.get("self")).__name__):
+            passed = passed_to(call, called.f_code.co_varnames[: called.f_code.co_argcount]).items()
+            wrong = ((each, ast.unparse(given)) for each, given in passed if called.f_locals.get(each) is value)
+            name, written = next(wrong, (name, written))
     text = f"{name} must be a function, but is {kind}{f', from {written}' if '(' in written else ''}"
     return Explanation(text, _pass_function("" if written == "None" else written))
 

@@ -6,7 +6,6 @@ import ast
 import inspect
 import re
 from types import FrameType, ModuleType
-from typing import Any
 
 from ..errors import text_of
 from ..project.robot_files import RobotFiles
@@ -17,10 +16,10 @@ from .places import (
     UNKNOWN,
     calls_at,
     frames_of,
+    functions_around,
     last_name,
     line_of_class,
     owner_of,
-    parsed,
     passed_to,
     place_of_assignment,
     robot_calls,
@@ -82,49 +81,31 @@ def _not_called(frame: FrameType, line: int, files: RobotFiles) -> Explanation |
         place, _, _ = place_of_assignment(type(owner), files, last_name(each))
         own = callable(getattr(type(owner), last_name(each), None))  # and set by no line that has run
         remedy = f"Write () where it is set ({place})" if place and not own else f"Write {written}()"
-        if not _has_value(value, files):
-            return Explanation(f"{written} is a function, and () does not give its value", "Is the name right?")
+        code = getattr(value, "__code__", None)
+        if code is not None and not re.search(r"\breturn [^\s#]|\blambda\b", inspect.getsource(code)):
+            return Explanation(f"{written} is a function, and returns nothing", "Is the name right?")
         if isinstance(owner, type) and (instead := earlier_name(last_name(each), owner)):
             remedy = f"Instead: {instead}."
         return Explanation(f"{written} is a function, and not its value", remedy)
     return None
 
 
-def _has_value(function: Any, files: RobotFiles) -> bool:
-    """Return whether a function may have a value without arguments; not for one of the user's that returns none."""
-    code = getattr(function, "__code__", None)
-    if code is None or not files.is_project_file(code.co_filename):
-        return True
-    needed = [each for each in inspect.signature(function).parameters.values() if each.default is each.empty]
-    returns = re.search(r"\breturn [^\s#]|\blambda\b|\byield\b", inspect.getsource(function))
-    return returns is not None and all(each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD) for each in needed)
-
-
 def _no_functions(frame: FrameType, line: int, files: RobotFiles) -> Explanation | None:
     """Explain values that a function around a line has got for parameters that it calls."""
-    called = [each.func.id for each in calls_at(frame, line, "") if isinstance(each.func, ast.Name)]
-    wrong = [each for each in called if not callable(value_of(ast.Name(each), frame))]
-    for function in ast.walk(parsed(frame.f_code.co_filename)):
-        parameters = [each.arg for each in function.args.args] if isinstance(function, ast.FunctionDef) else []
-        if not isinstance(function, ast.FunctionDef) or not function.lineno <= line <= (function.end_lineno or 0):
-            continue
-        named = [each for each in parameters if each in wrong]
-        calls = [
-            (place, passed_to(call, parameters))
-            for place, call in robot_calls(files)
-            if last_name(call.func) == function.name
+    called = {last_name(each.func): value_of(each.func, frame) for each in calls_at(frame, line, "")}
+    for function in functions_around(frame, line):
+        parameters = [each.arg for each in function.args.args]
+        wrong = [each for each in parameters if not callable(called.get(each, print))]
+        calls = [each for each in robot_calls(files) if last_name(each[1].func) == function.name]
+        given = [(place, [passed_to(call, parameters).get(each) for each in wrong]) for place, call in calls]
+        given = [
+            each for each in given if each[1] and not any(one is None or isinstance(one, ast.Lambda) for one in each[1])
         ]
-        calls = [
-            each
-            for each in calls
-            if any(name in each[1] and not isinstance(each[1][name], ast.Lambda) for name in named)
-        ]
-        if len(calls) == 1:
-            kinds = dict.fromkeys(type(value_of(ast.Name(each), frame)).__name__ for each in named)
-            be, are = ("a function", "is a value") if len(named) == 1 else ("functions", "are values")
-            text = f"{' and '.join(named)} must be {be}, but {are} ({', '.join(kinds)})"
-            written = ", ".join(f"lambda: {ast.unparse(calls[0][1][each])}" for each in named if each in calls[0][1])
-            return Explanation(text, f"Write there: {written}", calls[0][0])
+        if len(given) == 1:
+            kinds = ", ".join(dict.fromkeys(type(called[each]).__name__ for each in wrong))
+            be = f"functions, but are values ({kinds})" if wrong[1:] else f"a function, but is a value ({kinds})"
+            remedy = ", ".join(f"lambda: {ast.unparse(each)}" for each in given[0][1] if each is not None)
+            return Explanation(f"{' and '.join(wrong)} must be {be}", f"Write there: {remedy}", given[0][0])
     return None
 
 
@@ -157,27 +138,17 @@ def _called_value(frame: FrameType, line: int, files: RobotFiles) -> Explanation
 
 def _none_from_call(frame: FrameType, line: int) -> Explanation | None:
     """Explain a local name that is None, if its only value is that of a call in the same function."""
-    tree = parsed(frame.f_code.co_filename)
-    functions = [each for each in ast.walk(tree) if isinstance(each, ast.FunctionDef)]
-    around = [each for each in functions if each.lineno <= line <= (each.end_lineno or 0)][-1:]
-    for name in (each for each in ast.walk(statement_at(frame, line)) if isinstance(each, ast.Name)):
-        nodes = [each for function in around for each in ast.walk(function)]
-        stores = [each for each in nodes if isinstance(each, ast.Name) and each.id == name.id and each.ctx != name.ctx]
-        sets = [each for each in nodes if isinstance(each, ast.Assign) and name.id in map(last_name, each.targets)]
-        stores = [each for each in stores if isinstance(each.ctx, ast.Store)]
-        if value_of(name, frame) is not None or len(stores) != 1 or len(sets) != 1 or sets[0].lineno >= line:
-            continue
-        if isinstance(call := sets[0].value, ast.Call):
-            function, first = value_of(call.func, frame), next(iter(call.args), None)
-            text = f"{name.id} is None: {ast.unparse(call)} in line {call.lineno} returns nothing"
-            if not re.match(r".*\) -> None$", str(getattr(function, "__doc__", "")).partition("\n")[0]):
-                return Explanation(text, ask_for(ast.unparse(call)))
-            if isinstance(owner_of(call.func, frame), type) and first is not None:
-                changed = ast.unparse(first)
-                rest = ", ".join(map(ast.unparse, call.args[1:]))
-                remedy = f"Write {changed}.{last_name(call.func)}({rest}), and use {changed} in place of {name.id}."
-                return Explanation(text, remedy)
-            return Explanation(text, f"Write it without {name.id} =")
+    nodes = [each for function in functions_around(frame, line)[-1:] for each in ast.walk(function)]
+    stored = [each.id for each in nodes if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)]
+    used = [each.id for each in ast.walk(statement_at(frame, line)) if isinstance(each, ast.Name)]
+    nones = [each for each in used if frame.f_locals.get(each, UNKNOWN) is None and stored.count(each) == 1]
+    for each in (node for node in nodes if isinstance(node, ast.Assign) and last_name(node.targets[0]) in nones):
+        if isinstance(call := each.value, ast.Call):
+            name, (written, *rest) = last_name(each.targets[0]), map(ast.unparse, call.args or [call.func])
+            changed = f"{written}.{last_name(call.func)}({', '.join(rest)}), and use {written} for {name}"
+            on_class = isinstance(owner_of(call.func, frame), type)
+            remedy = f"If it changes {written}: write {changed}." if on_class else ask_for(ast.unparse(call))
+            return Explanation(f"{name} is None: {ast.unparse(call)} in line {call.lineno} returns nothing", remedy)
     return None
 
 

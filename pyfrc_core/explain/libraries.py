@@ -15,7 +15,7 @@ from ..project.robot_files import RobotFiles
 from ..season import CURRENT
 from .explanation import Explanation
 from .other_season import in_2027
-from .places import calls_at, class_named, frames_of, is_in_opmode, line_of_class, users_class, users_frame
+from .places import class_named, frames_of, is_in_opmode, line_of_class, users_class, users_frame
 
 _STACK_LINE = re.compile(r'File "([^"]+)", line (\d+)')
 _FILE_AND_LINE = re.compile(r"(?P<file>.+\.py):(?P<line>\d+)")
@@ -306,7 +306,8 @@ def _explained(row: KnownError, found: re.Match[str], error: BaseException, file
         words["expected"] = getattr(vars(cls).get(words["name"]), "__name__", "TheClass") if cls else "TheClass"
     cls = cls or users_class(error, files)
     words["cls"] = cls.__name__ if cls is not None else words.get("name", "")
-    first, here = _made_first(str(error), files), files.innermost_line(error.__traceback__, tests=False)
+    here = files.innermost_line(error.__traceback__, tests=False)
+    first = next(reversed(_first_stack(str(error), files)), None)
     before = f"{files.relative(first[0])}:{first[1]}" if first is not None else ""
     words["since"] = f", since {before}" if before else ""
     for name in ("type", "got"):
@@ -316,19 +317,11 @@ def _explained(row: KnownError, found: re.Match[str], error: BaseException, file
     line = line_of_class(cls, files, row.at.format_map(words)) if cls is not None and here is None else ""
     remedy = in_2027(row.remedy).format_map(words)
     if before and before == here:
-        if callers := _made_by(error, files):
-            made, place, since, remedy = callers
-            words["since"] = f": this makes a second {made}, and {since} the first"
-            return Explanation(in_2027(row.text).format_map(words), remedy, place)
-        remedy = _MADE_AGAIN
+        again = _made_by(error, files) or Explanation(words["since"], _MADE_AGAIN, line)
+        words["since"], remedy, line = again.text, again.remedy, again.place
     elif first is not None and is_in_opmode(*first) and (now := users_frame(error, files)) is not None:
         remedy = _MADE_BY_TWO if is_in_opmode(now[0].f_code.co_filename, now[1]) else remedy
     return Explanation(in_2027(row.text).format_map(words), remedy, line)
-
-
-def _made_first(text: str, files: RobotFiles) -> tuple[str, int] | None:
-    """Return the file and line where a device was created before."""
-    return next(reversed(_first_stack(text, files)), None)
 
 
 def _first_stack(text: str, files: RobotFiles) -> list[tuple[str, int]]:
@@ -336,20 +329,15 @@ def _first_stack(text: str, files: RobotFiles) -> list[tuple[str, int]]:
     return [(file, int(line)) for file, line in _STACK_LINE.findall(text) if files.is_project_file(file)]
 
 
-def _made_by(error: BaseException, files: RobotFiles) -> tuple[str, str, str, str] | None:
-    """Return the class whose __init__ makes a device, the two places that create it, and what to do there."""
+def _made_by(error: BaseException, files: RobotFiles) -> Explanation | None:
+    """Explain two objects of a class whose __init__ makes a device: where the first and the second are made."""
     now = [each for each in walk_tb(error.__traceback__) if files.is_project_file(each[0].f_code.co_filename)]
-    inner = None
-    for first, (frame, line) in zip(reversed(_first_stack(str(error), files)), reversed(now), strict=False):
-        if first == (frame.f_code.co_filename, line):
-            inner = frame
-            continue
-        if inner is None or inner.f_code.co_name != "__init__":
-            return None
-        name = type(inner.f_locals["self"]).__name__
-        remedy = "Use the first here, too: keep it in a variable, and pass that."
-        if any(call.args or call.keywords for call in calls_at(frame, line, name)):
-            remedy = f"If it is the same, use the first here, too; else pass other channels to one of the two {name}."
-        place, since = f"{files.relative(frame.f_code.co_filename)}:{line}", f"{files.relative(first[0])}:{first[1]}"
-        return name, place, since, remedy
+    inner = now[-1][0]
+    for (file, at), (frame, line) in zip(reversed(_first_stack(str(error), files)), reversed(now), strict=False):
+        place = f"{files.relative(frame.f_code.co_filename)}:{line}"
+        if place != (first := f"{files.relative(file)}:{at}"):
+            text = f": this makes a second {type(inner.f_locals.get('self')).__name__}, and {first} the first"
+            remedy = "Use the first here, too: pass it on. If it must be another one, it needs channels of its own."
+            return Explanation(text, remedy, place) if inner.f_code.co_name == "__init__" else None
+        inner = frame
     return None

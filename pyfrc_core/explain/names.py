@@ -17,18 +17,10 @@ from traceback import walk_tb
 from types import FrameType
 
 from ..project.robot_files import RobotFiles
+from . import places
 from .explanation import Explanation
 from .other_season import OF_WPIMATH, in_2027
-from .places import (
-    imported_name,
-    last_name,
-    owner_of,
-    parsed,
-    place_of_assignment,
-    robot_trees,
-    statement_at,
-    users_frame,
-)
+from .places import imported_name, last_name, owner_of, place_of_assignment, robot_trees, statement_at, users_frame
 
 
 def _spark(setting: str) -> str:
@@ -201,7 +193,7 @@ def _name(name: str, where: tuple[FrameType, int] | None, files: RobotFiles) -> 
             remedy="Only methods with the parameter self have it: move the line into one, such as robotInit."
         )
     if where and name in _FIXTURES and not files.is_robot_code(where[0].f_code.co_filename):
-        return Explanation(remedy=_with_fixtures(name, *where))
+        return Explanation(remedy=f"Write it as a parameter: {_with_fixtures(*where)}")
     if path := _nested(name, sys.modules.get("wpilib")):
         return Explanation(remedy=f"Did you mean {path}?")
     if home := home_of(name) or _in_project(name, files):
@@ -217,17 +209,14 @@ def _name(name: str, where: tuple[FrameType, int] | None, files: RobotFiles) -> 
     )
 
 
-def _with_fixtures(name: str, frame: FrameType, line: int) -> str:
-    """Return how the function around a line has as parameters what it has now, and each fixture that it uses."""
-    for each in ast.walk(parsed(frame.f_code.co_filename)):  # the outermost first
-        if isinstance(each, ast.FunctionDef) and each.lineno <= line <= (each.end_lineno or 0):
-            names = [node for node in ast.walk(each) if isinstance(node, ast.Name)]
-            own = {node.id for node in names if isinstance(node.ctx, ast.Store)} | {*frame.f_globals}
-            own |= {node.arg for node in ast.walk(each) if isinstance(node, ast.arg)}
-            used = sorted({node.id for node in names if node.id in _FIXTURES} - own)
-            parameters = ", ".join(filter(None, (ast.unparse(each.args), *used)))
-            return f"{name} is known as a parameter only: def {each.name}({parameters}):"
-    return f"{name} is known in a test only, as its parameter."
+def _with_fixtures(frame: FrameType, line: int) -> str:
+    """Return the head of the function around a line, with each fixture that it uses among its parameters."""
+    function = places.functions_around(frame, line)[0]
+    names = [each for each in ast.walk(function) if isinstance(each, ast.Name)]
+    own = {each.id for each in names if isinstance(each.ctx, ast.Store)} | {*frame.f_globals}
+    own |= {each.arg for each in ast.walk(function) if isinstance(each, ast.arg)}
+    used = sorted({each.id for each in names if each.id in _FIXTURES} - own)
+    return f"def {function.name}({', '.join(filter(None, (ast.unparse(function.args), *used)))}):"
 
 
 def _unbound(error: UnboundLocalError, files: RobotFiles) -> Explanation | None:
@@ -294,13 +283,14 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
     place, target, method = place_of_assignment(owner, files, name)
     if target == name:
         return Explanation(remedy=f"Write self.{name} = ... in {place}: without self, the name is known there only.")
-    called = _called_by_test(error, files)
-    if place and called is not None and method in _AT_START and method != "__init__":
-        mode = "autonomous" if called[1].startswith("auto") else "operator_control"
-        text = f"the test calls {called[1]}() itself, but {method} ({place}), which sets {name}, has not run"
-        return Explanation(
-            text, f"Instead: control.set_{mode}(enabled=True), then control.run_test(lambda tm: tm < 1)", called[0]
-        )
+    for (test, line), (called, _) in pairwise(walk_tb(error.__traceback__)):
+        file, its_name = test.f_code.co_filename, called.f_code.co_name
+        in_test = files.is_project_file(file) and not files.is_robot_code(file)
+        if in_test and files.is_robot_code(called.f_code.co_filename) and place and method in _AT_START[:-1]:
+            mode = "autonomous" if its_name.startswith("auto") else "operator_control"
+            text = f"the test calls {its_name}() itself, but {method} ({place}), which sets {name}, has not run"
+            remedy = f"Instead: control.set_{mode}(enabled=True), then control.run_test(lambda tm: tm < 1)"
+            return Explanation(text, remedy, f"{files.relative(file)}:{line}")
     if place and method in _AT_START and where is not None and not files.is_robot_code(where[0].f_code.co_filename):
         text = (
             f"the robot does not have {name} yet: {method} sets it ({place}), which runs when the test runs the robot"
@@ -311,16 +301,6 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
             remedy=f"{place} sets {name}, but has not run yet: move it to __init__ or {in_2027('robotInit')}."
         )
     return Explanation(remedy=f"Nothing has set {name}: is the line missing, or is the name misspelt?")
-
-
-def _called_by_test(error: BaseException, files: RobotFiles) -> tuple[str, str] | None:
-    """Return the place in a test that has called the robot's code itself, and the name of what it has called."""
-    for (frame, line), (called, _) in pairwise(walk_tb(error.__traceback__)):
-        file = frame.f_code.co_filename
-        in_test = files.is_project_file(file) and not files.is_robot_code(file)
-        if in_test and files.is_robot_code(called.f_code.co_filename):
-            return f"{files.relative(file)}:{line}", called.f_code.co_name
-    return None
 
 
 def _of_attribute(name: str, frame: FrameType, line: int) -> Iterator[ast.expr]:

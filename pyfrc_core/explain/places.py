@@ -189,6 +189,12 @@ def owner_of(expression: ast.expr, frame: FrameType) -> Any:
     return value_of(expression.value, frame) if isinstance(expression, ast.Attribute) else UNKNOWN
 
 
+def functions_around(frame: FrameType, line: int) -> list[ast.FunctionDef]:
+    """Return the functions whose text has a line of a file, the outermost first."""
+    functions = [each for each in ast.walk(parsed(frame.f_code.co_filename)) if isinstance(each, ast.FunctionDef)]
+    return [each for each in functions if each.lineno <= line <= (each.end_lineno or 0)]
+
+
 def passed_to(call: ast.Call, parameters: Iterable[str]) -> dict[str, ast.expr]:
     """Return the arguments of a call, by the names of the function's parameters (without `self`)."""
     named = {each.arg: each.value for each in call.keywords if each.arg}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import os
 import re
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ..compat import pytest_private
@@ -65,17 +64,9 @@ def never_ran_the_robot(item: pytest.Item, failure: pytest.ExceptionInfo[BaseExc
     function = getattr(item, "function", None)
     if getattr(function, "__module__", "").startswith(READY_MADE_TESTS):
         return False  # that of docstrings looks at the robot's code only
-    if function is not None and runs_the_robot(function):
-        return False  # but has failed before
+    if function is not None and re.search(r"^[^#\n]*\.run_(test|robot)\(", inspect.getsource(function), re.MULTILINE):
+        return False  # it has failed before that line
     return all(str(entry.path) != controller.__file__ for entry in failure.traceback)
-
-
-def runs_the_robot(test: Callable[..., object]) -> bool:
-    """Return whether a test has a call that runs the robot, at any of its lines."""
-    try:
-        return re.search(r"^[^#\n]*\.(run_test|run_robot)\(", inspect.getsource(test), re.MULTILINE) is not None
-    except (OSError, TypeError):
-        return False
 
 
 def seed_section(options: TestOptions, item: pytest.Item) -> tuple[str, str]:

@@ -168,6 +168,49 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ("speed = None\nspeed()", "speed is None, and no function", "Has anything set speed before?"),
         ("axes = [1]\naxes(0)", "axes is a value (list), and no function", "Write axes[...], without ()"),
         (
+            "class Arm:\n    def up(self): pass\n    def go(self):\n        self.up = wpilib.Timer()\n        self.up()\n"
+            "self.Arm = Arm\nArm.__module__ = 'robot'\nArm().go()",
+            "robot.py:5 sets self.up, which hides the method of line 3",
+            "another name",
+        ),
+        (
+            "class Arm:\n    def up(self, speed): pass\na = Arm()\na.up.stop()",
+            "a.up is a function, and returns nothing",
+            "Is the name right?",
+        ),
+        (
+            "def drive(forward, turn):\n    (lambda: forward() + turn())()\n"
+            "t = wpilib.Timer()\ndrive(-t.get(), turn=t.get())",
+            "robot.py:5: forward and turn must be functions, but are values (float)",
+            "Write there: lambda: -t.get(), lambda: t.get()",
+        ),
+        (
+            "m = wpilib.PWMSparkMax(1)\ncommands2.Subsystem().runEnd(m.set(-1.0), m.stopMotor)",
+            "run must be a function, but is None, from m.set(-1.0)",
+            "  Write lambda: m.set(-1.0)",
+        ),
+        (
+            "class Drive:\n    def __init__(self):\n        self.m = wpilib.PWMSparkMax(0)\na = Drive()\nb = Drive()",
+            "robot.py:6: PWM channel 0 is used already: this makes a second Drive, and robot.py:5 the first",
+            "Use the first here, too",
+        ),
+        (
+            "from wpimath.kinematics import SwerveModuleState as State\nfrom wpimath.geometry import Rotation2d\n"
+            "wanted = State()\nstate = State.optimize(wanted, Rotation2d())\nstate.speed",
+            "state is None: State.optimize(wanted, Rotation2d()) in line 5 returns nothing",
+            "write wanted.optimize(Rotation2d()), and use wanted for state",
+        ),
+        (
+            "wpilib.Solenoid(0)",
+            "Solenoid() was called with 1 value, but takes 2 to 3",
+            "PneumaticsModuleType is one of: CTREPCM, REVPH",
+        ),
+        (
+            "wpilib.Solenoid(wpilib.PneumaticsModuleType, 0)",
+            "Solenoid() got the class wpilib.PneumaticsModuleType, and no object of it",
+            "Write one of its values: PneumaticsModuleType is one of: CTREPCM, REVPH",
+        ),
+        (
             "class Arm:\n    def up(self): pass\na = Arm()\na.up = True\na.up()",
             "a.up was a method, but something has set it to True",
             "Search for up =",
@@ -291,6 +334,37 @@ def test_an_error_of_a_library_in_words(headline_of: Raise, code: str, message: 
     assert message in first
     assert remedy in rest
     assert "0x" not in text
+
+
+@pytest.mark.parametrize(
+    ("test", "message"),
+    [
+        (
+            "def test_it(control, robot):\n    hal_data['pwm']\n    control.run_test(fake_time)",
+            "NameError: name 'hal_data' is not defined\n"
+            "  Write it as a parameter: def test_it(control, robot, fake_time, hal_data):",
+        ),
+        (
+            "def test_it(control, robot):\n    robot.teleopPeriodic()",
+            "tests/test_it.py:2: the test calls teleopPeriodic() itself, but robotInit (robot.py:3), which sets drive, "
+            "has not run\n  Instead: control.set_operator_control(enabled=True)",
+        ),
+    ],
+)
+def test_an_error_of_a_test(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, test: str, message: str) -> None:
+    robot = "class Robot:\n    def robotInit(self):\n        self.drive = 1\n    def teleopPeriodic(self): self.drive\n"
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "robot.py").write_text(robot)
+    (tmp_path / "tests" / "test_it.py").write_text(test)
+    module = ModuleType("robot")
+    module.__file__ = str(tmp_path / "robot.py")
+    monkeypatch.setitem(sys.modules, "robot", module)
+    exec(compile(robot, module.__file__, "exec"), vars(module))
+    names: dict[str, Callable[..., None]] = {}
+    exec(compile(test, str(tmp_path / "tests" / "test_it.py"), "exec"), names)
+    with pytest.raises((NameError, AttributeError)) as caught:
+        names["test_it"](None, module.Robot())
+    assert message in str(headline(caught.value, RobotFiles(tmp_path)))
 
 
 def test_an_unknown_error_is_shown_as_it_is(headline_of: Raise) -> None:
