@@ -72,9 +72,8 @@ def _wrong_struct(got: str, frame: FrameType, line: int) -> Explanation | None:
             written = ast.unparse(call.args[0])
             text = f"{last_name(call.func)}() got {written}, which is of type {got}, and not of type {struct}"
             return Explanation(text, f"Write {struct}(...)")
-    return Explanation(
-        f"a value of type {got} is not of the type that the function takes", "Create an object of that type."
-    )
+    text = f"a value of type {got} is not of the type that the function takes"
+    return Explanation(text, "Create an object of that type.")
 
 
 def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles) -> Explanation:
@@ -125,9 +124,8 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
     most = max(map(len, forms), default=0)
     if needed and not needed[0] <= count <= most:
         need = f"{needed[0]}" if needed[0] == most else f"{needed[0]} to {most}"
-        return Explanation(
-            f"{name}() was called with {counted(count, 'value')}, but takes {need}", f"It takes: {takes}"
-        )
+        text = f"{name}() was called with {counted(count, 'value')}, but takes {need}"
+        return Explanation(text, f"It takes: {takes}")
     for at, (value, written) in enumerate(zip(values, got, strict=False)):
         kinds = [form[at].partition(": ")[2].partition(" = ")[0] for form in forms if at < len(form)]
         if not call.keywords and (wrong := _wrong(value, written, kinds)):

@@ -92,15 +92,13 @@ def _not_called(frame: FrameType, line: int, files: RobotFiles) -> Explanation |
 
 def _no_functions(frame: FrameType, line: int, files: RobotFiles) -> Explanation | None:
     """Explain values that a function around a line has got for parameters that it calls."""
-    called = {last_name(each.func): value_of(each.func, frame) for each in calls_at(frame, line, "")}
+    called = {ast.unparse(each.func): value_of(each.func, frame) for each in calls_at(frame, line, "")}
     for function in functions_around(frame, line):
         parameters = [each.arg for each in function.args.args]
         wrong = [each for each in parameters if not callable(called.get(each, print))]
         calls = [each for each in robot_calls(files) if last_name(each[1].func) == function.name]
         given = [(place, [passed_to(call, parameters).get(each) for each in wrong]) for place, call in calls]
-        given = [
-            each for each in given if each[1] and not any(one is None or isinstance(one, ast.Lambda) for one in each[1])
-        ]
+        given = [each for each in given if each[1] and all(each[1]) and ast.Lambda not in map(type, each[1])]
         if len(given) == 1:
             kinds = ", ".join(dict.fromkeys(type(called[each]).__name__ for each in wrong))
             be = f"functions, but are values ({kinds})" if wrong[1:] else f"a function, but is a value ({kinds})"
@@ -164,9 +162,8 @@ def _no_number(found: re.Match[str], frame: FrameType, line: int) -> Explanation
             return Explanation(f"{written} is a text, and no number", f"Write float({written}), if it has digits only.")
         if cls is not None and (numbers := numbers_of(cls)):
             shown = ", ".join(f".{each}()" for each in numbers[:6])
-            return Explanation(
-                f"{written} is an object of {cls.__name__}, and no number", f"Write one of these behind it: {shown}"
-            )
+            text = f"{written} is an object of {cls.__name__}, and no number"
+            return Explanation(text, f"Write one of these behind it: {shown}")
     return None
 
 

@@ -189,9 +189,8 @@ def _name(name: str, where: tuple[FrameType, int] | None, files: RobotFiles) -> 
     if where and name in dir(where[0].f_locals.get("self")):
         return Explanation(remedy=f"Did you mean self.{name}?")
     if name == "self":
-        return Explanation(
-            remedy="Only methods with the parameter self have it: move the line into one, such as robotInit."
-        )
+        remedy = "Only methods with the parameter self have it: move the line into one, such as robotInit."
+        return Explanation(remedy=remedy)
     if where and name in _FIXTURES and not files.is_robot_code(where[0].f_code.co_filename):
         return Explanation(remedy=f"Write it as a parameter: {_with_fixtures(*where)}")
     if path := _nested(name, sys.modules.get("wpilib")):
@@ -204,9 +203,8 @@ def _name(name: str, where: tuple[FrameType, int] | None, files: RobotFiles) -> 
     place, target, method = place_of_assignment(type(robot), files, name)
     if target == name:
         return Explanation(remedy=f"Only {method} has this {name} ({place}): write self.{name} in both places.")
-    return Explanation(
-        remedy=f"Nothing has given {name} a value: is it misspelt, or is an import or a parameter missing?"
-    )
+    remedy = f"Nothing has given {name} a value: is it misspelt, or is an import or a parameter missing?"
+    return Explanation(remedy=remedy)
 
 
 def _with_fixtures(frame: FrameType, line: int) -> str:
@@ -228,13 +226,11 @@ def _unbound(error: UnboundLocalError, files: RobotFiles) -> Explanation | None:
     if isinstance(statement, ast.AugAssign) and last_name(statement.target) == name and robot is not None:
         changed = ast.unparse(ast.AugAssign(ast.Name(f"self.{name}"), statement.op, statement.value))
         before = "" if hasattr(robot, name) else f", and self.{name} = 0 in {in_2027('robotInit')} or __init__"
-        return Explanation(
-            f"{name} has no value yet: a function forgets its names when it ends", f"Write {changed}{before}."
-        )
+        text = f"{name} has no value yet: a function forgets its names when it ends"
+        return Explanation(text, f"Write {changed}{before}.")
     if name in frame[0].f_globals:
-        return Explanation(
-            remedy=f"Keep the value in the robot, as self.{name}; or write first in the function: global {name}"
-        )
+        remedy = f"Keep the value in the robot, as self.{name}; or write first in the function: global {name}"
+        return Explanation(remedy=remedy)
     return Explanation(remedy=f"Not every way through the function sets {name}: give it a value at the beginning.")
 
 
@@ -275,9 +271,8 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
             for each, value in sorted(vars(base).items())
             if each[0] != "_" and base is not object and not isinstance(value, type)
         )
-        return Explanation(
-            remedy=f"It has: {', '.join(list(members)[:_SHOWN])}{', ...' if len(members) > _SHOWN else ''}"
-        )
+        remedy = f"It has: {', '.join(list(members)[:_SHOWN])}{', ...' if len(members) > _SHOWN else ''}"
+        return Explanation(remedy=remedy)
     if owner.__module__.partition(".")[0] in ("builtins", *_KNOWN) or isinstance(obj, type):
         return None
     place, target, method = place_of_assignment(owner, files, name)
@@ -297,9 +292,8 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
         )
         return Explanation(text, "Read it after control.run_test(...), or inside: with control.run_robot():")
     if place:
-        return Explanation(
-            remedy=f"{place} sets {name}, but has not run yet: move it to __init__ or {in_2027('robotInit')}."
-        )
+        remedy = f"{place} sets {name}, but has not run yet: move it to __init__ or {in_2027('robotInit')}."
+        return Explanation(remedy=remedy)
     return Explanation(remedy=f"Nothing has set {name}: is the line missing, or is the name misspelt?")
 
 

@@ -168,7 +168,8 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ("speed = None\nspeed()", "speed is None, and no function", "Has anything set speed before?"),
         ("axes = [1]\naxes(0)", "axes is a value (list), and no function", "Write axes[...], without ()"),
         (
-            "class Arm:\n    def up(self): pass\n    def go(self):\n        self.up = wpilib.Timer()\n        self.up()\n"
+            "class Arm:\n    def up(self): pass\n    def go(self):\n        self.up = wpilib.Timer()\n"
+            "        self.up()\n"
             "self.Arm = Arm\nArm.__module__ = 'robot'\nArm().go()",
             "robot.py:5 sets self.up, which hides the method of line 3",
             "another name",
