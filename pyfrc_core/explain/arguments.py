@@ -95,19 +95,14 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
     ):
         call, name = calls[0], last_name(calls[0].func)  # the library has another name for it
     takes = " or ".join(f"{name}({', '.join(form)})" for form in dict.fromkeys(map(tuple, forms)))
-    for path in dict.fromkeys(re.findall(r": ([\w.]+)", found["forms"])):
-        if members := _members(path):
-            takes += f"\n  {members}"
+    takes += "".join(map(_members, dict.fromkeys(re.findall(r": ([\w.]+)", found["forms"]))))
     if call is None:
         if passed := _text_passed(found["got"], files):
             return passed
         return Explanation(f"{name}() got arguments that it does not take", f"It takes: {takes}")
     owner = owner_of(call.func, where[0]) if where is not None and name == found["name"] else None
-    if (
-        isinstance(owner, type)
-        and where is not None
-        and all("self: " in form for form in found["forms"].strip().splitlines())
-    ):
+    of_objects = all("self: " in form for form in found["forms"].strip().splitlines())
+    if isinstance(owner, type) and where is not None and of_objects:
         return called_on_class(call, owner, where[0], files)
     known = "".join(f" {each}" for form in forms for each in form)
     unknown = [each.arg for each in call.keywords if each.arg and f" {each.arg}: " not in known]
@@ -134,10 +129,10 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
 
 
 def _members(path: str) -> str:
-    """Return a line with the values of an enum, by its full name; empty for other classes."""
+    """Return a further line with the values of an enum, by its full name; empty for other classes."""
     cls = class_of(path)
     names = ", ".join(getattr(cls, "__members__", ()))
-    return f"{cls.__qualname__} is one of: {names}" if cls is not None and names else ""
+    return f"\n  {cls.__qualname__} is one of: {names}" if cls is not None and names else ""
 
 
 def _wrong(value: str, written: str, kinds: list[str]) -> tuple[str, str] | None:
@@ -151,17 +146,15 @@ def _wrong(value: str, written: str, kinds: list[str]) -> tuple[str, str] | None
         return None if functions else (f"the function {written}, and not its value", f"Write {written}()")
     if value.startswith("<class "):
         members = _members(value[8:-2])
-        remedy = f"Write one of its values: {members}" if members else f"Write {written}(...), as its __init__ needs."
+        remedy = f"Write one of its values.{members}" if members else f"Write {written}(...), as its __init__ needs."
         return f"the class {written}, and no object of it", remedy
     if functions and (written.endswith(")") or len(functions) == len(kinds)):
         return f"the value {value}, and no function", _pass_function(written)
     is_text = value[:1] in "'\""
     if is_text and "str" not in kinds:
         number = value[1:-1] if re.fullmatch(r".-?\d+(\.\d+)?.", value) else ""
-        return (
-            f"{written}, a text",
-            f"Write it without quotes: {number}" if number else f"It must be: {' or '.join(kinds)}.",
-        )
+        remedy = f"Write it without quotes: {number}" if number else f"It must be: {' or '.join(kinds)}."
+        return f"{written}, a text", remedy
     if re.fullmatch(r"-?\d+(\.\d+)?|True|False", value) and kinds == ["str"]:
         return f"{written}, which is no text", f"Write str({written}), or the text in quotes."
     if (of := re.match(r"<(?:[\w.]*\.)?(\w+) ", value)) and kinds == ["number"]:

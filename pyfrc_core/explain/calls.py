@@ -230,12 +230,8 @@ def called_on_class(call: ast.Call, cls: type, frame: FrameType, files: RobotFil
         if hasattr(cls, method):
             return Explanation(text, f"Write {written}.{method}().{name}(...)")
     if written.rpartition(".")[2] == cls.__name__:
-        return Explanation(
-            text, f"Create an object in robotInit, as in: self.it = {written}(...). Then call: self.it.{name}(...)"
-        )
+        remedy = f"Create an object in robotInit, as in: self.it = {written}(...). Then call: self.it.{name}(...)"
+        return Explanation(text, remedy)
     passed = (place for place, call in robot_calls(files) if cls.__name__ in map(last_name, call.args))
-    return Explanation(
-        f"{written} is the class {cls.__name__}, and no object of it",
-        f"Write {cls.__name__}(...), with what its __init__ needs.",
-        next(passed, ""),
-    )
+    text = f"{written} is the class {cls.__name__}, and no object of it"
+    return Explanation(text, f"Write {cls.__name__}(...), with what its __init__ needs.", next(passed, ""))

@@ -239,10 +239,8 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
     owner = obj if isinstance(obj, type) else type(obj)
     is_module = owner.__module__ == "builtins" and not isinstance(obj, type)
     module = getattr(obj, "__name__", "") if is_module else owner.__module__
-    is_library = any(
-        base.partition(".")[0] in (*_KNOWN, "pyfrc_core")
-        for base in (module, *(each.__module__ for each in owner.__mro__))
-    )
+    bases = (module, *(each.__module__ for each in owner.__mro__))
+    is_library = any(base.partition(".")[0] in (*_KNOWN, "pyfrc_core") for base in bases)
     if is_library and (instead := earlier_name(name, owner)):
         what = module if is_module else owner.__name__
         any_more = "" if owner.__module__.startswith("pyfrc_core") else " any more"

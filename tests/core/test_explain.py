@@ -209,7 +209,7 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         (
             "wpilib.Solenoid(wpilib.PneumaticsModuleType, 0)",
             "Solenoid() got the class wpilib.PneumaticsModuleType, and no object of it",
-            "Write one of its values: PneumaticsModuleType is one of: CTREPCM, REVPH",
+            "Write one of its values.\n  PneumaticsModuleType is one of: CTREPCM, REVPH",
         ),
         (
             "class Arm:\n    def up(self): pass\na = Arm()\na.up = True\na.up()",
