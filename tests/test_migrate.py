@@ -226,7 +226,9 @@ def test_links_out_of_the_project_are_named(project: RobotProject) -> None:
 @pytest.mark.slow
 def test_other_environments_and_hidden_directories_are_left_alone(project: RobotProject) -> None:
     old = "import wpilib.drive\n"
-    project.write({"venv/pyvenv.cfg": "", "venv/lib/a.py": old, "mine/pyvenv.cfg": "", "mine/lib/b.py": old, ".hidden/c.py": old})
+    project.write(
+        {"venv/pyvenv.cfg": "", "venv/lib/a.py": old, "mine/pyvenv.cfg": "", "mine/lib/b.py": old, ".hidden/c.py": old}
+    )
     project.run("migrate")
     for name in ("venv/lib/a.py", "mine/lib/b.py", ".hidden/c.py"):
         assert text(project, name) == old

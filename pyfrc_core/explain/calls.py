@@ -32,7 +32,7 @@ from .returned import class_of, numbers_of
 #: How Python names a function in the text of an error about a value.
 _FUNCTION = r"(?:method|builtin_function_or_method|function|instancemethod)"
 _OF_A_FUNCTION = re.compile(
-    rf"AttributeError: ('{_FUNCTION}' object|__enter__)|TypeError: (?!.*arguments).*\b{_FUNCTION}\b"
+    rf"AttributeError: ('{_FUNCTION}' object|__enter__)|TypeError: (?!.*arguments).*(?:'|not |type ){_FUNCTION}\b"
 )
 _NO_NUMBER = re.compile(
     r"TypeError: (?:'.+' not supported between instances of|unsupported operand type.*?:|bad operand type.*?:) "

@@ -5,7 +5,8 @@ from __future__ import annotations
 import inspect
 import os
 import re
-from typing import TYPE_CHECKING
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
 
 from ..compat import pytest_private
 from ..errors import PyfrcError
@@ -61,11 +62,12 @@ def never_ran_the_robot(item: pytest.Item, failure: pytest.ExceptionInfo[BaseExc
     error = failure.value
     if isinstance(error, PyfrcError) or isinstance(getattr(error, "obj", None), controller.TestController):
         return False  # a wrong key of `hal_data`, a misspelled method of `control`
-    function = getattr(item, "function", None)
+    function: Any = getattr(item, "function", None)
     if getattr(function, "__module__", "").startswith(READY_MADE_TESTS):
         return False  # that of docstrings looks at the robot's code only
-    if function is not None and re.search(r"^[^#\n]*\.run_(test|robot)\(", inspect.getsource(function), re.MULTILINE):
-        return False  # it has failed before that line
+    with suppress(OSError, TypeError):  # no function, or one without a file
+        if re.search(r"^[^#\n]*\.run_(test|robot)\(", inspect.getsource(function), re.MULTILINE):
+            return False  # it has failed before that line
     return all(str(entry.path) != controller.__file__ for entry in failure.traceback)
 
 
