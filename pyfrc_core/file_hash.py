@@ -27,7 +27,7 @@ def open_file(file: Path) -> BinaryIO:
 
 
 def _without_waiting(file: str, flags: int) -> int:
-    return os.open(file, flags | getattr(os, "O_NONBLOCK", 0))
+    return os.open(file, flags | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
 
 
 def hash_file(file: Path, copy: Path | None = None) -> tuple[str, int]:
