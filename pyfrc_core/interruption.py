@@ -26,9 +26,11 @@ class Interruption:
         self.number: int | None = None
         self._call: Callable[[], object] | None = None
         self._finishing = self._over = False
+        self._process = 0
 
     def begin(self) -> None:
         """Handle signals from now on, but those that are ignored, as nohup has it. Forks of this process do not."""
+        self._process = os.getpid()
         if hasattr(os, "register_at_fork"):
             os.register_at_fork(after_in_child=self._leave)
         for number in _ENDING:
@@ -80,6 +82,8 @@ class Interruption:
 
     def _handle(self, number: int, frame: FrameType | None) -> None:
         __tracebackhide__ = True
+        if os.getpid() != self._process:  # a fork that has not left yet: a signal of the command's may be pending in it
+            return
         if self._over:
             os._exit(self.exit_code(128 + number))
         # Only once for a closed terminal, which the system and the shell both report.
