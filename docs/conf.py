@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gc
+import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -17,6 +19,10 @@ from sphinx.application import Sphinx  # noqa: E402
 from sphinx.pycode import ModuleAnalyzer  # noqa: E402
 
 from pyfrc import __version__  # noqa: E402
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from generated import expanded  # noqa: E402
 
 project = "pyfrc"
 version = release = __version__
@@ -72,7 +78,12 @@ def fixtures_without_parameters(
     return None
 
 
+def with_tables(app: Sphinx, page: str, source: list[str]) -> None:
+    source[0] = expanded(source[0])
+
+
 def setup(app: Sphinx) -> None:
     copy_comments()
+    app.connect("source-read", with_tables)
     app.connect("autodoc-process-docstring", without_field_numbers)
     app.connect("autodoc-process-signature", fixtures_without_parameters)

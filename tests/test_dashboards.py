@@ -95,7 +95,7 @@ def test_a_mistake_in_the_file_has_its_line(root: Path, now: str, then: str, mes
 
 
 def test_the_example_of_the_documentation(tmp_path: Path) -> None:
-    text = (Path(__file__).parents[1] / "docs" / "dashboards.md").read_text("utf-8")
+    text = (Path(__file__).parents[1] / "docs/reference/dashboards.md").read_text("utf-8")
     (example,) = re.findall("^```json\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
     (tmp_path / "sim").mkdir()
     (tmp_path / DASHBOARDS).write_text(example, "utf-8")

@@ -23,7 +23,7 @@ from pyfrc_core.deploy.robot_packages import ImportSearch, PackageProblem, unfit
 from pyfrc_core.deploy.targets import CONTROLLERS
 from pyfrc_core.errors import SettingsError
 
-GUIDE = (Path(__file__).parents[1] / "docs/deploy.md").read_text("utf-8")
+GUIDE = (Path(__file__).parents[1] / "docs/reference/deploy.md").read_text("utf-8")
 KEYS = ("robotpy_version", "components", "requires")
 NOTHING = RobotPackages(None, (), (), {})
 OURS = version("wpilib")

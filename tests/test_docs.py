@@ -7,6 +7,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 
@@ -38,6 +39,14 @@ def files(document: str) -> dict[str, str]:
         assert first.startswith("# "), f"an example that is no file: {block}"
         named[first.removeprefix("# ")] = rest
     return named
+
+
+#: The rule of a turret, which the robot of `pyfrc init` has not.
+RULES = "tests/rules.py"
+
+
+def files_of(pages: Iterable[str]) -> dict[str, str]:
+    return {name: text for page in pages for name, text in files(f"docs/{page}").items()}
 
 
 def json_files(document: str) -> dict[str, str]:
@@ -77,30 +86,56 @@ def project(new_project):
     return new_project
 
 
+TESTING = (
+    "explanation/time.md",
+    "how_to/keep_a_rule.md",
+    "how_to/test_a_lost_driver_station.md",
+    "how_to/a_motor_does_nothing.md",
+    "how_to/test_a_limit_switch.md",
+    "how_to/test_an_autonomous.md",
+    "how_to/write_a_test.md",
+    "reference/hal_data.md",
+    "reference/ready_made_tests.md",
+    "reference/testing.md",
+)
+
+
 def test_the_examples_in_the_testing_guide_pass(new_project) -> None:
-    new_project.write(files("docs/testing.md"))
-    result = new_project.run("test", "--project", "two_modes", "--", "-v")
-    assert list(result.outcomes().values()) == ["PASSED"] * 3, result.output
-    shutil.rmtree(new_project.path / "two_modes")
-    (settings,) = blocks("docs/testing.md", "toml")
+    examples = files_of(TESTING)
+    examples["switch/robot.py"] = files("docs/how_to/test_a_limit_switch.md")["elevator/robot.py"]
+    for file in [RULES, *(file for file in examples if file.startswith("elevator/"))]:
+        del examples[file]
+    new_project.write(examples)
+    for directory, tests in (("two_modes", 3), ("switch", 1)):
+        result = new_project.run("test", "--project", directory, "--", "-v")
+        assert list(result.outcomes().values()) == ["PASSED"] * tests, result.output
+        shutil.rmtree(new_project.path / directory)
+    (settings,) = blocks("docs/reference/settings.md", "toml")
     for real, short in (("autonomous = 15", "autonomous = 2"), ("teleop = 135", "teleop = 5")):
         assert real in settings
         settings = settings.replace(real, short)
     add_settings(new_project.path, settings)
     result = new_project.run("test", "--", "-v")
     assert result.code == 0, result.output
-    for file in files("docs/testing.md"):
-        assert file.startswith("two_modes/") or any(test.startswith(f"{file}::") for test in result.outcomes()), file
+    for file in examples:
+        assert not file.startswith("tests/") or any(test.startswith(f"{file}::") for test in result.outcomes()), file
 
 
-#: Its section on WPILib 2027 is tested by `season_2027/test_physics.py`.
-PHYSICS = {file: text for file, text in files("docs/physics.md").items() if not file.startswith("wpilib_2027/")}
+PHYSICS_PAGES = (
+    "how_to/create_physics.md",
+    "how_to/simulate_a_camera.md",
+    "how_to/simulate_a_drivetrain.md",
+    "how_to/simulate_an_arm.md",
+    "how_to/test_a_limit_switch.md",
+    "reference/physics.md",
+)
+PHYSICS = files_of(PHYSICS_PAGES)
 PHYSICS_PROJECTS = sorted({file.rpartition("/")[0] for file in PHYSICS if f"/{file}".endswith("/physics.py")})
 
 
 @pytest.mark.parametrize("directory", sampled(PHYSICS_PROJECTS, *PHYSICS_PROJECTS[::3]))
 def test_the_examples_in_the_physics_guide_pass(directory: str, project) -> None:
-    project.write(PHYSICS | json_files("docs/physics.md"))
+    project.write(PHYSICS | json_files("docs/how_to/simulate_a_camera.md"))
     result = project.run("test", "--", "-v", cwd=project.path / directory)
     assert result.code == 0, result.output
     here = f"{directory}/tests/".removeprefix("/")
@@ -111,11 +146,15 @@ def test_the_examples_in_the_physics_guide_pass(directory: str, project) -> None
 
 @pytest.mark.slow
 def test_the_examples_in_the_replay_guide_work(project) -> None:
-    (script,) = re.findall(r"^`(tests/.+[.]jsonl)`:$", (ROOT / "docs/replay.md").read_text("utf-8"), re.MULTILINE)
-    project.write(files("docs/replay.md") | {script: blocks("docs/replay.md", "json")[0]})
+    (script,) = re.findall(
+        r"^`(tests/.+[.]jsonl)`:$", (ROOT / "docs/how_to/record_and_replay.md").read_text("utf-8"), re.MULTILINE
+    )
+    project.write(
+        files("docs/how_to/record_and_replay.md") | {script: blocks("docs/how_to/record_and_replay.md", "json")[0]}
+    )
     result = project.run("test", "--", "-v")
     assert result.outcomes()["tests/test_replay.py::test_the_script"] == "PASSED", result.output
-    for command in commands("docs/replay.md"):
+    for command in commands("docs/how_to/record_and_replay.md"):
         result = project.run(*shlex.split(command)[1:])
         assert result.code == 0, result.output
 
@@ -123,10 +162,11 @@ def test_the_examples_in_the_replay_guide_work(project) -> None:
 @pytest.mark.slow
 def test_the_examples_in_the_fuzzing_guide_work(make_project) -> None:
     """The robot has a bug, which is found, kept and replayed; repaired, it has none."""
-    document = "docs/fuzzing.md"
-    project = make_project(files(document))
-    campaigns = [command for command in commands(document) if "--time" in command]
-    for command in commands(document):
+    document, rules = "docs/how_to/find_crashes.md", "docs/how_to/keep_a_rule.md"
+    project = make_project(files(document) | {RULES: files(rules)[RULES]})
+    written = commands(document) + commands("docs/explanation/fuzzing.md")
+    campaigns = [command for command in written if "--time" in command]
+    for command in written:
         if command not in campaigns:
             result = project.run(*shlex.split(command)[1:])
             assert result.code == 1, result.output
@@ -139,14 +179,12 @@ def test_the_examples_in_the_fuzzing_guide_work(make_project) -> None:
     repaired = robot.read_text("utf-8").replace("270: -0.5}", "270: -0.5, 315: -0.3}")
     robot.write_text(repaired.rpartition("        else:\n")[0], "utf-8")
     result = project.run("fuzz", "--seed", "1", "--runs", "8")
-    broken, found = (
-        re.sub(r"\b(is|at) -?[\d.]+", r"\1 N", text) for text in (blocks(document, "text")[1], result.stdout)
-    )
+    broken, found = (re.sub(r"\b(is|at) -?[\d.]+", r"\1 N", text) for text in (blocks(rules, "text")[0], result.stdout))
     assert broken in found, result.output  # another seed, another POV
     for file in (project.path / "tests/fuzz").glob("invariant-*"):
         file.unlink()
     robot.write_text(repaired, "utf-8")
-    project.write({"pyproject.toml": blocks(document, "toml")[0]})
+    project.write({"pyproject.toml": blocks("docs/reference/fuzz_findings.md", "toml")[0]})
     add_settings(project.path, SHORT_MATCH)
     assert len(campaigns) == 2
     for command in ["pyfrc test", *campaigns]:
@@ -157,14 +195,12 @@ def test_the_examples_in_the_fuzzing_guide_work(make_project) -> None:
 @pytest.mark.slow
 def test_the_examples_in_the_simulation_guide_work(project) -> None:
     pytest.importorskip("PIL")
-    document = "docs/simulation.md"
-    for command in commands(document):
-        if "--opmode" in command:  # of WPILib 2027: in season_2027/test_simulator.py
-            continue
+    pages = [f"docs/how_to/{page}.md" for page in ("drive_in_the_browser", "simulate_without_a_window")]
+    for command in [command for page in pages for command in commands(page)]:
         result = project.run(*shlex.split(command)[1:])
         assert result.code == 0, result.output
     assert (project.path / ".runs/path.png").is_file()
-    project.write(files(document))
+    project.write(files_of(["how_to/draw_on_the_field.md", "how_to/simulate_in_a_program.md"]))
     result = project.run("sim", "--ui", "none", "--mode", "auto", "--seconds", "1", "--project", "drawing")
     assert result.code == 0, result.output
     done = subprocess.run(
@@ -175,7 +211,7 @@ def test_the_examples_in_the_simulation_guide_work(project) -> None:
 
 
 def test_the_examples_in_the_guide_to_logs_work(project) -> None:
-    for command in commands("docs/view.md"):
+    for command in commands("docs/how_to/look_at_a_log.md") + commands("docs/how_to/compare_with_a_log.md"):
         result = project.run(*shlex.split(command)[1:])
         assert result.code == 0, result.output
     assert {file.name for file in (project.path / ".runs").glob("*.html")} == {"before.html", "both.html"}
@@ -183,7 +219,7 @@ def test_the_examples_in_the_guide_to_logs_work(project) -> None:
 
 def test_the_robot_in_the_guide_to_2027_becomes_what_is_shown_there(make_project) -> None:
     pytest.importorskip("libcst")
-    document = "docs/migrate.md"
+    document = "docs/how_to/from_2026_to_2027.md"
     project = make_project(files(document))
     check, migrate = (shlex.split(command)[1:] for command in commands(document))
     assert project.run(*check).code == 1
@@ -193,19 +229,21 @@ def test_the_robot_in_the_guide_to_2027_becomes_what_is_shown_there(make_project
 
 
 def test_the_guide_to_2027_lists_every_option() -> None:
-    (table,) = re.findall(r"^\| option \|.*\n(?:\|.*\n)+", (ROOT / "docs/migrate.md").read_text("utf-8"), re.MULTILINE)
+    (table,) = re.findall(
+        r"^\| option \|.*\n(?:\|.*\n)+", (ROOT / "docs/reference/migrate.md").read_text("utf-8"), re.MULTILINE
+    )
     options = {name for each in cli.get_command(CONTEXT, "migrate").params for name in each.opts if name[:2] == "--"}
     assert set(re.findall(r"`(--\w+)`", table)) == options - {"--project", "--verbose", "--quiet"}
 
 
 def test_the_robot_of_2026_on_the_page_of_2027_passes(make_project) -> None:
-    examples = files("docs/2027_from_2026.md")
+    examples = files("docs/reference/wpilib_2027.md")
     ours = {name.removeprefix("robot_2026/"): text for name, text in examples.items() if name.startswith("robot_2026/")}
     result = make_project(ours).run("test", "--", "-v")
     assert list(result.outcomes().values()) == ["PASSED"], result.output
 
 
-COMING_FROM = ("docs/from_pyfrc_2019.md", "docs/from_todays_pyfrc.md")
+COMING_FROM = ("docs/how_to/from_pyfrc_2019.md", "docs/how_to/from_todays_pyfrc.md")
 
 
 @pytest.mark.parametrize("document", sampled(COMING_FROM))
@@ -235,7 +273,7 @@ def test_the_commands_that_take_the_place_of_others_exist(document: str) -> None
 
 @pytest.mark.slow
 def test_the_commands_in_the_measuring_guide_work(project) -> None:
-    for command in commands("docs/measuring.md"):
+    for command in [*commands("docs/how_to/measure_coverage.md")[2:], *commands("docs/reference/profile.md")]:
         if "--html profile.html" in command:
             pytest.importorskip("pyinstrument")
         result = project.run(*shlex.split(command)[1:])
@@ -247,7 +285,7 @@ def test_the_commands_in_the_measuring_guide_work(project) -> None:
 
 @pytest.mark.slow
 def test_the_examples_of_a_slow_and_a_fast_robot_work(make_project) -> None:
-    document = "docs/speed.md"
+    document = "docs/how_to/loop_overruns.md"
     project = make_project(files(document))
     medians = {}
     for command in commands(document):
@@ -262,9 +300,21 @@ def test_the_examples_of_a_slow_and_a_fast_robot_work(make_project) -> None:
     assert medians["fast"] < medians["slow"]
 
 
-@pytest.mark.parametrize(
-    "command", sampled(commands("docs/testing.md") + commands("docs/physics.md"), "pyfrc test --no-isolation")
-)
+GUIDES_COMMANDS = [
+    command
+    for page in (
+        *TESTING,
+        *PHYSICS_PAGES,
+        "explanation/isolation.md",
+        "how_to/measure_coverage.md",
+        "how_to/tests_are_slow.md",
+    )
+    for command in commands(f"docs/{page}")
+    if not command.startswith("pyfrc coverage")  # they are in the test of measuring
+]
+
+
+@pytest.mark.parametrize("command", sampled(GUIDES_COMMANDS, "pyfrc test --no-isolation"))
 def test_the_commands_in_the_guides_work(command: str, project) -> None:
     program, *arguments = shlex.split(command)
     assert program == "pyfrc"
@@ -276,7 +326,7 @@ def test_the_page_on_getting_started_leads_to_a_driving_robot(make_project) -> N
     """Its commands, one after the other, each in the directory to which those before it have led."""
     project = make_project({})
     place = project.path
-    for command in commands("docs/getting_started.md"):
+    for command in commands("docs/tutorials/first_robot.md"):
         program, *arguments = shlex.split(command)
         if program == "cd":
             place /= arguments[0]
@@ -291,7 +341,7 @@ def test_the_page_on_getting_started_leads_to_a_driving_robot(make_project) -> N
 
 
 def test_the_page_on_getting_started_lists_the_templates(written) -> None:
-    page = (ROOT / "docs/getting_started.md").read_text("utf-8")
+    page = (ROOT / "docs/tutorials/first_robot.md").read_text("utf-8")
     assert re.findall(r"^\| `([a-z-]+)` \|", page, re.MULTILINE) == list(TEMPLATES)
     named = re.findall(
         r"^\| `([^`*]+)`", page.partition("Each project has")[2].partition("## Test it")[0], re.MULTILINE
@@ -314,7 +364,7 @@ def test_the_readmes_commands_exist_in_the_makefile() -> None:
         assert re.search(rf"^{target}:", makefile, re.MULTILINE)
 
 
-@pytest.mark.parametrize("document", ["README.md", "docs/commands.md"])
+@pytest.mark.parametrize("document", ["README.md", "docs/reference/commands.md"])
 def test_the_tables_of_commands_list_every_command(document: str) -> None:
     (table,) = re.findall(r"^\| command \|.*\n(?:\|.*\n)+", (ROOT / document).read_text("utf-8"), re.MULTILINE)
     first_column = "".join(row.split("|")[1] for row in table.splitlines()[2:])
@@ -326,10 +376,11 @@ def test_the_tables_of_commands_list_every_command(document: str) -> None:
 
 def test_the_fuzzing_guide_lists_every_check() -> None:
     checks = {name for name, value in asdict(FuzzSettings()).items() if isinstance(value, bool)}
-    text = (ROOT / "docs/fuzzing.md").read_text("utf-8")
+    document = "docs/reference/fuzz_findings.md"
+    text = (ROOT / document).read_text("utf-8")
     (table,) = re.findall(r"^\| setting \|.*\n(?:\|.*\n)+", text, re.MULTILINE)
     assert set(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)) == checks
-    (example,) = (block for block in blocks("docs/fuzzing.md", "toml") if block.startswith("[tool.pyfrc.fuzz]"))
+    (example,) = (block for block in blocks(document, "toml") if block.startswith("[tool.pyfrc.fuzz]"))
     assert set(re.findall(r"^(\w+) = (?:true|false)", example, re.MULTILINE)) == checks
 
 
@@ -339,7 +390,7 @@ def test_the_fuzzing_guide_lists_every_check() -> None:
         "README.md",
         "CONTRIBUTING.md",
         "benchmarks/README.md",
-        *sorted(f"docs/{file.name}" for file in (ROOT / "docs").glob("*.md")),
+        *sorted(file.relative_to(ROOT).as_posix() for file in (ROOT / "docs").rglob("*.md")),
     ],
 )
 def test_links_lead_somewhere(document: str) -> None:
@@ -359,7 +410,7 @@ def headings(file: Path) -> list[str]:
 
 def test_the_modules_in_the_map_exist() -> None:
     """Those with a room before them, such as `runtime.clock`; a name after a module's is one of the module's own."""
-    text = (ROOT / "docs/architecture.md").read_text("utf-8")
+    text = (ROOT / "docs/explanation/architecture.md").read_text("utf-8")
     rooms = {path.parent.name for path in (ROOT / "pyfrc_core").glob("*/__init__.py")} | {"pyfrc_cli"}
     named = [name for name in re.findall(r"`([a-z_]+(?:[.][A-Za-z_]+)+)`", text) if name.partition(".")[0] in rooms]
     assert len(named) >= 30
@@ -374,7 +425,9 @@ def test_the_modules_in_the_map_exist() -> None:
         ), name
 
 
-@pytest.mark.parametrize(("document", "most"), [("docs/architecture.md", 12_000), ("benchmarks/README.md", 6_000)])
+@pytest.mark.parametrize(
+    ("document", "most"), [("docs/explanation/architecture.md", 12_000), ("benchmarks/README.md", 6_000)]
+)
 def test_a_page_to_read_at_once_stays_short(document: str, most: int) -> None:
     assert len((ROOT / document).read_bytes()) <= most
 
@@ -398,6 +451,6 @@ def test_each_place_outside_of_a_project_is_listed() -> None:
     asks = re.compile(r"platformdirs\.user_|Path\.home\(\)|\.expanduser\(")
     found = {file.relative_to(core).as_posix() for file in core.rglob("*.py") if asks.search(file.read_text("utf-8"))}
     assert found == listed.keys()
-    text = (ROOT / "docs/commands.md").read_text("utf-8")
+    text = (ROOT / "docs/reference/commands.md").read_text("utf-8")
     for name in filter(None, listed.values()):
         assert f"| {name} |" in text

@@ -50,7 +50,7 @@ def test_it_builds_without_a_warning(build: tuple[subprocess.CompletedProcess[st
 
 def test_the_api_pages_list_every_documented_name(build: tuple[subprocess.CompletedProcess[str], Path]) -> None:
     entries = listed(build[1])
-    assert [name for name in NAMES if not entries.get(name, "").startswith("api/")] == []
+    assert [name for name in NAMES if not entries.get(name, "").startswith("reference/api/")] == []
 
 
 def test_they_list_everything_that_is_public(build: tuple[subprocess.CompletedProcess[str], Path]) -> None:

@@ -21,8 +21,8 @@ from started_commands import StartedCommand, start_command
 
 pytestmark = requires("campaigns on a cluster", [] if find_spec("distributed") else ["Dask"])
 
-DOCS = (Path(__file__).parents[1] / "docs/fuzzing.md").read_text("utf-8")
-_ON_A_CLUSTER = DOCS.partition("### On a cluster")[2].partition("\n## ")[0]
+DOCS = (Path(__file__).parents[1] / "docs/how_to/fuzz_every_night.md").read_text("utf-8")
+_ON_A_CLUSTER = DOCS.partition("## On a cluster")[2].partition("\n## ")[0]
 _BLOCKS = re.findall(r"```sh\n(.*?)```", _ON_A_CLUSTER, re.DOTALL)
 #: The commands of the documentation, as lists of arguments.
 INSTALL, SCHEDULER, WORKER, FUZZ = (shlex.split(line) for block in _BLOCKS for line in block.splitlines())

@@ -324,7 +324,7 @@ def test_the_settings_name_the_packages_of_the_new_season(project: RobotProject,
 
 @pytest.mark.slow
 def test_five_thousand_lines_are_valid_afterwards(make_project: MakeProject) -> None:
-    """How long it took is in docs/migrate.md."""
+    """How long it took is in docs/reference/migrate.md."""
     files = {f"part{number}.py": DRIVE for number in range(200)}
     project = make_project({"robot.py": ROBOT, "subsystems/drive.py": DRIVE, **files})
     project.run("migrate")

@@ -1,4 +1,4 @@
-"""sim/config.json: what holds, what is told of mistakes, and what docs/config.md says of it."""
+"""sim/config.json: what holds, what is told of mistakes, and what docs/reference/sim_config.md says of it."""
 
 from __future__ import annotations
 
@@ -323,7 +323,7 @@ SCHEMA = jsonschema.Draft202012Validator(json.loads(sim_config_schema()))
 
 # -- the document ---------------------------------------------------------------------------------------------------
 
-DOCUMENT = (Path(__file__).parents[1] / "docs/config.md").read_text("utf-8")
+DOCUMENT = (Path(__file__).parents[1] / "docs/reference/sim_config.md").read_text("utf-8")
 (EXAMPLE,) = re.findall(r"^```json\n(.*?)^```$", DOCUMENT, re.MULTILINE | re.DOTALL)
 #: The table's keys (without the pyfrc before each), and their defaults as they stand there.
 ROWS = dict(re.findall(r"^[|] `([^`]+)` [|] [^|]+ [|] ([^|]+) [|] [^|]+ [|]$", DOCUMENT, re.MULTILINE))

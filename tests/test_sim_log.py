@@ -265,8 +265,8 @@ TURNING = """
 
 
 def test_a_sensor_can_freeze_in_the_match_of_a_log(make_project: MakeProject) -> None:
-    """As `docs/view.md` says: the log as a script, to which a line is added."""
-    guide = (Path(__file__).parents[1] / "docs" / "view.md").read_text("utf-8")
+    """As `docs/how_to/compare_with_a_log.md` says: the log as a script, to which a line is added."""
+    guide = (Path(__file__).parents[1] / "docs/how_to/compare_with_a_log.md").read_text("utf-8")
     (line,) = re.findall(r"^```json\n(.*)\n```$", guide, re.MULTILINE)
     project = make_project({"robot.py": WRIST, "physics.py": TURNING, "drive.jsonl": DRIVEN})
     assert project.run(*SIM, "--script", "drive.jsonl").code == 0

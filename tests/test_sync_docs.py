@@ -1,4 +1,4 @@
-"""docs/sync.md: its commands work one after the other, and its lists are complete."""
+"""The pages about `pyfrc sync`: their commands work one after the other, and their lists are complete."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from pyfrc_cli.sync import command
 from pyfrc_core.season import SEASONS
 from pyfrc_core.sync import addresses
 
-GUIDE = (Path(__file__).parents[1] / "docs/sync.md").read_text("utf-8")
+DOCS = Path(__file__).parents[1] / "docs"
+GUIDE = "".join((DOCS / page).read_text("utf-8") for page in ("how_to/download_for_the_robot.md", "reference/sync.md"))
 
 
 def blocks(kind: str) -> list[str]:

@@ -202,7 +202,7 @@ def test_only_who_may_drive_can_drop_a_log(tmp_path: Path) -> None:
 
 
 def test_a_match_of_a_thousand_values_opens(tmp_path: Path) -> None:
-    """All values, any moment and any curve of 300,000 records; `docs/view.md` says how long larger ones take."""
+    """All values, any moment and any curve of 300,000 records; `how_to/look_at_a_log.md` has larger ones."""
     log = Written()
     entries = [log.start(f"NT:/values/{number}", "double") for number in range(1000)]
     pieces = [log.data]

@@ -326,7 +326,7 @@ def test_a_command_that_a_signal_ends_gives_the_exit_code_of_a_shell(project: Ro
 
 
 def test_the_guides_example_deploys(project: RobotProject) -> None:
-    guide = (Path(__file__).parents[1] / "docs/deploy.md").read_text("utf-8")
+    guide = (Path(__file__).parents[1] / "docs/how_to/deploy_without_a_robot.md").read_text("utf-8")
     (example,) = re.findall(r"^```sh\npyfrc (virtual-robot .*)\n```$", guide, re.MULTILINE)
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     result = project.run(*shlex.split(example), env={"PATH": path})

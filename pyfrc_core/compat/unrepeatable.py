@@ -1,7 +1,8 @@
 """What a library simulates differently in each run: these values do not repeat.
 
 In real time: CTRE's phoenix6 (26.3) simulates on threads of its own. Its clock is the computer's, it does not follow
-WPILib's stepped time, and its devices answer some milliseconds later. ``docs/vendors.md`` has the measurements.
+WPILib's stepped time, and its devices answer some milliseconds later. The measurements are in
+``docs/explanation/determinism.md``.
 
 With noise: REV's `SparkSim.iterate` (2026.0) and WPILib's mechanisms with `measurementStdDevs` draw it from generators
 that start by chance and that nothing can seed. `runtime.patches.noise` reports here what has drawn some.

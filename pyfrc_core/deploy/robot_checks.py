@@ -1,6 +1,6 @@
 """Checks whether the robot is ready for a Python program, with a remedy for each problem.
 
-`pyfrc deploy`, `pyfrc doctor` and docs/deploy.md share the instructions for preparing a robot.
+`pyfrc deploy`, `pyfrc doctor` and docs/how_to/prepare_a_robot.md share the instructions for preparing a robot.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ def _our_wpilib() -> str:
         ) from None
 
 
-_SECTION = 'docs/deploy.md, "A freshly imaged robot", has every step.'
+_SECTION = "docs/how_to/prepare_a_robot.md has every step."
 
 #: How to install the packages in ``[tool.robotpy]`` on the robot, and how to prepare it.
 INSTALL_PACKAGES = "with internet: pyfrc sync; then at the robot: pyfrc deploy"

@@ -83,7 +83,7 @@ class _SafeRedirects(urllib.request.HTTPRedirectHandler):
         if urlsplit(newurl).scheme not in ("https", req.type):
             raise DownloadError(
                 f"{req.full_url} redirects to {newurl}, which is not encrypted: nothing was taken from there",
-                remedy="Use another network, or another address: docs/sync.md.",
+                remedy="Use another network, or another address: docs/reference/sync.md.",
             )
         return super().redirect_request(req, fp, code, msg, headers, newurl)
 
@@ -290,7 +290,7 @@ def _other_address(wanted: Download) -> str | None:
 def _unreachable(wanted: Download, why: str) -> DownloadError:
     remedy = "Connect this computer to the internet, and run pyfrc sync again: it goes on where it ended."
     if "certificate" in why:
-        remedy = "Try: pyfrc sync --use-certifi. docs/sync.md has more about certificates."
+        remedy = "Try: pyfrc sync --use-certifi. docs/reference/sync.md has more about certificates."
     return DownloadError(f"{wanted.what} cannot be downloaded from {_host(wanted)}: {why}", remedy=remedy)
 
 
@@ -299,7 +299,7 @@ def _refused(wanted: Download, refused: urllib.error.HTTPError) -> DownloadError
     if refused.code == 404 and (correct := _other_address(wanted)):
         return DownloadError(f"{wanted.what} is not at {wanted.url}", remedy=correct)
     if refused.code == 404:
-        remedy = "Run pyfrc sync --upgrade for versions that are there now; or see docs/sync.md for another address."
+        remedy = "Run pyfrc sync --upgrade for versions that are there now. Other addresses: docs/reference/sync.md."
         return DownloadError(f"{wanted.what} is no longer at {wanted.url}", remedy=remedy)
     text = f"{wanted.what} cannot be downloaded from {_host(wanted)}: HTTP {refused.code} {refused.reason}"
     return DownloadError(text, remedy="Run pyfrc sync again later: it goes on where it ended.")

@@ -65,7 +65,7 @@ def unreachable_index(printed: str) -> PyfrcError:
         "has filled."
     )
     if found is not None and found[2]:
-        remedy = "A network that inspects connections needs its certificate in pip's settings: docs/sync.md."
+        remedy = "A network that inspects connections needs its certificate in pip's settings: docs/reference/sync.md."
     return PyfrcError(f"{_tried_indexes(printed)} cannot be reached: {why.strip()}", remedy=remedy)
 
 

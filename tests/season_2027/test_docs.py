@@ -8,7 +8,7 @@ from pathlib import Path
 from conftest import MakeProject
 
 DOCS = Path(__file__).parents[2] / "docs"
-TESTING = DOCS / "testing.md"
+TESTING = DOCS / "how_to/use_opmodes.md"
 ROBOT = """
     import wpilib
     import wpilib_drivers
@@ -55,7 +55,7 @@ def test_opmodes_in_tests(make_project: MakeProject) -> None:
     assert result.stdout.count("PASSED") == 1 + 3 + 2
 
 
-PAGE = (DOCS / "2027_from_2026.md").read_text("utf-8")
+PAGE = (DOCS / "reference/wpilib_2027.md").read_text("utf-8")
 
 MODES = """
     import wpilib

@@ -1,4 +1,4 @@
-"""The keys of 2027's hardware in `hal_data`, as `docs/testing.md` has them."""
+"""The keys of 2027's hardware in `hal_data`, as `docs/reference/hal_data.md` has them."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ def test_a_sample_robot(make_project: MakeProject, name: str) -> None:
     ("name", "module", "package"), [("magic_swerve", "rev", "robotpy-rev"), ("ctre_swerve", "phoenix6", "phoenix6")]
 )
 def test_a_competition_robot(make_project: MakeProject, name: str, module: str, package: str) -> None:
-    """What its vendor's package needs is in docs/migrate.md."""
+    """What its vendor's package needs is in docs/reference/migrate.md."""
     require("a robot with a vendor's devices", [] if find_spec(module) else [package])
     project = migrated(make_project, ROBOTS / "competition" / name)
     add_settings(project.path, SHORT_MATCH)  # phoenix6 goes on in real time: the whole match took 14 minutes

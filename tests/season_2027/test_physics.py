@@ -64,7 +64,7 @@ def test_what_create_physics_writes_moves_the_robot(make_project: MakeProject) -
 
 def test_the_example_in_the_physics_guide_passes(make_project: MakeProject) -> None:
     place = "wpilib_2027/"
-    examples = files("docs/physics.md").items()
+    examples = files("docs/reference/wpilib_2027.md").items()
     project = make_project({file.removeprefix(place): text for file, text in examples if file.startswith(place)})
     result = project.run("test")
     assert result.code == 0, result.output

@@ -110,12 +110,7 @@ def test_what_cannot_be_chosen(arguments: tuple[str, ...], said: str, make_proje
 
 
 def test_the_guides_example_works(make_project: MakeProject) -> None:
-    guide = (
-        (Path(__file__).parents[2] / "docs" / "simulation.md")
-        .read_text("utf-8")
-        .partition("\n## Opmodes\n")[2]
-        .partition("\n## ")[0]
-    )
+    guide = (Path(__file__).parents[2] / "docs/how_to/use_opmodes.md").read_text("utf-8")
     (robot,) = re.findall(r"```python\n(.*?)```", guide, re.DOTALL)
     project = make_project({"leaving/robot.py": robot})
     commands = re.findall(r"^\$ pyfrc (.*)", guide, re.MULTILINE)
