@@ -22,17 +22,21 @@ _NEVER = 1 << 62
 
 
 class Periodic:
-    """One callback with its own rate."""
+    """One callback with its own rate.
 
-    __slots__ = ("call", "due_us", "period_us")
+    :param order: which of several that are due at once comes first
+    """
 
-    def __init__(self, call: Callable[[], object], first_due_us: int, period_us: int) -> None:
+    __slots__ = ("call", "due_us", "order", "period_us")
+
+    def __init__(self, call: Callable[[], object], first_due_us: int, period_us: int, order: int) -> None:
         self.call = call
         self.due_us = first_due_us
         self.period_us = period_us
+        self.order = order
 
     def __lt__(self, other: Periodic) -> bool:
-        return self.due_us < other.due_us
+        return (self.due_us, self.order) < (other.due_us, other.order)
 
     def move_on(self, called_at_us: int) -> None:
         """Fix the next time, skipping the periods that were missed, as WPILib does."""
@@ -42,8 +46,9 @@ class Periodic:
 class TimedLoop:
     """The callbacks of one `TimedRobot`.
 
-    They are in a heap, as in WPILib. Which of several that are due at once comes first, depends on what was taken from
-    it and put into it before: Python's heaps break ties as the C++ library of the robot does.
+    They are in a heap, as in WPILib. Which of several that are due at once comes first, depends in 2026 on what was taken
+    from it and put into it before: Python's heaps break ties as the C++ library of the robot does. In 2027 they keep the
+    order in which they were added, the robot's own turn first.
 
     :param created_us: when the robot was constructed; its periods count from there
     :param on_initialized: called when the robot's own initialisation is over
@@ -62,6 +67,7 @@ class TimedLoop:
         self._on_initialized = on_initialized
         self._created_us = created_us
         self._callbacks: list[Periodic] = []
+        self._added = 0
         self._turn_of_robot: Periodic | None = None
         #: Whether the clock calls what is due: from the end of `robotInit` on.
         self.in_place = False
@@ -98,9 +104,19 @@ class TimedLoop:
             self._turn_of_robot = self.schedule(robots.turn_of(robot), self._created_us + period_us, period_us)
         return self._turn_of_robot
 
-    def schedule(self, call: Callable[[], object], first_due_us: int, period_us: int) -> Periodic:
-        """Put a callback, or WPILib's loop, into the schedule."""
-        callback = Periodic(call, first_due_us, period_us)
+    def next_order(self) -> int:
+        """Return the order of the callback that is added next, among those that are due at once."""
+        self._added += robots.CALLBACKS_KEEP_THEIR_ORDER
+        return self._added
+
+    def schedule(
+        self, call: Callable[[], object], first_due_us: int, period_us: int, order: int | None = None
+    ) -> Periodic:
+        """Put a callback, or WPILib's loop, into the schedule.
+
+        :param order: from `next_order`, for a callback that comes before others that were added earlier
+        """
+        callback = Periodic(call, first_due_us, period_us, self.next_order() if order is None else order)
         heappush(self._callbacks, callback)
         return callback
 

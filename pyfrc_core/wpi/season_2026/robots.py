@@ -38,6 +38,9 @@ MAGIC_SIMULATION_PERIODIC = PrivateName(
     "runtime.time.simulation_periodic switches outputs off while it looks at a disabled robot",
 )
 
+#: Whether callbacks that are due at once are called in the order in which they were added.
+CALLBACKS_KEEP_THEIR_ORDER = False
+
 #: WPILib's classes of robots, whose constructors make a robot.
 BASES: tuple[type[Any], ...] = (wpilib.RobotBase, wpilib.IterativeRobotBase, wpilib.TimedRobot, wpilib.TimesliceRobot)
 #: The functions that make a robot and run it, which robot code of earlier years calls.

@@ -29,6 +29,9 @@ OPMODE_LOOP_FUNCTION = PrivateName(
     "wpilib:OpModeRobotBase._loop_func", "runtime.time.timed_loop runs one turn of an OpModeRobot's loop by it"
 )
 
+#: Whether callbacks that are due at once are called in the order in which they were added.
+CALLBACKS_KEEP_THEIR_ORDER = True
+
 #: WPILib's classes of robots, whose constructors make a robot.
 BASES: tuple[type[Any], ...] = (
     wpilib.RobotBase,

@@ -44,6 +44,8 @@ class _Callbacks:
     def __init__(self, opmode: Any, loop: TimedLoop) -> None:
         self._loop, self._opmode = loop, weakref.ref(opmode)
         self.selected = station.selected_opmode()
+        # On a robot, where an opmode's constructor takes time, `periodic` is due a little before what it has added.
+        self._order = loop.next_order()
         self.started = False
         # Those of `get_callbacks` are wrapped: what runs has no name, and no line.
         callbacks = opmode.get_callbacks()
@@ -75,7 +77,7 @@ class _Callbacks:
             if (each := opmode()) is not None:
                 each.periodic()
 
-        self._scheduled.append(loop.schedule(periodic, loop.loop_start_us + period_us, period_us))
+        self._scheduled.append(loop.schedule(periodic, loop.loop_start_us + period_us, period_us, self._order))
 
     def _watched(
         self,
