@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from sim_robots import FILES
 
 from pyfrc_core.errors import UsageError
+from pyfrc_core.season import CURRENT
 from pyfrc_core.sim.engine.extensions import check_installed
 from pyfrc_core.sim.ui.picture import check_pictures
 
@@ -133,15 +135,19 @@ def test_windows_need_a_display(project) -> None:
     assert (result.code, result.first_error) == (2, "--mode is for simulations without a window")
 
 
-@pytest.mark.parametrize(
-    ("name", "package"), [("gui", "robotpy-halsim-gui"), ("ds-socket", "robotpy-halsim-ds-socket")]
-)
+@pytest.mark.parametrize(("name", "package"), [("gui", "robotpy-halsim-gui"), ("ws-server", "robotpy-halsim-ws")])
 def test_what_is_not_installed_is_said(name: str, package: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda module: None)
     with pytest.raises(UsageError, match=f"pip install {package}"):
         check_installed([name])
     with pytest.raises(UsageError, match=r"pip install .pyfrc\[picture\]"):
         check_pictures(Path("path.png"))
+
+
+def test_an_extension_that_does_nothing_in_a_season_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pyfrc_core.sim.engine.extensions.CURRENT", replace(CURRENT, year=2027))
+    with pytest.raises(UsageError, match="ds-socket does nothing with WPILib 2027"):
+        check_installed(["ds-socket"])
 
 
 def test_a_robot_that_fails(project, make_project) -> None:

@@ -90,12 +90,14 @@ class UserFunctions:
     def _scheduling(self, real: Callable[..., Periodic]) -> Callable[..., Periodic]:
         """Wrap `TimedLoop.schedule`, for the loop itself and for callbacks with their own rate."""
 
-        def schedule(loop: TimedLoop, call: Callable[[], object], first_due_us: int, period_us: int) -> Periodic:
+        def schedule(
+            loop: TimedLoop, call: Callable[[], object], first_due_us: int, period_us: int, *order: int
+        ) -> Periodic:
             if getattr(call, "__name__", "") == robots.LOOP_FUNCTION.name:
                 call = self._stopwatch.timed(self._wrap(call), WHOLE_LOOP, period_us * 1000)
             elif (code := _code_of(call)) is None or not is_pyfrc(code.co_filename):  # else it calls a timed method
                 call = self._timed(call, "periodic", period_ns=period_us * 1000)
-            return real(loop, call, first_due_us, period_us)
+            return real(loop, call, first_due_us, period_us, *order)
 
         return schedule
 

@@ -1,7 +1,7 @@
 """What each class of robots calls in a turn of its loop, beside WPILib's own loop, call by call.
 
-The same robot goes through the same driver-station packets twice: in a process with nothing of pyfrc, where WPILib's loop
-runs on a thread and HAL time is stepped, and in `pyfrc test`. The two lists of calls are equal.
+The same robot goes through the same driver-station packets twice: in a process with nothing of pyfrc, where WPILib's
+loop runs on a thread and HAL time is stepped, and in `pyfrc test`. The two lists of calls are equal.
 """
 
 from __future__ import annotations

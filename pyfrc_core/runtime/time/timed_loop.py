@@ -46,9 +46,9 @@ class Periodic:
 class TimedLoop:
     """The callbacks of one `TimedRobot`.
 
-    They are in a heap, as in WPILib. Which of several that are due at once comes first, depends in 2026 on what was taken
-    from it and put into it before: Python's heaps break ties as the C++ library of the robot does. In 2027 they keep the
-    order in which they were added, the robot's own turn first.
+    They are in a heap, as in WPILib. Which of several that are due at once comes first, depends in 2026 on what was
+    taken from it and put into it before: Python's heaps break ties as the C++ library of the robot does. In 2027 they
+    keep the order in which they were added, the robot's own turn first.
 
     :param created_us: when the robot was constructed; its periods count from there
     :param on_initialized: called when the robot's own initialisation is over
