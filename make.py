@@ -143,6 +143,11 @@ def templates_2027(environment: Environment, arguments: Sequence[str]) -> None:
     run([environment.python, "tests/make_2027.py", *arguments])
 
 
+def mutants(environment: Environment, arguments: Sequence[str]) -> None:
+    """Change pyfrc in one place at a time, and see whether a test fails."""
+    run([environment.python, "tests/mutants.py", *arguments])
+
+
 def install(environment: Environment, arguments: Sequence[str]) -> None:
     """Create the environment with the tools for pyfrc's tests, and do no more."""
 
@@ -150,13 +155,24 @@ def install(environment: Environment, arguments: Sequence[str]) -> None:
 TASKS: dict[str, Callable[[Environment, Sequence[str]], None]] = {
     task.__name__.replace("_", "-"): task
     for task in (
-        *(demo, test, test_like_windows, test_like_macos, check, check_platforms, docs, templates_2027, install),
+        *(
+            demo,
+            test,
+            test_like_windows,
+            test_like_macos,
+            check,
+            check_platforms,
+            docs,
+            templates_2027,
+            mutants,
+            install,
+        ),
     )
 }
 
 
 #: Those that take arguments.
-WITH_OPTIONS = ("test", "test-like-windows", "test-like-macos", "templates-2027")
+WITH_OPTIONS = ("test", "test-like-windows", "test-like-macos", "templates-2027", "mutants")
 
 
 def main(words: Sequence[str]) -> None:
@@ -172,7 +188,7 @@ def main(words: Sequence[str]) -> None:
         "arguments",
         nargs=argparse.REMAINDER,
         metavar="...",
-        help="for the tests: options of pytest; for templates-2027: --patches",
+        help="for the tests: options of pytest; for templates-2027: --patches; for mutants: --help",
     )
     options = parser.parse_args(words)
     if options.arguments and options.task not in WITH_OPTIONS:

@@ -123,12 +123,7 @@ class Logging(Part):
             handlers, filters, level, propagate, disabled = self._before.get(
                 name, ((), (), logging.NOTSET, True, False)
             )
-            for handler in [each for each in logger.handlers if each not in handlers]:
-                logger.removeHandler(handler)
-            for each in [each for each in logger.filters if each not in filters]:
-                logger.removeFilter(each)
-            for handler in [each for each in handlers if each not in logger.handlers]:
-                logger.addHandler(handler)
+            logger.handlers[:], logger.filters[:] = handlers, filters
             logger.setLevel(level)
             logger.propagate, logger.disabled = propagate, disabled
 

@@ -1,0 +1,84 @@
+"""Parts of a deploy that a whole command seldom shows: files after a power cut, compiled forms, versions."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+
+from pyfrc_core.deploy.agent import disk
+from pyfrc_core.deploy.agent.compiling import CompiledForms
+from pyfrc_core.deploy.robot_packages import _fits, _same
+
+
+def test_a_file_is_on_the_disk_before_it_has_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "record.json"
+    file.write_text("old")
+    there: list[tuple[str, int, bytes, int]] = []
+
+    def fsync(descriptor: int) -> None:
+        (beside,) = (each for each in tmp_path.iterdir() if each != file)
+        about = os.fstat(descriptor)
+        assert about.st_ino == beside.stat().st_ino
+        there.append((beside.name, about.st_size, file.read_bytes(), stat.S_IMODE(file.stat().st_mode)))
+
+    monkeypatch.setattr(disk.os, "fsync", fsync)
+    file.chmod(0o600)
+    disk.write_whole(file, "new \udcff", 0o755)
+    assert there == [(".record.json.new", 5, b"old", 0o600)]
+    assert (file.read_bytes(), stat.S_IMODE(file.stat().st_mode)) == (b"new \xff", 0o755)
+    assert list(tmp_path.iterdir()) == [file]
+    assert disk.text_of(file) == "new \udcff"
+    assert disk.text_of(tmp_path) is None
+    disk.write_whole(file, "")
+    assert stat.S_IMODE(file.stat().st_mode) == 0o644
+
+
+def test_compiled_forms_are_linked_beside_the_link_of_their_source(tmp_path: Path) -> None:
+    old, new = tmp_path / "old", tmp_path / "new"
+    cache = old / "__pycache__"
+    cache.mkdir(parents=True)
+    new.mkdir()
+    names = ["arm.cpython-314.opt-1.pyc", "arm.cpython-314.pyc", "army.cpython-314.pyc"]
+    for name in names:
+        (cache / name).write_text(name)
+    forms = CompiledForms()
+    assert forms.of(f"{old}/arm.py") == [f"{cache}/{name}" for name in names[:2]]
+    # A source without one, and what is no source, are complete.
+    assert forms.link(f"{old}/leg.py", f"{new}/leg.py") is True
+    assert forms.link(f"{old}/arm.json", f"{new}/arm.json") is True
+    # Of damaged ones, none is linked, and the source is not complete.
+    assert forms.link(f"{old}/arm.py", f"{new}/arm.py", lambda form: False) is False
+    assert list(new.iterdir()) == []
+    assert forms.link(f"{old}/arm.py", f"{new}/arm.py", lambda form: form != f"{cache}/{names[0]}") is False
+    assert [each.name for each in (new / "__pycache__").iterdir()] == [names[1]]
+    assert forms.link(f"{old}/arm.py", f"{new}/arm.py") is True
+    assert sorted(each.name for each in (new / "__pycache__").iterdir()) == names[:2]
+    for name in names[:2]:
+        assert (new / "__pycache__" / name).samefile(cache / name)
+
+
+@pytest.mark.parametrize(
+    ("version", "needed", "fits"),
+    [
+        ("1.2", "six>=1", True),
+        ("1.2", "six>=2", False),
+        ("1.2", "six", True),
+        ("2.0b1", "six>=1", True),  # a preview that is installed was asked for
+        ("2.0b1", "six>=2", False),
+        ("as I like", "six>=2", True),  # unknown
+    ],
+)
+def test_which_versions_fit_a_requirement(version: str, needed: str, fits: bool) -> None:
+    assert _fits(version, Requirement(needed)) is fits
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "same"),
+    [("1.0", "1", True), ("1.0", "1.0", True), ("1.0", "1.1", False), ("odd", "odd", True), ("odd", "1", False)],
+)
+def test_which_versions_are_the_same(one: str, other: str, same: bool) -> None:
+    assert _same(one, other) is same

@@ -1,0 +1,235 @@
+"""How tests in processes of their own are reported: what each has sent, in order, and what of one that has crashed."""
+
+from __future__ import annotations
+
+import sys
+import types
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pyfrc_core.project.robot_files import RobotFiles
+from pyfrc_core.test_support.isolation import loop
+from pyfrc_core.test_support.isolation.loop import IsolatedTests, _made_up, _other_parameters, _report, _stop_if_asked
+from pyfrc_core.test_support.reporting import BUG
+
+SEED = ("pyfrc", "random seed: 1")
+
+
+class Report(SimpleNamespace):
+    """A report as the test's process sends it."""
+
+
+class Item:
+    """A test. Its hooks note in `log` what they are called for."""
+
+    def __init__(self, name: str, log: list[str], **options: Any) -> None:
+        self.nodeid, self.location, self.keywords = name, ("t.py", 1, name), {name: 1}
+        self.reports: list[Any] = []
+        self.session = SimpleNamespace(shouldstop="", shouldfail="")
+        self.fixturenames = options.get("fixtures", ("control",))
+        self.module = options.get("module")
+
+        def logged(report: Any) -> None:
+            self.reports.append(report)
+            log.append(f"{name} {report.when} {report.outcome}")
+
+        self.ihook = SimpleNamespace(
+            pytest_runtest_logreport=logged,
+            pytest_runtest_logstart=lambda **about: log.append(f"{name} starts"),
+            pytest_runtest_logfinish=lambda **about: log.append(f"{name} ends"),
+        )
+        config: Any = SimpleNamespace(rootpath="/project")
+        config.hook = SimpleNamespace(pytest_report_from_serializable=lambda config, data: data)
+        config.pluginmanager = SimpleNamespace(getplugin=lambda name: None)
+        self.config = config
+
+
+def phase(when: str, outcome: str = "passed") -> tuple[str, object]:
+    return "report", Report(when=when, outcome=outcome, failed=outcome == "failed")
+
+
+class Process:
+    """A test's process with these messages."""
+
+    def __init__(self, *messages: tuple[str, object], finished: bool = True, crash: str = "crashed") -> None:
+        self.closed = 0
+        self.worker = SimpleNamespace(
+            messages=lambda: messages, finished=finished, describe_exit=lambda files, where: f"{crash} {where}"
+        )
+
+    def captured(self) -> str:
+        return "printed"
+
+    def close(self) -> None:
+        self.closed += 1
+
+
+PASSED = [phase("setup"), phase("call"), phase("teardown"), ("done", None)]
+
+
+def reported(*messages: tuple[str, object], crash: str = "crashed") -> tuple[list[str], list[Any]]:
+    log: list[str] = []
+    item: Any = Item("a", log)
+    process: Any = Process(*messages, crash=crash)
+    _report(item, process, RobotFiles(Path("/robot")), SEED)
+    return log, item.reports
+
+
+def test_what_was_sent_is_reported_and_no_more() -> None:
+    assert reported(*PASSED)[0] == ["a setup passed", "a call passed", "a teardown passed"]
+
+
+@pytest.mark.parametrize(
+    ("messages", "log"),
+    [
+        ([], ["setup passed", "call failed", "teardown passed"]),
+        ([phase("setup")], ["setup passed", "call failed", "teardown passed"]),
+        ([phase("setup"), phase("call")], ["setup passed", "call passed", "teardown failed"]),
+        ([phase("setup"), phase("call", "failed")], ["setup passed", "call failed", "teardown failed"]),
+        # Of a setup that has failed, no call is made up.
+        ([phase("setup", "failed")], ["setup failed", "teardown failed"]),
+        (
+            [phase("setup"), phase("call"), phase("teardown")],
+            ["setup passed", "call passed", "teardown passed", "teardown failed"],
+        ),
+    ],
+)
+def test_a_crash_is_a_failure_of_the_phase_that_did_not_end(messages: list[Any], log: list[str]) -> None:
+    found, reports = reported(*messages)
+    assert found == [f"a {each}" for each in log]
+    (crash,) = (each for each in reports if isinstance(each, pytest.TestReport) and each.outcome == "failed")
+    assert crash.longrepr == "crashed in the middle of the test"
+    assert crash.sections == [("Captured output of the process", "printed"), SEED]
+    made_up = [each for each in reports if isinstance(each, pytest.TestReport) and each is not crash]
+    assert all((each.longrepr, each.sections) == (None, []) for each in made_up)
+
+
+def test_a_crash_at_a_robots_line_counts_as_its_bug(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(loop, "headline_is_the_robots", lambda text, files: text.startswith("robot.py"))
+    _, reports = reported(crash="robot.py:12: SIGSEGV at 0x12")
+    assert getattr(reports[1], BUG) == "robot.py:12: SIGSEGV at # in the middle of the test"
+    _, reports = reported(crash="somewhere")
+    assert not any(hasattr(each, BUG) for each in reports)
+
+
+def test_a_made_up_report_without_output_has_the_seed_only() -> None:
+    item: Any = Item("a", [])
+    assert _made_up(item, "call", "why", "", SEED).sections == [SEED]
+    assert _made_up(item, "call", None, "printed", SEED).sections == []
+    assert _made_up(item, "call", "why", "", SEED).keywords == {"a": 1}
+
+
+# -- the loop ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def plugin() -> Any:
+    files = SimpleNamespace(is_robot_code=lambda name: name.endswith("arm.py"))
+    return SimpleNamespace(
+        options=SimpleNamespace(isolation="fork", seed=1, jobs="auto"), project=SimpleNamespace(files=files)
+    )
+
+
+def test_tests_are_reported_in_their_order_however_they_end(plugin: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    log: list[str] = []
+    items: list[Any] = [Item(name, log) for name in "abc"]
+    processes = [Process(*PASSED, finished=number > 0) for number in range(3)]
+    tests = IsolatedTests(plugin)
+    tests._running = dict(zip(items, processes, strict=True))  # type: ignore[arg-type]
+    waiting = list(items)
+    waits: list[int] = []
+
+    def wait_for_any(workers: list[Any]) -> None:
+        waits.append(len(workers))
+        processes[0].worker.finished = True
+
+    monkeypatch.setattr(loop, "wait_for_any", wait_for_any)
+    monkeypatch.setattr(tests, "_tell_standstills", lambda config: log.append("standstills"))
+    session: Any = SimpleNamespace(shouldfail="", shouldstop="", config=None)
+    tests._finish(session, waiting, down_to=1)
+    assert log == []  # one is running, and one may be
+    tests._finish(session, waiting, down_to=0)
+    of = ["starts", "setup passed", "call passed", "teardown passed", "ends"]
+    assert log == ["standstills", *(f"{name} {what}" for name in "abc" for what in of)]
+    assert (waits, waiting, tests._running) == ([3], [], {})
+    assert [each.closed for each in processes] == [1, 1, 1]
+
+
+@pytest.mark.parametrize(
+    ("fixtures", "names", "robotic"),
+    [
+        (("control",), {}, True),
+        (("tmp_path",), {}, False),
+        ((), {"wpilib": types.ModuleType("wpilib")}, True),
+        ((), {"Timer": type("Timer", (), {"__module__": "wpilib._wpilib"})}, True),
+        ((), {"math": types.ModuleType("math"), "x": 1}, False),
+        ((), {"arm": types.ModuleType("arm")}, True),
+        ((), {"wpilibs": types.ModuleType("wpilibs")}, False),
+    ],
+)
+def test_which_tests_use_the_robot(
+    plugin: Any, monkeypatch: pytest.MonkeyPatch, fixtures: tuple[str, ...], names: dict[str, Any], robotic: bool
+) -> None:
+    monkeypatch.setitem(sys.modules, "arm", SimpleNamespace(__file__="/robot/arm.py"))
+    item: Any = Item("a", [], fixtures=fixtures, module=SimpleNamespace(**names))
+    assert IsolatedTests(plugin)._uses_robot(item) is robotic
+
+
+def test_more_interpreters_are_started_only_where_they_have_enough_to_do(plugin: Any) -> None:
+    tests = IsolatedTests(plugin)
+    some: list[Any] = [Item(str(number), []) for number in range(7)]
+    assert [tests._worth_starting(some[:number]) for number in (0, 1, 5, 6, 7)] == [1, 1, 1, 2, 2]
+    other: Any = Item("x", [], fixtures=())
+    assert tests._worth_starting([other] * 6) == 1
+    plugin.options.isolation = "spawn"
+    assert tests._worth_starting(some) == 7
+
+
+def test_who_runs_the_tests_otherwise(plugin: Any) -> None:
+    tests = IsolatedTests(plugin)
+
+    def left(collects: bool = False, has_dsession: bool = False, **config: Any) -> bool:
+        made: Any = SimpleNamespace(option=SimpleNamespace(collectonly=collects), **config)
+        made.pluginmanager = SimpleNamespace(hasplugin=lambda name: has_dsession and name == "dsession")
+        session: Any = SimpleNamespace(config=made)
+        return tests._left_to_others(session)
+
+    assert [left(), left(collects=True), left(has_dsession=True), left(workerinput={})] == [False, True, True, True]
+    plugin.options.isolation = "none"
+    assert left()
+
+
+def test_stopping_as_pytest_does() -> None:
+    class Session(SimpleNamespace):
+        Failed, Interrupted = ValueError, KeyError
+
+    _stop_if_asked(Session(shouldfail="", shouldstop=""))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="two failed"):
+        _stop_if_asked(Session(shouldfail="two failed", shouldstop="asked"))  # type: ignore[arg-type]
+    with pytest.raises(KeyError, match="asked"):
+        _stop_if_asked(Session(shouldfail="", shouldstop="asked"))  # type: ignore[arg-type]
+
+
+def test_a_shared_fixture_with_another_parameter_is_made_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    parameters = {"a": {"x": 1}, "b": {"x": 1, "y": 2}, "c": {"x": 2}, "d": {}}
+    monkeypatch.setattr(loop.pytest_private, "shared_parameters", lambda item: parameters[item])
+
+    def other(one: Any, two: Any) -> bool:
+        return _other_parameters(one, two)
+
+    assert [other("a", "b"), other("a", "c"), other("a", "d"), other("b", "c")] == [False, True, False, True]
+
+
+def test_a_slow_start_is_explained_once(plugin: Any) -> None:
+    lines: list[str] = []
+    reporter = SimpleNamespace(
+        ensure_newline=lambda: None, write_line=lambda text, yellow: lines.append(text), flush=lambda: None
+    )
+    config: Any = SimpleNamespace(pluginmanager=SimpleNamespace(getplugin=lambda name: reporter))
+    tests = IsolatedTests(plugin)
+    tests._explain(config, "why")
+    tests._explain(config, "why, too")
+    assert lines == ["pyfrc: why"]

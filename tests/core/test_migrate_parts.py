@@ -1,0 +1,113 @@
+"""Parts of the rewriting of `pyfrc migrate`: ports, imports of what is gone, statements that are left out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("libcst")
+
+from pyfrc_core.migrate.migration import migrate
+from pyfrc_core.migrate.names.table import table
+from pyfrc_core.migrate.report import Report
+from pyfrc_core.migrate.rewrite.ports import Ports
+
+_ALL = "SystemCore's ports 0 to 5 are for PWM, digital, analog and LEDs together"
+
+
+def reported(*devices: tuple[str, int]) -> list[tuple[int, str, str, bool]]:
+    """Line, sentence, remedy and whether it runs, of devices with these channels, one in each line."""
+    ports, report = Ports(table()), Report()
+    for line, (name, channel) in enumerate(devices, 1):
+        ports.use("robot.py", line, f"wpilib.{name}", channel)
+    ports.report(report)
+    return [(each.line, each.what, each.remedy, each.done) for each in sorted(report.remarks)]
+
+
+def test_kinds_of_channels() -> None:
+    ports = Ports(table())
+    names = ("PWMSparkMax", "Servo", "DigitalInput", "AnalogInput", "AddressableLED", "Joystick")
+    assert [ports.kind(f"wpilib.{name}") for name in names] == ["PWM", "PWM", "digital", "analog", "LED", ""]
+    assert ports.kind("rev.PWMSparkMax") == ""
+
+
+def test_devices_with_ports_of_their_own_are_not_reported() -> None:
+    assert reported(("PWMSparkMax", 0), ("Encoder", 1), ("AnalogInput", 5)) == []
+    # Two of one kind on one channel were an error on the roboRIO, too.
+    assert reported(("PWMSparkMax", 0), ("PWMSparkMax", 0)) == []
+
+
+def test_devices_that_share_a_port_name_the_first_and_the_free_ports() -> None:
+    assert reported(("PWMSparkMax", 0), ("DigitalInput", 0), ("AnalogInput", 2)) == [
+        (
+            2,
+            "DigitalInput has channel 0, as the PWMSparkMax in robot.py:1.",
+            f"{_ALL}. Give each its own; free: 1, 3, 4, 5.",
+            True,
+        )
+    ]
+    # A strip and a switch on one port stop the program, in the simulation, too.
+    ((line, what, _, done),) = reported(("AddressableLED", 3), ("DigitalOutput", 3))
+    assert (line, what, done) == (2, "DigitalOutput has channel 3, as the AddressableLED in robot.py:1.", False)
+    ((*_, done),) = reported(("AddressableLED", 3), ("AnalogInput", 3))
+    assert done
+
+
+def test_a_channel_that_systemcore_lacks() -> None:
+    remedy = f"{_ALL}. Write yours; free: 0, 1, 2, 3, 4, 5."
+    assert reported(("DigitalInput", 9), ("Servo", 6)) == [
+        (1, "DigitalInput has channel 9.", remedy, True),
+        (2, "Servo has channel 6.", remedy, True),
+    ]
+    assert reported(("AddressableLED", 9)) == []  # reported where it is made: the program stops there
+
+
+def test_too_many_devices() -> None:
+    six = [("PWMSparkMax", number) for number in range(6)]
+    assert reported(*six) == []
+    ((_, what, remedy, _),) = reported(*six, ("AnalogInput", 0))
+    assert what == "AnalogInput has channel 0, as the PWMSparkMax in robot.py:1."
+    assert remedy.startswith(f"{_ALL}, but this project needs 7. Replace some by CAN devices")
+
+
+# -- imports -----------------------------------------------------------------------------------------------------------
+
+
+def migrated(tmp_path: Path, code: str) -> tuple[str, list[str]]:
+    """The code after a migration, and what is said."""
+    file = tmp_path / "robot.py"
+    file.write_text(code, "utf-8")
+    done = migrate(tmp_path)
+    done.write()
+    said = [f"{each.line} {each.what}" for each in sorted(done.report.remarks)]
+    return file.read_text("utf-8"), said
+
+
+@pytest.mark.parametrize(
+    ("code", "new", "said"),
+    [
+        # Not used: it goes.
+        (
+            "from wpilib import DigitalInput, Relay\nswitch = DigitalInput(0)\n",
+            "from wpilib import DigitalInput\nswitch = DigitalInput(0)\n",
+            ["1 wpilib.Relay is gone, and its import, which is not used, is removed."],
+        ),
+        # Used: it stays, with what to do.
+        (
+            "from wpilib import Relay\nlight = Relay(1)\n",
+            "from wpilib import Relay\nlight = Relay(1)\n",
+            ["1 wpilib.Relay is gone.", "2 wpilib.Relay is gone."],
+        ),
+        # All its uses are rewritten: nothing is to say.
+        (
+            "from wpilib import SmartDashboard\nSmartDashboard.putNumber('speed', 1)\n",
+            "import telemetry\ntelemetry.log('speed', 1)\n",
+            [],
+        ),
+    ],
+)
+def test_imports_of_what_is_gone(tmp_path: Path, code: str, new: str, said: list[str]) -> None:
+    text, remarks = migrated(tmp_path, code)
+    assert text == new
+    assert [each for each in remarks if "is gone" in each] == said

@@ -1,0 +1,75 @@
+"""What a run of tests says of its failures: one bug once, mistakes beside the failures, threads that do not end."""
+
+from __future__ import annotations
+
+import io
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pyfrc_core.test_support import hangs, summary
+from pyfrc_core.test_support.reporting import bug_of
+
+
+@pytest.mark.parametrize(
+    ("headline", "bug"),
+    [
+        ("robot.py:12: ZeroDivisionError: division by zero", "robot.py:12: ZeroDivisionError: division by zero"),
+        ("src/arm.py:7: ValueError: at 12.34 s: 0x7f00ab is 1e-05", "src/arm.py:7: ValueError: at # s: # is #"),
+        ("robot.py:3: Odd: one\ntwo", "robot.py:3: Odd: one"),
+        ("robot.py:3: a.py:4: b", "robot.py:3: a.py:#: b"),
+        ("the robot program ended", None),
+        ("line\nrobot.py:12: Odd: late", None),
+        ("robot.txt:12: Odd: no module", None),
+        ("", None),
+        (None, None),
+    ],
+)
+def test_what_failures_by_one_bug_have_in_common(headline: str | None, bug: str | None) -> None:
+    assert bug_of(headline) == bug
+
+
+def test_mistakes_are_warnings_in_a_line_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    project: Any = object()
+    monkeypatch.setattr(summary, "find_code_warnings", lambda given: ["one", "two"] if given is project else [])
+    stream = io.StringIO()
+    summary.warn_of_mistakes(project, stream)
+    assert stream.getvalue() == "warning: one\nwarning: two\n"
+
+
+class Hangs:
+    """A detector: it counts the progress that it is shown."""
+
+    def __init__(self, raised: Exception | None = None) -> None:
+        self.outside: int | None = None
+        self.outside_factor = 10.0
+        self.raised = raised
+        self.progress = 0
+
+    def proceed(self) -> None:
+        self.progress += 1
+
+
+def test_a_thread_that_a_test_leaves_is_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    alive = [True, True, False]
+    detector: Any = Hangs()
+    seen: list[tuple[int | None, float]] = []
+    thread: Any = SimpleNamespace(ident=7, is_alive=lambda: alive.pop(0))
+    monkeypatch.setattr(
+        hangs,
+        "real_thread_join",
+        lambda thread, seconds: seen.append((detector.outside, detector.outside_factor)),
+    )
+    hangs._await(thread, detector)
+    # Meanwhile, it is the one that the detector watches, as strictly as the robot's code.
+    assert seen == [(7, 1.0), (7, 1.0)]
+    assert (detector.outside, detector.progress, alive) == (None, 1, [])
+
+
+def test_a_thread_that_hangs_fails_the_test(monkeypatch: pytest.MonkeyPatch) -> None:
+    detector: Any = Hangs(TimeoutError("thread 7 is blocked"))
+    thread: Any = SimpleNamespace(ident=7, is_alive=lambda: False)
+    with pytest.raises(TimeoutError, match="thread 7 is blocked"):
+        hangs._await(thread, detector)
+    assert detector.outside is None
