@@ -1,0 +1,239 @@
+"""How matches are begun, in which order they are yielded, and what is left of one whose process has died."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import AbstractContextManager, closing, nullcontext
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pyfrc_core.errors import RobotCodeError
+from pyfrc_core.fuzz.campaign import executors
+from pyfrc_core.fuzz.campaign.executors import LocalMatchExecutor, PooledMatchExecutor
+from pyfrc_core.fuzz.guidance.seed_schedule import SeedSchedule
+from pyfrc_core.fuzz.match.journal import Journal
+from pyfrc_core.fuzz.match.work import FuzzTask, MatchResult, NoMoreWork, ReplayTask, ShrinkTask, Shrunk, Work
+from pyfrc_core.fuzz.oracle.failure import HANGS, PROCESS_ENDED, FuzzFailure
+from pyfrc_core.project import Project
+from pyfrc_core.runtime.scripts.script import InputScript, Step
+
+FAILURE = FuzzFailure("ValueError", "robot.py:1", "f", "robot.py:1: ValueError")
+
+
+def script(end_us: int) -> InputScript:
+    return InputScript((), end_us)
+
+
+def replay(end_us: int) -> ReplayTask:
+    return ReplayTask(script(end_us))
+
+
+def result(end_us: int) -> MatchResult:
+    return MatchResult(None, script(end_us))
+
+
+class Call:
+    """A process: it has finished when it is in `ends`, and then returns `outcome`."""
+
+    def __init__(self, task: Work, outcome: object) -> None:
+        self.task, self.outcome = task, outcome
+        self.finished = False
+        self.closed = 0
+
+    def result(self, files: object, meanwhile: str) -> Any:
+        assert self.finished
+        if isinstance(self.outcome, Exception):
+            raise self.outcome
+        return self.outcome
+
+    def close(self) -> None:
+        self.closed += 1
+
+
+class Local(LocalMatchExecutor):
+    """Its processes end in the order of `ends`: one number, the how-manieth that was begun, for each wait."""
+
+    def __init__(self, directory: Path, jobs: int = 2) -> None:
+        super().__init__(Project(directory / "robot.py"), jobs, directory)
+        self._lines = frozenset()
+        self.begun: list[Call] = []
+        self.ends: Iterator[int] = iter(())
+        self.outcome: Callable[[Any], object] = lambda task: MatchResult(None, task.script)
+
+    def _begin(self, task: Work) -> Any:
+        self.begun.append(Call(task, self.outcome(task)))
+        return self.begun[-1]
+
+    def wait(self, calls: list[Call]) -> None:
+        self.begun[next(self.ends)].finished = True
+
+    def close(self) -> None: ...
+
+
+@pytest.fixture
+def local(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Local:
+    made = Local(tmp_path)
+    monkeypatch.setattr(executors, "wait_for_calls", made.wait)
+    return made
+
+
+def ends_of(results: Iterator[MatchResult]) -> list[int]:
+    return [each.script.end_us for each in results]
+
+
+def test_results_come_in_the_order_of_the_tasks_and_no_more_run_than_there_are_jobs(local: Local) -> None:
+    local.ends = iter([1, 2, 0, 3])
+    counts: list[int] = []
+
+    def outcome(task: Any) -> object:
+        counts.append(sum(not each.closed for each in local.begun) + 1)
+        return MatchResult(None, task.script)
+
+    local.outcome = outcome
+    assert ends_of(local.play([replay(number) for number in (10, 20, 30, 40)])) == [10, 20, 30, 40]
+    assert max(counts) == 2
+    assert [each.closed for each in local.begun] == [1] * 4
+
+
+def test_equal_tasks_keep_their_results_apart(local: Local) -> None:
+    same = replay(10)
+    numbers = iter([1, 2])
+    local.outcome = lambda task: result(next(numbers))
+    local.ends = iter([1, 0])
+    assert ends_of(local.play([same, replay(10)])) == [1, 2]
+
+
+def test_closing_ends_what_runs(local: Local) -> None:
+    local.ends = iter([0])
+    with closing(local.play([replay(number) for number in range(9)])) as results:
+        assert next(results).script.end_us == 0
+    assert len(local.begun) <= 3
+    assert [each.closed for each in local.begun] == [1] * len(local.begun)
+
+
+def test_an_interrupt_ends_what_runs(local: Local) -> None:
+    local.ends = iter([0, 1, 2])
+    results = local.play([replay(number) for number in range(9)])
+    next(results)
+    local.interrupted = True
+    with pytest.raises(KeyboardInterrupt):
+        next(results)
+    assert [each.closed for each in local.begun] == [1] * len(local.begun)
+
+
+def test_no_more_work_ends_without_the_results_that_are_missing(local: Local) -> None:
+    works: list[Work | Exception | None] = [replay(1), replay(2), None, NoMoreWork()]
+    local.ends = iter([0])
+
+    def next_work() -> Work | None:
+        each = works.pop(0)
+        if isinstance(each, Exception):
+            raise each
+        return each
+
+    assert [found.script.end_us for _, found in local.run(next_work)] == [1]
+    assert [each.closed for each in local.begun] == [1, 1]
+
+
+# -- processes that die ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "place"),
+    [
+        ("robot.py:7: the process ended with code 3\nmore", PROCESS_ENDED, "robot.py:7"),
+        ("robot.py:7: teleopPeriodic hangs here for 10 s", HANGS, "robot.py:7"),
+        ("the process was killed", PROCESS_ENDED, ""),
+    ],
+)
+def test_the_failure_of_a_process_that_died(local: Local, text: str, kind: str, place: str) -> None:
+    local.outcome = lambda task: RobotCodeError(text)
+    local.ends = iter([0])
+    (found,) = local.play([replay(50)])
+    assert found.failure == FuzzFailure(kind, place, "", text.partition("\n")[0])
+    assert found.script.end_us == 50
+
+
+def test_the_inputs_of_a_match_that_died_are_those_of_its_journal(local: Local, tmp_path: Path) -> None:
+    steps = (Step(0, {"mode": "teleop"}), Step(20_000, {"dio[1].value": True}))
+
+    def outcome(task: Any) -> object:
+        with closing(Journal(task.journal)) as journal:
+            for step in steps:
+                journal.add(step)
+        return RobotCodeError("robot.py:7: the process ended")
+
+    local.outcome = outcome
+    local.ends = iter([0, 1])
+    task = FuzzTask(SeedSchedule(((0, "1"),)))
+    first, second = local.play([task, task])
+    assert (first.script.steps, second.script.steps) == (steps, steps)
+    assert first.script.robot == "robot.py"
+    assert first.script.end_us > 20_000
+    journals = [each.task.journal for each in local.begun if isinstance(each.task, FuzzTask)]
+    assert len(set(journals)) == 2
+    assert not any(each is not None and each.exists() for each in journals)
+    assert task.journal is None
+
+
+def test_a_process_that_died_while_it_made_a_script_short_leaves_the_long_one(local: Local) -> None:
+    local.outcome = lambda task: RobotCodeError("robot.py:7: the process ended")
+    local.ends = iter([0])
+    task = ShrinkTask(script(70), FAILURE)
+    works: list[Work] = [task]
+    ((given, found),) = local.run(lambda: works.pop() if works else None)
+    assert (given, found) == (task, Shrunk(script(70), FAILURE))
+
+
+# -- executors of concurrent.futures -----------------------------------------------------------------------------------
+
+
+class Pooled(PooledMatchExecutor):
+    def __init__(self, directory: Path, pool: Executor) -> None:
+        super().__init__(Project(directory / "robot.py"), 2, directory)
+        self.pool = pool
+        self.futures: list[Future[Any]] = []
+
+    def _pool(self) -> AbstractContextManager[Executor]:
+        return nullcontext(self.pool)
+
+    def _call(self, task: Work) -> Callable[[], Any]:
+        return lambda: MatchResult(None, task.script)  # type: ignore[union-attr]
+
+    def _result_of(self, task: Work, future: Future[Any]) -> Any:
+        return future.result()
+
+
+def test_matches_in_a_pool(tmp_path: Path) -> None:
+    with ThreadPoolExecutor(1) as threads:
+        pooled = Pooled(tmp_path, threads)
+        assert ends_of(pooled.play([replay(number) for number in (1, 2, 3)])) == [1, 2, 3]
+        assert pooled.replay(script(9)).script.end_us == 9
+
+
+class Never(Executor):
+    """Begins nothing."""
+
+    def __init__(self) -> None:
+        self.futures: list[Future[Any]] = []
+
+    def submit(self, *args: Any, **kwargs: Any) -> Future[Any]:
+        self.futures.append(Future())
+        return self.futures[-1]
+
+
+def test_an_interrupt_cancels_what_waits_in_a_pool(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    never = Never()
+    pooled = Pooled(tmp_path, never)
+
+    def wait(running: object, seconds: float, when: str) -> tuple[set[Future[Any]], set[Future[Any]]]:
+        pooled.interrupted = True
+        return set(), set()
+
+    monkeypatch.setattr(executors, "wait", wait)
+    with pytest.raises(KeyboardInterrupt):
+        list(pooled.play([replay(1), replay(2), replay(3)]))
+    assert [each.cancelled() for each in never.futures] == [True, True]
