@@ -74,7 +74,7 @@ class PhysicsModule:
             if not with_robot or not _accepts(constructor, "self", "physics_controller"):
                 return with_robot
             # A second parameter with a default: since 2020 it receives the robot; in 2019 it was the user's own.
-            return names[1] == "robot" or not self.takes_hal_data
+            return names[1:2] == ["robot"] or not self.takes_hal_data
         raise _wrong_signature(self.engine_class, "__init__")
 
     def _takes_hal_data(self) -> bool:

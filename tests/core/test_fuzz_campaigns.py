@@ -125,9 +125,7 @@ def listener() -> Listener:
 @pytest.fixture
 def run(listener: Listener) -> Run:
     def run(players: Players, runs: int | None = 32, seconds: float | None = None, **options: Any) -> Campaign:
-        return run_campaign(
-            nullcontext(players), CampaignOptions(1, runs, seconds, players.jobs, **options), listener
-        )
+        return run_campaign(nullcontext(players), CampaignOptions(1, runs, seconds, players.jobs, **options), listener)
 
     return run
 

@@ -233,9 +233,9 @@ def test_a_robot_that_ends_by_itself_ends_the_session(play: Play) -> None:
         play(commands.Resume(packets=9), robot=Robot, job=PAUSED)
 
 
-def test_a_robot_that_waits_is_paused_and_left_within_its_wait(play: Play) -> None:
+def test_a_robot_that_waits_is_paused_and_left_within_its_wait(play: Play, run: RobotRun) -> None:
     def periodic(motor: object) -> None:
-        wpilib.wait(0.05)
+        run.threads.sleep_until(run.clock.now_us + 50_000)
 
     seen = play(*[commands.Resume(packets=1)] * 3, periodic=periodic, job=PAUSED)
     assert [each.time_us for each in seen.updates if each.time_state.paused] == [0, 20_000, 40_000, 60_000]
