@@ -1,9 +1,9 @@
 """Records which lines of pyfrc each test runs, in every process that the test starts; `tests/mutants.py` uses it.
 
-Each interpreter of the environment that `mutants.py` makes imports this module at its start. The running test's file is
-named in an environment variable, which commands, forks and agents inherit. Each line is written when it first runs, so a
-process that is killed has written what it ran. `sys.monitoring` reports the lines, which needs Python 3.12: a tracer would
-disturb the tests of coverage and profiles, which need it themselves.
+Each interpreter of the environment that `mutants.py` makes imports this module at its start. An environment variable
+names the running test's file; commands, forks and agents inherit it. Each line is written when it first runs, so a
+process that is killed has written what it ran. `sys.monitoring` reports the lines, which needs Python 3.12: a tracer
+would disturb the tests of coverage and profiles, which need it themselves.
 """
 
 from __future__ import annotations

@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import ssl
 import urllib.error
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -124,9 +123,9 @@ def seen() -> Seen:
 
 
 @pytest.fixture
-def work(tmp_path: Path, seen: Seen, monkeypatch: pytest.MonkeyPatch) -> Iterator[_Work]:
+def work(tmp_path: Path, seen: Seen, monkeypatch: pytest.MonkeyPatch) -> _Work:
     monkeypatch.delenv(PYTHON_VARIABLE, raising=False)
-    yield _Work(CURRENT, Cache(tmp_path / "cache", CURRENT), SyncOptions(), seen)
+    return _Work(CURRENT, Cache(tmp_path / "cache", CURRENT), SyncOptions(), seen)
 
 
 def test_a_python_of_a_directory_is_copied_and_has_no_address_in_the_lock(
