@@ -5,6 +5,9 @@ from __future__ import annotations
 import ast
 import linecache
 import re
+import sys
+from collections.abc import Iterator
+from difflib import get_close_matches
 from types import FrameType
 from typing import Any
 
@@ -13,6 +16,7 @@ from ..project.robot_files import RobotFiles, is_pyfrc
 from ..wording import counted
 from .calls import called_on_class
 from .explanation import Explanation, ask_for
+from .names import home_of
 from .places import calls_at, frames_of, last_name, owner_of, passed_to, robot_calls, users_frame, value_of
 from .returned import class_of
 
@@ -56,11 +60,29 @@ def _wrong_object(error: AttributeError, files: RobotFiles) -> Explanation | Non
         for each in call.args:
             value = value_of(each, where[0])
             if error.obj in (value, getattr(value, "__func__", value)):
-                kind = "None" if error.obj is None else f"a {type(error.obj).__name__}"
+                a = "a number" if isinstance(error.obj, (int, float)) else f"a {type(error.obj).__name__}"
+                kind = "None" if error.obj is None else a
                 written = ast.unparse(each)
-                remedy = f"Write {written}()" if callable(error.obj) else f"It needs an object with {error.name}."
+                has = (name for name, each in _objects(where[0]) if hasattr(each, error.name))
+                other = next(has, "") or f"an object with {error.name}, such as {_annotated(inner, error.obj)}"
+                remedy = f"Write {written}()" if callable(error.obj) else f"Pass {other}"
                 return Explanation(f"{last_name(call.func)}() got {written}, which is {kind}", remedy)
     return None
+
+
+def _objects(frame: FrameType) -> Iterator[tuple[str, object]]:
+    """Yield the attributes of the user's object whose method runs, each with its name."""
+    own = getattr(frame.f_locals.get("self"), "__dict__", {})
+    yield from ((f"self.{name}", each) for name, each in own.items())
+
+
+def _annotated(frame: FrameType, value: object) -> str:
+    """Return the class that a library's function expects where it has got a value, by its annotation."""
+    function = getattr(type(frame.f_locals.get("self")), frame.f_code.co_name, None)
+    for name, annotation in getattr(function, "__annotations__", {}).items():
+        if frame.f_locals.get(name) is value:
+            return str(getattr(annotation, "__name__", annotation))
+    return "wpilib.XboxController(0)" if isinstance(value, int) else "the one that its documentation names"
 
 
 def _wrong_struct(got: str, frame: FrameType, line: int) -> Explanation | None:
@@ -121,9 +143,10 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
         need = f"{needed[0]}" if needed[0] == most else f"{needed[0]} to {most}"
         text = f"{name}() was called with {counted(count, 'value')}, but takes {need}"
         return Explanation(text, f"It takes: {takes}")
+    paths = {each.rpartition(".")[2]: each for each in re.findall(r": ([\w.]+)", found["forms"])}
     for at, (value, written) in enumerate(zip(values, got, strict=False)):
         kinds = [form[at].partition(": ")[2].partition(" = ")[0] for form in forms if at < len(form)]
-        if not call.keywords and (wrong := _wrong(value, written, kinds)):
+        if not call.keywords and (wrong := _wrong(value, written, kinds, paths)):
             return Explanation(f"{name}() got {wrong[0]}", f"{wrong[1]}\n  It takes: {takes}")
     return Explanation(f"{name}() does not take {shown}", f"It takes: {takes}")
 
@@ -135,11 +158,12 @@ def _members(path: str) -> str:
     return f"\n  {cls.__qualname__} is one of: {names}" if cls is not None and names else ""
 
 
-def _wrong(value: str, written: str, kinds: list[str]) -> tuple[str, str] | None:
+def _wrong(value: str, written: str, kinds: list[str], paths: dict[str, str]) -> tuple[str, str] | None:
     """Return what an argument is, and what to write instead, if its value is of none of the kinds.
 
     :param value: as Python shows it
     :param written: as the user has written it
+    :param paths: the full names of the classes in `kinds`
     """
     functions = [kind for kind in kinds if "Callable" in kind or kind.startswith("()")]
     if _FUNCTION.match(value):
@@ -152,17 +176,45 @@ def _wrong(value: str, written: str, kinds: list[str]) -> tuple[str, str] | None
         return f"the value {value}, and no function", _pass_function(written)
     is_text = value[:1] in "'\""
     if is_text and "str" not in kinds:
+        if kinds == ["bool"]:
+            return f"{written}, a text", "Write True or False, without quotes."
         number = value[1:-1] if re.fullmatch(r".-?\d+(\.\d+)?.", value) else ""
-        remedy = f"Write it without quotes: {number}" if number else f"It must be: {' or '.join(kinds)}."
+        remedy = (
+            f"Write it without quotes: {number}"
+            if number
+            else _value_for(value[1:-1], [paths.get(each, each) for each in kinds])
+        )
         return f"{written}, a text", remedy
     if re.fullmatch(r"-?\d+(\.\d+)?|True|False", value) and kinds == ["str"]:
         return f"{written}, which is no text", f"Write str({written}), or the text in quotes."
     if (of := re.match(r"<(?:[\w.]*\.)?(\w+) ", value)) and kinds == ["number"]:
         return f"{written}, an object of {of[1]}", "Pass a number."
     classes = [kind for kind in kinds if kind[:1].isupper() and "[" not in kind]
+    if re.fullmatch(r"-?\d+(\.\d+)?", value) and classes and len(classes) + len(functions) == len(kinds):
+        return f"{written}, a number, and no {classes[0]}", _object_for(classes[0], written)
     if classes and value[:1] == "(":
         return f"{written}, and no {classes[0]}", f"Write {classes[0]}(...)"
     return None
+
+
+def _value_for(text: str, kinds: list[str]) -> str:
+    """Return what to write for a text, where an enum's value or something else belongs."""
+    for cls in (class_of(each) for each in kinds):
+        known = {re.sub("^k", "", each).lower(): each for each in getattr(cls, "__members__", ())}
+        if cls is not None and (close := get_close_matches(text.lower(), known, n=1)):
+            return f"Write {cls.__module__.replace('._wpilib', '')}.{cls.__qualname__}.{known[close[0]]}"
+    return f"It must be: {' or '.join(each.rpartition('.')[2] for each in kinds)}."
+
+
+def _object_for(kind: str, written: str) -> str:
+    """Return what to write for an argument that is a number, and must be an object of a class of WPILib's."""
+    home = home_of(kind)
+    cls = getattr(sys.modules.get(home), kind, object)
+    if hasattr(cls, "fromDegrees"):
+        return f"Write {kind}.fromDegrees({written}), if it is in degrees: from {home} import {kind}"
+    if getattr(cls, "__module__", "").startswith("wpimath"):
+        return f"Write {kind}(...), from {home} import {kind}"
+    return f"Create an object first, and pass that: a {kind}."
 
 
 def _pass_function(written: str) -> str:

@@ -7,7 +7,7 @@ import inspect
 import re
 from types import FrameType, ModuleType
 
-from ..errors import text_of
+from ..errors import nearest, text_of
 from ..project.robot_files import RobotFiles
 from ..wording import counted
 from .explanation import Explanation, ask_for
@@ -19,6 +19,7 @@ from .places import (
     functions_around,
     last_name,
     line_of_class,
+    made_by,
     owner_of,
     passed_to,
     place_of_assignment,
@@ -51,6 +52,8 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     where = users_frame(error, files)
     if where is None:
         return None
+    if (statement := statement_at(*where)) and isinstance(statement, ast.ClassDef):
+        return _base(statement)
     if _OF_A_FUNCTION.match(text) and (explained := _not_called(*where, files)):
         return explained
     if text == "TypeError: 'module' object is not callable":
@@ -61,8 +64,20 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return _called_value(*where, files)
     if found := _NO_NUMBER.match(text):
         return _no_number(found, *where)
+    if isinstance(error, KeyError) and frames_of(error)[-1] is where[0]:
+        return _key(error, *where)
+    if text == "TypeError: 'float' object cannot be interpreted as an integer":
+        return _whole_number(*where)
     if found := _COUNT.match(text):
         return _count(found, *where, files)
+    return None
+
+
+def _base(definition: ast.ClassDef) -> Explanation | None:
+    """Explain ``class MyRobot(wpilib.TimedRobot()):``."""
+    for each in (each for each in definition.bases if isinstance(each, ast.Call)):
+        text = f"{ast.unparse(each)} is an object, and a class is derived from a class"
+        return Explanation(text, f"Write class {definition.name}({ast.unparse(each.func)}):")
     return None
 
 
@@ -152,6 +167,9 @@ def _none_from_call(frame: FrameType, line: int) -> Explanation | None:
 
 def _no_number(found: re.Match[str], frame: FrameType, line: int) -> Explanation | None:
     """Explain a text, None, or an object of a library's class, such as a Rotation2d, among numbers."""
+    for each in ast.walk(statement_at(frame, line)):
+        if isinstance(each, ast.Compare) and (joined := joined_by_bits(each)):
+            return Explanation(*joined)
     computed = (_operands(node) for node in ast.walk(statement_at(frame, line)) if not isinstance(node, ast.Call))
     operands = next(filter(None, computed), [])
     for each, name in zip(operands, filter(None, found.groups()), strict=False):
@@ -164,6 +182,43 @@ def _no_number(found: re.Match[str], frame: FrameType, line: int) -> Explanation
             shown = ", ".join(f".{each}()" for each in numbers[:6])
             text = f"{written} is an object of {cls.__name__}, and no number"
             return Explanation(text, f"Write one of these behind it: {shown}")
+    return None
+
+
+def _key(error: KeyError, frame: FrameType, line: int) -> Explanation | None:
+    """Explain a key that a dict of the user's does not have."""
+    for each in ast.walk(statement_at(frame, line)):
+        held = value_of(each.value, frame) if isinstance(each, ast.Subscript) else None
+        if isinstance(each, ast.Subscript) and type(held) is dict and error.args[0] not in held:
+            written, hint = ast.unparse(each.value), nearest(str(error.args[0]), list(map(str, held)))
+            got = f", from {ast.unparse(each)}" * (not isinstance(each.slice, ast.Constant))
+            return Explanation(f"{written} has no key {error.args[0]!r}{got}", hint[0].upper() + hint[1:])
+    return None
+
+
+def _whole_number(frame: FrameType, line: int) -> Explanation | None:
+    """Explain ``range(10 / 2)``."""
+    for call in calls_at(frame, line, ""):
+        for each in call.args:
+            if isinstance(each, ast.BinOp) and isinstance(each.op, ast.Div):
+                whole = ast.unparse(ast.BinOp(each.left, ast.FloorDiv(), each.right))
+                text = f"{last_name(call.func)}() takes whole numbers, and {ast.unparse(each)} is none: / makes a float"
+                return Explanation(text, f"Write {whole}")
+        if call.args:
+            written = ast.unparse(call.args[0])
+            return Explanation(f"{last_name(call.func)}() takes whole numbers", f"Write int({written})")
+    return None
+
+
+def joined_by_bits(node: ast.Compare) -> tuple[str, str] | None:
+    """Return what is wrong with ``a > 1 & b < 2``, and what to write."""
+    for at, each in enumerate(node.comparators[:-1]):
+        if isinstance(each, ast.BinOp) and isinstance(each.op, (ast.BitAnd, ast.BitOr)):
+            sign, word, split = ("&", "and", at + 1) if isinstance(each.op, ast.BitAnd) else ("|", "or", at + 1)
+            first = ast.Compare(node.left, node.ops[:split], [*node.comparators[:at], each.left])
+            second = ast.Compare(each.right, node.ops[split:], node.comparators[split:])
+            text = f"{sign} computes with the bits of {ast.unparse(each.left)} and {ast.unparse(each.right)}"
+            return f"{text} before anything is compared", f"Write {ast.unparse(first)} {word} {ast.unparse(second)}"
     return None
 
 
@@ -229,6 +284,8 @@ def called_on_class(call: ast.Call, cls: type, frame: FrameType, files: RobotFil
     for method in ("getInstance", "getDefault", "get_instance", "get_default"):
         if hasattr(cls, method):
             return Explanation(text, f"Write {written}.{method}().{name}(...)")
+    if held := next((each[1] for each in made_by(cls.__name__, files)), ""):
+        return Explanation(text, f"Write {held}.{name}(...)")
     if written.rpartition(".")[2] == cls.__name__:
         remedy = f"Create an object in robotInit, as in: self.it = {written}(...). Then call: self.it.{name}(...)"
         return Explanation(text, remedy)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterable, Iterator
+from typing import TypeAlias
 
 from ..errors import text_of
 from ..project.robot_files import RobotFiles
@@ -18,25 +20,28 @@ _NO_COMMAND = re.compile(
 _MAKES_COMMAND = re.compile(r"\bcommands2\b|\bself\.(?:run|runOnce|runEnd|startEnd)\(|Command\(")
 BINDINGS = frozenset({"onTrue", "onFalse", "onChange", "whileTrue", "whileFalse", "toggleOnTrue", "toggleOnFalse"})
 
+Definition: TypeAlias = tuple[str, ast.FunctionDef | ast.ClassDef]
+
 
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     if not _NO_COMMAND.match(text_of(error)) or files.innermost_line(error.__traceback__, tests=False) is not None:
         return None
-    defined = {
-        each.name: (f"{file}:{each.lineno}", each)
-        for file, tree in robot_trees(files)
-        for each in ast.walk(tree)
-        if isinstance(each, (ast.FunctionDef, ast.ClassDef))
-    }
+    defined = dict(users_definitions(robot_trees(files)))
     for place, call in robot_calls(files):
-        if last_name(call.func) in BINDINGS and call.args and (found := _explained(call.args[0], defined)):
+        if last_name(call.func) in BINDINGS and call.args and (found := no_command(call.args[0], defined)):
             return Explanation(f"{last_name(call.func)}() got {found[0]}", found[1], place)
     return None
 
 
-def _explained(
-    bound: ast.expr, defined: dict[str, tuple[str, ast.FunctionDef | ast.ClassDef]]
-) -> tuple[str, str] | None:
+def users_definitions(trees: Iterable[tuple[str, ast.Module]]) -> Iterator[tuple[str, Definition]]:
+    """Yield the functions and classes of files by name, each with its place."""
+    for file, tree in trees:
+        for each in ast.walk(tree):
+            if isinstance(each, (ast.FunctionDef, ast.ClassDef)):
+                yield each.name, (f"{file}:{each.lineno}", each)
+
+
+def no_command(bound: ast.expr, defined: dict[str, Definition]) -> tuple[str, str] | None:
     """Return what is bound, and what to write, if that is no command."""
     written = ast.unparse(bound)
     run_once = f"Write commands2.cmd.runOnce({written}, SUBSYSTEM), with the subsystem that it uses."

@@ -79,6 +79,8 @@ def _missing(module: str, root: Path) -> Explanation:
             return Explanation(text, _use_instead(in_2027(SUCCESSORS[each]), root))
     parent, _, last = module.rpartition(".")
     beside = _modules_in(getattr(sys.modules.get(parent), "__path__", None) or ([str(root)] if not parent else []))
+    if isinstance(getattr(sys.modules.get(parent), last, None), type):
+        return Explanation(f"{last} is a class of {parent}, and no module", f"Write: from {parent} import {last}")
     if parent and beside:
         return Explanation(text, f"In {parent}: {nearest(last, beside)}")
     if _in_requirements({top, PACKAGES.get(top, top)}, root / "requirements.txt"):

@@ -90,7 +90,8 @@ ROWS = (
         CURRENT.controller.channels,
     ),
     KnownError(  # of WPILib 2027, where the maximum is a channel
-        r"RuntimeError: Invalid Index for (?P<kind>[\w ]+?)\s*Status.*Minimum: (?P<low>\d+) Maximum: (?P<end>\d+) "
+        ("" if CURRENT.year >= 2027 else "(?!)")
+        + r"RuntimeError: Invalid Index for (?P<kind>[\w ]+?)\s*Status.*Minimum: (?P<low>\d+) Maximum: (?P<end>\d+) "
         r"Requested: (?P<channel>-?\d+): Channel",
         "there is no channel {channel} for {kind}: they are {low} to {end}",
         "Change it to the number of the channel that it is wired to.",
@@ -123,6 +124,13 @@ ROWS = (
         "Rename it to createObjects: there, a MagicRobot makes its devices.",
         at="robotInit",
         in_robot=True,
+    ),
+    KnownError(
+        r"MagicInjectError: (?:Component|Autonomous mode) .+? has variable (?P<name>\w+) "
+        r"\(type <class '(?P<type>(?!builtins|wpi|rev|phoenix|navx|ntcore|commands2)[^']+)'>\), which is absent",
+        "class {cls} asks for {name}, which the robot does not declare",
+        "Write {name}: {type} among the components of the robot's class.",
+        at="{name}",
     ),
     KnownError(
         r"MagicInjectError: (?P<kind>Component|Autonomous mode) (?P<component>.+?) has variable (?P<name>\w+) "
@@ -245,6 +253,11 @@ ROWS = (
         'Write the value into the text, as in: f"speed: {{value}}"',
     ),
     KnownError(
+        r"TypeError: can't multiply sequence by non-int",
+        "a text or a list is multiplied, and no number",
+        "Write the number without quotes; or float(text) if it comes from elsewhere.",
+    ),
+    KnownError(
         r"TypeError: cannot unpack non-iterable", "", "The right side is one value: write one name before the =."
     ),
     KnownError(r"TypeError: 'int' object is not iterable", "", "To count, write range, as in: for number in range(5):"),
@@ -293,7 +306,8 @@ def _unknown_state(error: KeyError) -> Explanation | None:
     machine = frame.f_locals.get("self")
     known = [each for each in dir(machine) if not each.startswith("_") and each not in dir(type(machine).__base__)]
     text = f"class {type(machine).__name__} has no state {error.args[0]}"
-    return Explanation(text, f"{nearest(str(error.args[0]), known).capitalize()}")
+    hint = nearest(str(error.args[0]), known)
+    return Explanation(text, hint[0].upper() + hint[1:])
 
 
 def _explained(row: KnownError, found: re.Match[str], error: BaseException, files: RobotFiles) -> Explanation:

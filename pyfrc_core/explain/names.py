@@ -20,7 +20,21 @@ from ..project.robot_files import RobotFiles
 from . import places
 from .explanation import Explanation
 from .other_season import OF_WPIMATH, in_2027
-from .places import imported_name, last_name, owner_of, place_of_assignment, robot_trees, statement_at, users_frame
+from .places import (
+    imported_name,
+    last_name,
+    line_of_class,
+    made_by,
+    owner_of,
+    passed_to,
+    place_of_assignment,
+    robot_calls,
+    robot_trees,
+    statement_at,
+    users_frame,
+    value_of,
+)
+from .returned import class_of, maker_of, returned_by, short_name, sibling_of
 
 
 def _spark(setting: str) -> str:
@@ -47,6 +61,7 @@ GONE = {
     "PWMTalon": "wpilib.PWMTalonSRX",
     "PIDController": "wpimath.controller.PIDController",
     "PowerDistributionPanel": "wpilib.PowerDistribution",
+    "AddressableLEDBuffer": "[wpilib.AddressableLED.LEDData() for _ in range(60)]",
     "GearTooth": "wpilib.Counter",
     "Shuffleboard": "wpilib.SmartDashboard",
     "Filesystem": "wpilib.getDeployDirectory() and wpilib.getOperatingDirectory()",
@@ -255,10 +270,32 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
         written = next(ast.unparse(each) for each in _of_attribute(name, *where))
         return Explanation(f"{written} has no attributes: its values have keys", f"Write {written}[{name!r}]")
     if isinstance(obj, (int, float, str)):
-        written = next((ast.unparse(each) for each in _of_attribute(name, *where)), "") if where else ""
+        held = [each for each in _of_attribute(name, *where) if value_of(each, where[0]) is obj] if where else []
+        if held and where is not None and (passed := _passed_in(held[0], obj, where[0], files)):
+            return passed
+        written = ast.unparse(held[0]) if held else ""
         kind = "a text" if isinstance(obj, str) else "True or False" if isinstance(obj, bool) else "a number"
         return Explanation(f"{written or repr(obj)} is {kind} ({obj!r}) and has no {name}", meant(name, known))
-    if words := meant(name, known):
+    declared = any(name in getattr(base, "__annotations__", {}) for base in owner.__mro__)
+    if declared and not isinstance(obj, type) and "magicbot" in sys.modules:
+        if any(base.__name__ == "MagicRobot" for base in owner.__mro__):
+            text = f"there is no {name} yet: magicbot creates the components after createObjects()"
+            return Explanation(text, "Use it in teleopInit or teleopPeriodic, or in setup() of a component.")
+        text = f"{name} has no value yet: magicbot sets what a class declares after its __init__"
+        return Explanation(text, "Write def setup(self): in place of __init__, or move this line there.")
+    words = meant(name, known)
+    if is_library and not is_module and where is not None:
+        written = next((ast.unparse(each) for each in _of_attribute(name, *where)), owner.__name__)
+        inner = (each for each in vars(owner).values() if isinstance(each, type) and hasattr(each, name))
+        if isinstance(obj, type) and (nested := next(inner, None)) is not None:
+            return Explanation(f"{written} has no {name}", f"Write {written}.{nested.__name__}.{name}")
+        text = f"{written}, {'the class' if isinstance(obj, type) else 'an object of'} {owner.__name__}, has no {name}"
+        spelt_alike = len(name) > 1 and any(each.lower() == name.lower() for each in known)
+        if not isinstance(obj, type) and not spelt_alike and (instead := _elsewhere(owner, name, written, files)):
+            return Explanation(text, instead)
+        if words and owner.__module__.partition(".")[0] in _KNOWN:
+            return Explanation(text, words)
+    if words and not (isinstance(obj, type) and not is_library):
         return Explanation(remedy=words)
     if is_module and is_library and (nested := _nested(name, obj)):
         return Explanation(remedy=f"Did you mean {nested}?")
@@ -271,9 +308,19 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
         )
         remedy = f"It has: {', '.join(list(members)[:_SHOWN])}{', ...' if len(members) > _SHOWN else ''}"
         return Explanation(remedy=remedy)
-    if owner.__module__.partition(".")[0] in ("builtins", *_KNOWN) or isinstance(obj, type):
+    if owner.__module__.partition(".")[0] in ("builtins", *_KNOWN):
         return None
     place, target, method = place_of_assignment(owner, files, name)
+    if isinstance(obj, type):
+        held = next(made_by(owner.__name__, files), ("", "", ""))[1]
+        if not place or not held:
+            return Explanation(remedy=words) if words else None
+        text = f"{owner.__name__} is the class, and only an object of it has {name} ({place} sets it)"
+        return Explanation(text, f"Write {held}.{name}")
+    if (base := _missing_base(owner, name)) and not place:
+        text = f"{owner.__name__} has no {name}: the class has no base class that has it"
+        remedy = f"Write class {owner.__name__}({base}):, and super().__init__() as the first line of its __init__."
+        return Explanation(text, remedy, line_of_class(owner, files))
     if target == name:
         return Explanation(remedy=f"Write self.{name} = ... in {place}: without self, the name is known there only.")
     for (test, line), (called, _) in pairwise(walk_tb(error.__traceback__)):
@@ -293,6 +340,52 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
         remedy = f"{place} sets {name}, but has not run yet: move it to __init__ or {in_2027('robotInit')}."
         return Explanation(remedy=remedy)
     return Explanation(remedy=f"Nothing has set {name}: is the line missing, or is the name misspelt?")
+
+
+def _elsewhere(owner: type, name: str, written: str, files: RobotFiles) -> str:
+    """Return what to write for a name that another object has: one that a method of the object returns, or one of a
+    class that is much like its own; empty if there is none.
+    """
+    if (maker := maker_of(owner, name)) is not None:
+        method, cls = maker
+        kept = short_name(cls)
+        calls = f"{written}.{method}().{name}(...)"
+        kept_once = f"{kept} = {written}.{method}() once, and then {kept}.{name}(...)"
+        return f"{cls.__name__} has it: write {calls if method.startswith('get') else kept_once}"
+    if (other := sibling_of(owner, name, _HOMES)) is None:
+        return ""
+    module, cls = other
+    if returning := returned_by(cls, module):
+        return f"{cls.__name__} has it, which {returning}(...) returns."
+    place, _, call = next(made_by(owner.__name__, files), ("", "", None))
+    arguments = ", ".join(map(ast.unparse, call.args)) if call is not None else "..."
+    where_made = f" in {place}, where it is made" if place else ", where it is made"
+    return f"{cls.__name__} has it: write {module}.{cls.__name__}({arguments}){where_made}"
+
+
+def _missing_base(owner: type, name: str) -> str:
+    """Return the library's class that a class of the user's was probably to be derived from; empty if it has a base."""
+    bases = ("commands2.Subsystem", "commands2.Command", "wpilib.TimedRobot", "magicbot.StateMachine")
+    found = (each for each in bases if owner.__bases__ == (object,) and hasattr(class_of(each), name))
+    return next(found, "")
+
+
+def _passed_in(held: ast.expr, value: object, frame: FrameType, files: RobotFiles) -> Explanation | None:
+    """Explain a value in ``self.drive`` that the user's own __init__ has got: which call has passed it."""
+    owner = type(frame.f_locals.get("self"))
+    for file, tree in robot_trees(files):
+        classes = (each for each in ast.walk(tree) if isinstance(each, ast.ClassDef) and each.name == owner.__name__)
+        for made in (each for cls in classes for each in cls.body if getattr(each, "name", "") == "__init__"):
+            assigned = (each for each in ast.walk(made) if isinstance(each, ast.Assign))
+            source = next((each.value for each in assigned if ast.unparse(each.targets[0]) == ast.unparse(held)), None)
+            parameters = [each.arg for each in made.args.args] if isinstance(made, ast.FunctionDef) else []
+            for place, call in robot_calls(files) if last_name(source or held) in parameters else ():
+                given = passed_to(call, parameters).get(last_name(source or held))
+                if last_name(call.func) == owner.__name__ and given is not None and value_of(given, frame) == value:
+                    text = f"{owner.__name__}() gets {ast.unparse(given)} as {last_name(source or held)}"
+                    takes = ast.unparse(made.args).removeprefix("self, ")
+                    return Explanation(text, f"It takes: {owner.__name__}({takes}) ({file}:{made.lineno})", place)
+    return None
 
 
 def _of_attribute(name: str, frame: FrameType, line: int) -> Iterator[ast.expr]:
@@ -352,8 +445,12 @@ def meant(name: str, known: list[str]) -> str:
     same = [each for each in known if each.lower().replace("_", "") == name.lower().replace("_", "")]
     words = _words(name)
     same = same or [each for each in known if sorted(_words(each)) == sorted(words)]
-    close = same[:1] or get_close_matches(name, known, n=1, cutoff=0.75)
-    close = close or [each for each in known if set(words) <= set(_words(each, whole=True)) and each[0] != "_"]
+    begins = _words(name, whole=True)[:1]  # set, get: of two names, the one that does the same
+    same = same or [each for each in known if _words(each) == words]
+    longer = [each for each in known if set(words) <= set(_words(each, whole=True)) and each[0] != "_"]
+    if same and begins != words[:1] and _words(same[0], whole=True)[:1] != begins:
+        same = [each for each in longer if _words(each, whole=True)[:1] == begins] or same
+    close = same[:1] or get_close_matches(name, known, n=1, cutoff=0.75) or longer
     return f"Did you mean {' or '.join(close[:_SHOWN])}?" if words and close else ""
 
 

@@ -163,6 +163,15 @@ def robot_calls(files: RobotFiles) -> Iterator[tuple[str, ast.Call]]:
             yield f"{file}:{call.end_lineno}", call
 
 
+def made_by(name: str, files: RobotFiles) -> Iterator[tuple[str, str, ast.Call]]:
+    """Yield where the robot's files make an object of a class: the place, what it is assigned to, and the call."""
+    for file, tree in robot_trees(files):
+        for node in ast.walk(tree):
+            value = node.value if isinstance(node, ast.Assign) else None
+            if isinstance(node, ast.Assign) and isinstance(value, ast.Call) and last_name(value.func) == name:
+                yield f"{file}:{node.lineno}", ast.unparse(node.targets[0]), value
+
+
 def calls_at(frame: FrameType, line: int, name: str) -> list[ast.Call]:
     """Return the calls of a function or class, by its last name, in the statement at a line of a file."""
     calls = [node for node in ast.walk(parsed(frame.f_code.co_filename)) if isinstance(node, ast.Call)]
@@ -176,9 +185,11 @@ UNKNOWN = object()
 
 
 def value_of(expression: ast.expr, frame: FrameType) -> Any:
-    """Return the value of a dotted name, such as ``self.timer.get``; `UNKNOWN` for other expressions."""
+    """Return the value of a constant or dotted name, such as ``self.timer.get``; `UNKNOWN` for other expressions."""
     if isinstance(expression, ast.Attribute):
         return getattr(value_of(expression.value, frame), expression.attr, UNKNOWN)
+    if isinstance(expression, ast.Constant):
+        return expression.value
     if isinstance(expression, ast.Name):
         return frame.f_locals.get(expression.id, frame.f_globals.get(expression.id, UNKNOWN))
     return UNKNOWN

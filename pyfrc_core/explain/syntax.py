@@ -79,6 +79,11 @@ _ROWS = (
     _Row("^unterminated (?:string|f-string) literal", "", "Write the quotation mark that ends the text."),
     _Row("^invalid decimal literal", r"\.\d*[fFdD]\b", "Write the number without a letter."),
     _Row("^invalid decimal literal", "", "A name cannot begin with a digit."),
+    _Row(
+        "cannot assign to function call",
+        r"(\w[\w.]*)\.get(\w*)\([^()]*\) *= *(.+?)\s*$",
+        "Write {0}.set{1}({2}) to set it; to compare, write ==.",
+    ),
     _Row("Maybe you meant '=='", "", "Write == to compare."),
     _Row("^expected 'except'", "", "Write except SomeError: below the lines of try, or remove try."),
     _Row("^positional argument follows", "", "Write arguments with a name and = behind those without."),
@@ -109,6 +114,11 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
             meant = "an ordinary space" if right == " " else f"{right} with your keyboard"
             text = f"{shown} a {kind} of a word processor, which Python does not read{_shown_line(error)}"
             return Explanation(text, f"Write {meant}; search the whole file for it.", place)
+    outside = [at for at, text in enumerate(lines[: error.lineno], 1) if re.match(r"def \w+\(self\b", text)]
+    if isinstance(error, IndentationError) and outside:
+        method = lines[outside[-1] - 1].partition("(")[0]
+        text = f"{method}(self) is not indented, so it is outside of its class{_shown_line(error)}"
+        return Explanation(text, "Indent it as much as the other methods.", f"{name}:{outside[-1]}")
     remedy = _remedy(error)
     return Explanation(f"{type(error).__name__}: {error.msg}{_shown_line(error)}", remedy, place)
 

@@ -13,10 +13,14 @@ import wpilib
 
 from pyfrc_core.repeated_lines import RepeatedLines, shortened
 from pyfrc_core.runtime.checks.enum_values import find_early_reads, find_wrong_comparisons
+from pyfrc_core.runtime.checks.kinds import Kinds
+from pyfrc_core.runtime.checks.lost_commands import find_lost_commands
 from pyfrc_core.runtime.checks.never_used import find_never_used
 from pyfrc_core.runtime.checks.no_effect import find_lines_without_effect
 from pyfrc_core.runtime.checks.setting_names import find_misspelled_settings
 from pyfrc_core.runtime.checks.sources import Source
+from pyfrc_core.runtime.checks.wrong_moments import find_wrong_moments
+from pyfrc_core.runtime.checks.wrong_units import find_wrong_units
 
 
 def source(text: str, is_test: bool = False) -> Source:
@@ -30,11 +34,15 @@ def source(text: str, is_test: bool = False) -> Source:
 
 def hints(text: str, is_test: bool = False) -> list[str]:
     files = [source(text, is_test)]
+    kinds = Kinds(files)
     found = [
-        *find_lines_without_effect(files),
+        *find_lines_without_effect(kinds),
         *find_wrong_comparisons(files),
         *find_early_reads(files),
-        *find_never_used(files),
+        *find_never_used(kinds),
+        *find_lost_commands(kinds),
+        *find_wrong_moments(kinds),
+        *find_wrong_units(kinds),
     ]
     return [f"{each.where.removeprefix('robot.py:')}: {each.text} / {each.remedy}" for each in found]
 
@@ -67,7 +75,7 @@ def hints(text: str, is_test: bool = False) -> list[str]:
 def test_a_line_that_does_not_do_what_it_says(line: str, text: str, remedy: str) -> None:
     robot = f"""
     def helper(): pass
-    class Robot(wpilib.TimedRobot):
+    class Robot(commands2.TimedCommandRobot):
         def at_goal(self): return True
         def go(self, a, b, c):
             {line}
@@ -143,8 +151,8 @@ def test_what_is_used_and_never_started(made: str, use: str, start: str, effect:
     class Robot:
         def robotInit(self):
             self.part = wpilib.{made}
-        def teleopPeriodic(self, data):
-            self.part.{use}
+        def go(self, data):
+            used = self.part.{use}
     """
     (found,) = hints(robot)
     assert found.startswith(f"3: self.part is never started, {effect} / Write self.part.")
@@ -181,8 +189,9 @@ def test_a_command_that_is_not_returned(line: str, written: str) -> None:
         assert hints(robot.format(right)) == []
 
 
-def test_a_factory_whose_value_is_not_used() -> None:
-    assert hints("def go(a):\n    commands2.cmd.sequence(a)\ndef main(a):\n    go(a)\n") == []
+def test_a_command_that_nothing_uses() -> None:
+    (found,) = hints("def go(a):\n    commands2.cmd.sequence(a)\ndef main(a):\n    go(a)\n")
+    assert found.startswith("2: commands2.cmd.sequence(a) makes a command, and nothing runs it")
 
 
 def test_a_method_that_is_defined_twice() -> None:
@@ -212,7 +221,7 @@ def test_a_method_that_is_defined_twice() -> None:
 
 def test_the_alliance_is_read_before_it_is_known() -> None:
     early = """
-    class Robot(wpilib.TimedRobot):
+    class Robot(commands2.TimedCommandRobot):
         def robotInit(self):
             self.is_red = wpilib.DriverStation.getAlliance() == wpilib.DriverStation.Alliance.kRed
     """

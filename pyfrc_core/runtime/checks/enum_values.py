@@ -39,7 +39,11 @@ def find_wrong_comparisons(sources: list[Source]) -> Iterator[CodeWarning]:
             constants = [each for side in (node.left, *node.comparators) for each in _constants(side)]
             for side in (node.left, *node.comparators) if constants else ():
                 function = last_name(side.func) if isinstance(side, ast.Call) else held.get(last_name(side), "")
-                if (enum := _enums().get(function)) is not None:
+                enum = _enums().get(function)
+                if enum is bool and isinstance(constants[0], str):
+                    text = f"{ast.unparse(side)} is True or False, and never equal to the text {constants[0]!r}"
+                    yield CodeWarning(source.at(node), text, f"Write {ast.unparse(side)} alone, without ==")
+                elif enum not in (None, bool):
                     yield _never_equal(enum, constants[0], source.at(node))
 
 
@@ -62,14 +66,16 @@ def _never_equal(enum: type[Any], value: str | int, place: str) -> CodeWarning:
 
 @cache
 def _enums() -> dict[str, type[Any]]:
-    """Return the enums that functions of WPILib return, by the function's name, if all of this name return one."""
+    """Return the enums, and bool, that functions of WPILib return, by the function's name, if all of this name return one."""
     found: dict[str, type[Any] | None] = {}
     for module in [each for name, each in list(sys.modules.items()) if name in names.LIBRARIES]:
         for cls in [each for each in vars(module).values() if isinstance(each, type)]:
             for name, function in list(vars(cls).items()):
                 if name[0] != "_" and callable(getattr(cls, name)) and not isinstance(function, type):
-                    enum = class_of(returned_type(getattr(cls, name)))
-                    found[name] = enum if hasattr(enum, "__members__") and found.get(name, enum) is enum else None
+                    returned = returned_type(getattr(cls, name))
+                    enum = bool if returned == "bool" else class_of(returned)
+                    is_known = enum is bool or hasattr(enum, "__members__")
+                    found[name] = enum if is_known and found.get(name, enum) is enum else None
     return {name: enum for name, enum in found.items() if enum is not None}
 
 

@@ -11,12 +11,15 @@ import sys
 from collections.abc import Iterator
 from functools import cache
 from inspect import isfunction, isroutine
+from types import BuiltinFunctionType
 
+from ...explain.calls import joined_by_bits
 from ...explain.commands import BINDINGS
 from ...explain.places import last_name
 from ...season import CURRENT
 from ...wpi import names
 from .code_warning import CodeWarning
+from .kinds import Kinds
 from .sources import Source
 
 #: How methods begin that return something.
@@ -27,13 +30,14 @@ _BUTTON = re.compile(r"(get_?raw_?button\w*|joystickbutton)", re.IGNORECASE)
 _EXPECTING = frozenset({"raises", "suppress", "warns"})
 
 
-def find_lines_without_effect(sources: list[Source]) -> Iterator[CodeWarning]:
+def find_lines_without_effect(kinds: Kinds) -> Iterator[CodeWarning]:
+    sources = kinds.sources
     assigned = {name for source in sources for name in _assigned(source.tree)}
     methods = {name for source in sources for name in _methods(source.tree)} - assigned
     for source in sources:
         for node in _nodes(source.tree):
             if isinstance(node, ast.Expr):
-                yield from _of_expression(node.value, source)
+                yield from _of_expression(node.value, kinds, source)
             elif isinstance(node, ast.Assign):
                 yield from _of_assignment(node, source)
             elif isinstance(node, (ast.If, ast.While, ast.IfExp, ast.Assert)):
@@ -46,11 +50,13 @@ def find_lines_without_effect(sources: list[Source]) -> Iterator[CodeWarning]:
                     if name in methods or (name not in assigned and name in _library_methods()):
                         text = f"{written} is a function, which counts as true whatever it would return"
                         yield CodeWarning(source.at(each), text, f"Write {written}()")
+            elif isinstance(node, ast.Compare) and (joined := joined_by_bits(node)):
+                yield CodeWarning(source.at(node), *joined)
             elif isinstance(node, ast.Call):
                 yield from _of_call(node, source)
             elif isinstance(node, ast.FunctionDef) and node.name in ("isFinished", "is_finished"):
-                kinds = {type(each) for each in ast.walk(node)}
-                if ast.Call in kinds and not kinds & {ast.Return, ast.Raise}:
+                inside = {type(each) for each in ast.walk(node)}
+                if ast.Call in inside and not inside & {ast.Return, ast.Raise}:
                     text = f"{node.name} returns nothing, so the command never ends by itself"
                     yield CodeWarning(source.at(node), text, "Write return before what it computes.")
         yield from _replaced_methods(source)
@@ -70,7 +76,7 @@ def _nodes(node: ast.AST) -> Iterator[ast.AST]:
         yield from _nodes(child)
 
 
-def _of_expression(value: ast.expr, source: Source) -> Iterator[CodeWarning]:
+def _of_expression(value: ast.expr, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
     """Yield what is wrong with an expression that is a statement of its own."""
     written = ast.unparse(value)
     if isinstance(value, ast.Compare):
@@ -85,6 +91,12 @@ def _of_expression(value: ast.expr, source: Source) -> Iterator[CodeWarning]:
     elif isinstance(value, ast.BinOp) and isinstance(value.op, (ast.Add, ast.Sub, ast.Mult, ast.Div)):
         text = f"{written} is computed, and nothing is done with it"
         yield CodeWarning(source.at(value), text, f"To set it, write: {ast.unparse(value.left)} = {written}")
+    elif isinstance(value, ast.Call) and kinds.only_returns(value, source):
+        text = f"{written} returns a value, and nothing is done with it"
+        name = ast.unparse(value.args[0]) if value.args and isinstance(value.args[0], (ast.Name, ast.Attribute)) else ""
+        keeps = name and isinstance(kinds.called(value, source), BuiltinFunctionType) and "." not in name
+        remedy = f"Write {name} = {written}" if keeps else f"Write result = {written}, and use result"
+        yield CodeWarning(source.at(value), text, remedy)
 
 
 def _of_assignment(node: ast.Assign, source: Source) -> Iterator[CodeWarning]:

@@ -1,0 +1,109 @@
+"""Find commands that never run: made and dropped, bound as something else, or behind one that does not end."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator
+
+from ...explain.commands import BINDINGS, no_command, users_definitions
+from ...explain.places import last_name
+from ...wpi import names
+from .code_warning import CodeWarning
+from .kinds import Kinds, object_of
+from .sources import Source
+
+#: What calls the functions that it gets, and throws away what they return.
+_CALLING = frozenset({"run", "runOnce", "runEnd", "startEnd", "RunCommand", "InstantCommand", "StartEndCommand"})
+#: What runs commands one after the other.
+_SEQUENCES = frozenset({"sequence", "repeatingSequence", "SequentialCommandGroup", "andThen", "beforeStarting"})
+
+
+def find_lost_commands(kinds: Kinds) -> Iterator[CodeWarning]:
+    robots = [each for each in kinds.sources if not each.is_test and "commands2" in sys.modules]
+    defined = dict(users_definitions((each.name, each.tree) for each in robots))
+    callers = {last_name(call.func): place for place, call in _used_calls(robots)}
+    for source in robots:
+        for function in (each for each in ast.walk(source.tree) if isinstance(each, ast.FunctionDef)):
+            for each in ast.walk(function):
+                if isinstance(each, ast.Expr) and kinds.makes_command(each.value, source):
+                    yield _dropped(each.value, function, source, callers.get(function.name, ""))
+        for call in (each for each in ast.walk(source.tree) if isinstance(each, ast.Call)):
+            name = last_name(call.func)
+            if name in BINDINGS and call.args and (found := no_command(call.args[0], defined)):
+                yield CodeWarning(source.at(call), f"{name}() got {found[0]}", found[1])
+            elif name in _CALLING:
+                yield from _made_inside(call, kinds, source)
+            elif name in _SEQUENCES:
+                yield from _behind_endless(call, kinds, source)
+    yield from _without_scheduler(robots)
+
+
+def _used_calls(robots: list[Source]) -> Iterator[tuple[str, ast.Call]]:
+    """Yield the calls whose value is used, each with its place, the last first."""
+    for source in robots:
+        nodes = list(ast.walk(source.tree))
+        alone = [each.value for each in nodes if isinstance(each, ast.Expr)]
+        yield from (
+            (source.at(each), each) for each in reversed(nodes) if isinstance(each, ast.Call) and each not in alone
+        )
+
+
+def _dropped(made: ast.Call, function: ast.FunctionDef, source: Source, caller: str) -> CodeWarning:
+    """Return what is wrong with a command that is a statement of its own.
+
+    :param caller: the place of a line that uses what the function around returns
+    """
+    returns = any(isinstance(each, (ast.Return, ast.Yield, ast.YieldFrom)) for each in ast.walk(function))
+    if caller and not returns and made is getattr(function.body[-1], "value", None):
+        text = f"{function.name}() returns nothing, so {caller} gets None, and not the command"
+        return CodeWarning(source.at(made), text, f"Write return {ast.unparse(made).partition('(')[0]}(...)")
+    written, changed = ast.unparse(made), made.func.value if isinstance(made.func, ast.Attribute) else None
+    if isinstance(changed, (ast.Name, ast.Attribute)) and last_name(made.func) in Kinds([]).decorators:
+        text = (
+            f"{last_name(made.func)}() returns a new command, which nothing uses; {ast.unparse(changed)} is unchanged"
+        )
+        return CodeWarning(source.at(made), text, f"Write {ast.unparse(changed)} = {written}")
+    text = f"{written} makes a command, and nothing runs it"
+    if function.name in names.OF_MODES or function.name in names.OF_A_COMMAND:
+        once = function.name.replace("Periodic", "Init")
+        remedy = f"Write {written}.schedule() in {once}; or bind it to a button, as in button.onTrue({written})"
+    else:
+        remedy = f"Write return {written}, bind it to a button with onTrue(...), or call .schedule()"
+    return CodeWarning(source.at(made), text, remedy)
+
+
+def _made_inside(call: ast.Call, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
+    """Yield ``runOnce(lambda: self.arm.raise_it())``, where that function returns a command."""
+    for each in call.args:
+        made = each.body if isinstance(each, ast.Lambda) else ast.Call(each, [], [])
+        if not isinstance(each, (ast.Lambda, ast.Attribute, ast.Name)) or not kinds.makes_command(made, source):
+            continue
+        text = f"{ast.unparse(made)} makes a command, which {last_name(call.func)}() throws away: it never runs"
+        yield CodeWarning(source.at(call), text, f"Write {ast.unparse(made)} in place of {ast.unparse(call)}")
+
+
+def _behind_endless(call: ast.Call, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
+    parts = call.args[:-1]
+    if last_name(call.func) in ("andThen", "beforeStarting") and isinstance(call.func, ast.Attribute):
+        parts = [call.func.value, *parts] if last_name(call.func) == "andThen" else call.args
+    for each in parts:
+        if kinds.is_endless(each, source):
+            written = ast.unparse(each)
+            text = f"{written} never ends by itself, so what follows it never begins"
+            remedy = f"Write {written}.withTimeout(2), in seconds, or .until(condition)"
+            yield CodeWarning(source.at(each), text, remedy)
+
+
+def _without_scheduler(robots: list[Source]) -> Iterator[CodeWarning]:
+    """Yield a robot with commands that does not call their scheduler."""
+    used = {last_name(node) for each in robots for node in ast.walk(each.tree) if isinstance(node, ast.expr)}
+    if not used & {*BINDINGS, "schedule", "setDefaultCommand"} or used & {"CommandScheduler", "Scheduler"}:
+        return
+    for source in robots:
+        for node in (each for each in source.tree.body if isinstance(each, ast.ClassDef)):
+            cls = object_of(ast.Name(node.name), source)
+            bases = [each.__name__ for each in getattr(cls, "__mro__", ())]
+            if "TimedRobot" in bases and not any("CommandRobot" in each for each in bases):
+                text = f"no command ever runs: {node.name} is a {ast.unparse(node.bases[0])}, which does not run them"
+                yield CodeWarning(source.at(node), text, f"Write class {node.name}(commands2.TimedCommandRobot):")
