@@ -143,7 +143,10 @@ class TomlFile:
                 raise SettingsError(what, where=f"{self.name}:{second}", remedy=remedy) from None
             line = re.search(r"\(at line (\d+)", str(malformed))
             where = f"{self.name}:{line[1]}" if line else self.name
-            raise SettingsError(f"not valid TOML: {malformed}", where=where) from None
+            wrong = self._text.splitlines()[int(line[1]) - 1] if line else ""
+            quoted = _with_quotes(wrong)
+            quotes = f"A text needs quotes: write {quoted}" if quoted != wrong else None
+            raise SettingsError(f"not valid TOML: {malformed}", where=where, remedy=quotes) from None
 
     def _repeated(self) -> tuple[str, int, int] | None:
         """Return the first key or table that is there twice: its name, its first line and its second."""
@@ -155,6 +158,19 @@ class TomlFile:
                 seen = {other: at for other, at in seen.items() if other[: len(names)] != names}
             seen[names] = line
         return None
+
+
+def _with_quotes(line: str) -> str:
+    """Return a line with quotes around its values that need them: ``main = "robot.py"``, ``["rev", "navx"]``."""
+    key, equals, value = line.partition("#")[0].rstrip().partition("=")
+    if re.search("[\"']", value) or "tool" in key:
+        return line
+    return key + equals + re.sub(r"[^\s,\[\]]+", lambda word: _quoted(word[0]), value)
+
+
+def _quoted(word: str) -> str:
+    is_value = re.fullmatch(r"true|false|[+-]?(inf|nan|[\d_]+(\.\d+)?(e[+-]?\d+)?|0x\w+)|\d+(-\d+)+", word)
+    return word if is_value else f'"{word}"'
 
 
 def _read(file: File) -> str:

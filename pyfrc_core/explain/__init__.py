@@ -27,7 +27,19 @@ Kind = Callable[[BaseException, RobotFiles], Explanation | None]
 
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     """Return what an error means, or None if it is not one of those that are known."""
-    from . import alliance, arguments, calls, commands, imports, libraries, methods, names, other_season, syntax
+    from . import (
+        alliance,
+        arguments,
+        asserts,
+        calls,
+        commands,
+        imports,
+        libraries,
+        methods,
+        names,
+        other_season,
+        syntax,
+    )
 
     kinds: tuple[Kind, ...] = (
         syntax.explain,
@@ -40,6 +52,7 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         libraries.explain,
         arguments.explain,
         names.explain,
+        asserts.explain,
     )
     try:
         return next(filter(None, (kind(error, files) for kind in kinds)), None)

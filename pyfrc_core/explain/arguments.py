@@ -43,6 +43,8 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return explained
     if isinstance(error, AssertionError) and (explained := _not_callable(error, files)):
         return explained
+    if isinstance(error, (TypeError, AttributeError)) and "'list'" in text and (explained := _list(error, files)):
+        return explained
     if text.startswith("ArgumentError: argument "):
         return _wrong_type(error, files)
     if (found := _CAST.match(text)) and (where := users_frame(error, files)) is not None:
@@ -63,10 +65,21 @@ def _wrong_object(error: AttributeError, files: RobotFiles) -> Explanation | Non
                 a = "a number" if isinstance(error.obj, (int, float)) else f"a {type(error.obj).__name__}"
                 kind = "None" if error.obj is None else a
                 written = ast.unparse(each)
-                has = (name for name, each in _objects(where[0]) if hasattr(each, error.name))
+                has = (name for name, each in _objects(where[0]) if hasattr(each, str(error.name)))
                 other = next(has, "") or f"an object with {error.name}, such as {_annotated(inner, error.obj)}"
                 remedy = f"Write {written}()" if callable(error.obj) else f"Pass {other}"
                 return Explanation(f"{last_name(call.func)}() got {written}, which is {kind}", remedy)
+    return None
+
+
+def _list(error: BaseException, files: RobotFiles) -> Explanation | None:
+    """Explain a list for a library's function that takes its elements."""
+    where = users_frame(error, files)
+    for call in calls_at(*where, "") if where is not None and frames_of(error)[-1] is not where[0] else ():
+        if call.args and isinstance(call.args[0], ast.List):
+            elements = ", ".join(map(ast.unparse, call.args[0].elts))
+            text = f"{last_name(call.func)}() got a list, and takes what is in it"
+            return Explanation(text, f"Write {ast.unparse(call.func)}({elements})")
     return None
 
 

@@ -47,6 +47,13 @@ _COUNT = re.compile(
 )
 
 
+#: Functions of pyfrc whose parameters say less than an example.
+_SUCH_AS = {
+    "run_test": "For three seconds of robot time, write: control.run_test(lambda tm: tm < 3)",
+    "step_timing": "Write control.step_timing(seconds=3, autonomous=False, enabled=True)",
+}
+
+
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     text = text_of(error)
     where = users_frame(error, files)
@@ -271,7 +278,8 @@ def _count(found: re.Match[str], frame: FrameType, line: int, files: RobotFiles)
             got = f"with {found['keyword']}="
         elif found["missing"]:
             got = f"without {found['missing']}"
-        return Explanation(f"{name}() was called {got}", f"It takes: {name}({', '.join(parameters)}){at}")
+        takes = f"It takes: {name}({', '.join(parameters)}){at}"
+        return Explanation(f"{name}() was called {got}", _SUCH_AS.get(found["name"], takes))
     return None
 
 

@@ -202,6 +202,11 @@ ROWS = (
         "class {cls} has no MODE_NAME",
         'Write MODE_NAME = "Two balls" in the class.',
     ),
+    KnownError(
+        r"TypeError: .*'(?P<kind>tunable|will_reset_to)'",
+        "a {kind} works only in the body of a class, and this one is made in a method",
+        "Write name = {kind}(0.5) above the methods of the class, and self.name in them.",
+    ),
     # -- commands2
     KnownError(
         r"IllegalCommandUse: Multiple commands in a parallel composition cannot require.*\(common=\{<(?P<type>[\w.]+)",
@@ -318,7 +323,7 @@ def _explained(row: KnownError, found: re.Match[str], error: BaseException, file
         owners = (type(frame.f_locals.get("self")) for frame in reversed(frames_of(error)))
         cls = next((each for each in owners if line_of_class(each, files)), None)
         words["expected"] = getattr(vars(cls).get(words["name"]), "__name__", "TheClass") if cls else "TheClass"
-    cls = cls or users_class(error, files)
+    cls = cls or users_class(error, files, words.get("type", ""))
     words["cls"] = cls.__name__ if cls is not None else words.get("name", "")
     here = files.innermost_line(error.__traceback__, tests=False)
     first = next(reversed(_first_stack(str(error), files)), None)

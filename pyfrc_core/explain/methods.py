@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 import sys
+from collections.abc import Iterator
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
@@ -23,6 +24,11 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     found = re.match(r"TypeError: (?:([\w.<>]+)\.)?(\S+?)\(\) (?:takes|missing|got)", text_of(error))
     if found is None:
         return None
+    if (missing := re.search(r"missing .*: (.*)", str(error))) and found[2].startswith("test"):
+        place = next((each for each in _places_of_test(found[1] or "", found[2], files)), "")
+        text = f"the test does not get {missing[1]}: a unittest.TestCase passes no fixtures"
+        remedy = f"Write class {found[1]}: without (unittest.TestCase), and assert for self.assertEqual"
+        return Explanation(text, remedy, place) if place else None
     owner, method = _method(found[1], found[2], files)
     full = ".".join(filter(None, found.groups()))
     method = next((each for each in users_functions(error, files) if each.__qualname__ == full), method)
@@ -40,6 +46,14 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return Explanation(place=place)
     text = f"{full}{inspect.signature(method)} has other parameters than the method that it replaces"
     return Explanation(text, f"Write def {name}({', '.join(['self', *passed])}):", place)
+
+
+def _places_of_test(owner: str, name: str, files: RobotFiles) -> Iterator[str]:
+    """Yield the place of a test that is a method."""
+    for module in list(sys.modules.values()):
+        code = getattr(getattr(getattr(module, owner, None), name, None), "__code__", None)
+        if code is not None and files.is_project_file(code.co_filename):
+            yield f"{files.relative(code.co_filename)}:{code.co_firstlineno}"
 
 
 def _method(owner: str | None, name: str, files: RobotFiles) -> tuple[type[Any] | None, FunctionType | None]:

@@ -266,14 +266,18 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
         return Explanation(remedy=f"{name} is in another module: from {home} import {name}")
     known = [each for each in dir(obj) if not each.startswith("__")]
     where = users_frame(error, files)
+    in_test = where is not None and not files.is_robot_code(where[0].f_code.co_filename)
+    if in_test and is_module and module in _FIXTURES and files.is_robot_code(str(getattr(obj, "__file__", ""))):
+        text = f"{module} is the file {module}.py here, and not the {module} that the test runs"
+        return Explanation(text, f"Remove import {module}, and write {module} as a parameter of the test.")
     if isinstance(obj, Mapping) and name in obj and where is not None:
         written = next(ast.unparse(each) for each in _of_attribute(name, *where))
         return Explanation(f"{written} has no attributes: its values have keys", f"Write {written}[{name!r}]")
     if isinstance(obj, (int, float, str)):
-        held = [each for each in _of_attribute(name, *where) if value_of(each, where[0]) is obj] if where else []
-        if held and where is not None and (passed := _passed_in(held[0], obj, where[0], files)):
+        of = [each for each in _of_attribute(name, *where) if value_of(each, where[0]) is obj] if where else []
+        if of and where is not None and (passed := _passed_in(of[0], obj, where[0], files)):
             return passed
-        written = ast.unparse(held[0]) if held else ""
+        written = ast.unparse(of[0]) if of else ""
         kind = "a text" if isinstance(obj, str) else "True or False" if isinstance(obj, bool) else "a number"
         return Explanation(f"{written or repr(obj)} is {kind} ({obj!r}) and has no {name}", meant(name, known))
     declared = any(name in getattr(base, "__annotations__", {}) for base in owner.__mro__)
@@ -287,8 +291,8 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
     if is_library and not is_module and where is not None:
         written = next((ast.unparse(each) for each in _of_attribute(name, *where)), owner.__name__)
         inner = (each for each in vars(owner).values() if isinstance(each, type) and hasattr(each, name))
-        if isinstance(obj, type) and (nested := next(inner, None)) is not None:
-            return Explanation(f"{written} has no {name}", f"Write {written}.{nested.__name__}.{name}")
+        if isinstance(obj, type) and (holder := next(inner, None)) is not None:
+            return Explanation(f"{written} has no {name}", f"Write {written}.{holder.__name__}.{name}")
         text = f"{written}, {'the class' if isinstance(obj, type) else 'an object of'} {owner.__name__}, has no {name}"
         spelt_alike = len(name) > 1 and any(each.lower() == name.lower() for each in known)
         if not isinstance(obj, type) and not spelt_alike and (instead := _elsewhere(owner, name, written, files)):
@@ -312,11 +316,11 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
         return None
     place, target, method = place_of_assignment(owner, files, name)
     if isinstance(obj, type):
-        held = next(made_by(owner.__name__, files), ("", "", ""))[1]
-        if not place or not held:
+        instance = next((each[1] for each in made_by(owner.__name__, files)), "")
+        if not place or not instance:
             return Explanation(remedy=words) if words else None
         text = f"{owner.__name__} is the class, and only an object of it has {name} ({place} sets it)"
-        return Explanation(text, f"Write {held}.{name}")
+        return Explanation(text, f"Write {instance}.{name}")
     if (base := _missing_base(owner, name)) and not place:
         text = f"{owner.__name__} has no {name}: the class has no base class that has it"
         remedy = f"Write class {owner.__name__}({base}):, and super().__init__() as the first line of its __init__."
@@ -375,10 +379,11 @@ def _passed_in(held: ast.expr, value: object, frame: FrameType, files: RobotFile
     owner = type(frame.f_locals.get("self"))
     for file, tree in robot_trees(files):
         classes = (each for each in ast.walk(tree) if isinstance(each, ast.ClassDef) and each.name == owner.__name__)
-        for made in (each for cls in classes for each in cls.body if getattr(each, "name", "") == "__init__"):
+        methods = [each for cls in classes for each in cls.body if isinstance(each, ast.FunctionDef)]
+        for made in (each for each in methods if each.name == "__init__"):
             assigned = (each for each in ast.walk(made) if isinstance(each, ast.Assign))
             source = next((each.value for each in assigned if ast.unparse(each.targets[0]) == ast.unparse(held)), None)
-            parameters = [each.arg for each in made.args.args] if isinstance(made, ast.FunctionDef) else []
+            parameters = [each.arg for each in made.args.args]
             for place, call in robot_calls(files) if last_name(source or held) in parameters else ():
                 given = passed_to(call, parameters).get(last_name(source or held))
                 if last_name(call.func) == owner.__name__ and given is not None and value_of(given, frame) == value:

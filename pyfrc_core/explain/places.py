@@ -35,17 +35,19 @@ def _called_by_pyfrc(error: BaseException, files: RobotFiles) -> list[FrameType]
     return [] if any(files.is_project_file(frame.f_code.co_filename) for frame in called) else called
 
 
-def users_class(error: BaseException, files: RobotFiles) -> type[Any] | None:
+def users_class(error: BaseException, files: RobotFiles, other: str = "") -> type[Any] | None:
     """Return the class of the user's that a library was working with, from the variables of the library's functions.
 
     The innermost function's come first; `self` comes last in each, since it is often the robot.
+
+    :param other: the full name of a class that it is not
     """
     for frame in reversed(_called_by_pyfrc(error, files)):
         variables = dict(frame.f_locals)
         own = variables.pop("self", None)
         for value in (*variables.values(), own):
             cls = value if isinstance(value, type) else type(value)
-            if file_of(cls, files) is not None:
+            if file_of(cls, files) is not None and f"{cls.__module__}.{cls.__qualname__}" != other:
                 return cls
     return None
 

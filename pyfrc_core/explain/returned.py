@@ -59,7 +59,7 @@ def returned_by(cls: type[Any], module: str) -> str:
 
 def short_name(cls: type[Any]) -> str:
     """Return a name for an object of a class: ``limiter`` of `SlewRateLimiter`."""
-    return re.findall("[A-Z]+[a-z0-9]*", cls.__name__)[-1].lower()
+    return str(re.findall("[A-Z]+[a-z0-9]*", cls.__name__)[-1]).lower()
 
 
 def sibling_of(owner: type[Any], name: str, modules: Iterable[str]) -> tuple[str, type[Any]] | None:

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from ..project import Project
     from ..wpi.opmodes import OpmodeOfTests
 
+#: What a test that passes something else to `run_test` is to write.
+_SUCH_AS = "\n  For three seconds of robot time, write: control.run_test(lambda tm: tm < 3)"
 OnStep: TypeAlias = Callable[[float], object]
 Instance = TypeVar("Instance")
 
@@ -192,13 +194,13 @@ class TestController:
             target = controller if instance is None else instance
             on_step = getattr(target, "on_step", target)
             if not callable(on_step):
-                raise WrongController(
-                    f"run_test(controller): {controller!r} is neither a function nor a class with an on_step method"
-                )
+                text = f"run_test(controller): {controller!r} is neither a function nor a class with an on_step method"
+                raise WrongController(text + _SUCH_AS)
             _check_callable(on_step, "with one argument, the robot time in seconds", 0.0)
             steps.append(self._check_result(on_step) if self._practice_match is None else _until_false(on_step))
         if not steps:
-            raise WrongController("run_test() needs a function to call on each step, or set_practice_match() before it")
+            text = "run_test() needs a function to call on each step, or set_practice_match() before it"
+            raise WrongController(text + _SUCH_AS)
         return instance, steps
 
     def _check_result(self, on_step: OnStep) -> OnStep:
@@ -348,9 +350,10 @@ def _check_callable(function: Callable[..., object], how: str, *arguments: objec
     try:
         signature.bind(*arguments)
     except TypeError as problem:
-        name = getattr(function, "__qualname__", repr(function))
+        name = getattr(function, "__qualname__", repr(function)).rpartition("<locals>.")[2]
         raise WrongController(
             f"run_test(controller): {name}{signature} is called {how}, which does not fit its parameters ({problem})"
+            f"{_SUCH_AS}"
         ) from None
 
 

@@ -356,7 +356,7 @@ class PyFrcPlugin(WatchedTests):
         if report.failed and call.excinfo is not None:
             error = call.excinfo.value
             if not explained:  # that of a unittest.TestCase, which pytest has only now
-                text = headline(error, files)
+                text, only = headline(error, files), short and files.innermost_line(error.__traceback__) is None
             if text is not None:
                 if not never_run and headline_is_the_robots(text, files):
                     setattr(report, BUG, bug_of(text))

@@ -20,6 +20,7 @@ from pyfrc_core.runtime.checks.no_effect import find_lines_without_effect
 from pyfrc_core.runtime.checks.setting_names import find_misspelled_settings
 from pyfrc_core.runtime.checks.sources import Source
 from pyfrc_core.runtime.checks.wrong_moments import find_wrong_moments
+from pyfrc_core.runtime.checks.wrong_tests import find_wrong_tests
 from pyfrc_core.runtime.checks.wrong_units import find_wrong_units
 
 
@@ -43,6 +44,7 @@ def hints(text: str, is_test: bool = False) -> list[str]:
         *find_lost_commands(kinds),
         *find_wrong_moments(kinds),
         *find_wrong_units(kinds),
+        *find_wrong_tests(kinds),
     ]
     return [f"{each.where.removeprefix('robot.py:')}: {each.text} / {each.remedy}" for each in found]
 
@@ -187,6 +189,134 @@ def test_a_command_that_is_not_returned(line: str, written: str) -> None:
     )
     for right in (f"return {line}", f"{line}.schedule()", f"a.onTrue({line})", "self.run()", "a.fetch()"):
         assert hints(robot.format(right)) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        (
+            "take = self.go()\n        take.withTimeout(2)",
+            "a new command, which nothing uses; take is unchanged / Write take = take.withTimeout(2)",
+        ),
+        (
+            "a.onTrue(commands2.cmd.runOnce(lambda: self.go()))",
+            "self.go() makes a command, which runOnce() throws away: it never runs / Write self.go() in place of",
+        ),
+        ("a.onTrue(commands2.cmd.runOnce(self.go))", "self.go() makes a command, which runOnce() throws away"),
+        (
+            "return commands2.cmd.sequence(self.run(a), commands2.cmd.none())",
+            "self.run(a) never ends by itself, so what follows it never begins / Write self.run(a).withTimeout(2)",
+        ),
+        ("return self.go().andThen(self.go())", "self.go() never ends by itself"),
+        ("a.onTrue(lambda: self.stop())", "onTrue() got the function lambda: self.stop(), and no command"),
+    ],
+)
+def test_a_command_that_never_runs(line: str, found: str) -> None:
+    robot = f"""
+    class Arm:
+        def go(self): return self.run(self.stop)
+        def stop(self): self.motor = 1
+        def bind(self, a):
+            {line}
+    """
+    (hint,) = hints(robot.replace("\n        take.", "\n            take."))
+    assert found in hint
+
+
+def test_commands_of_a_robot_that_does_not_run_them() -> None:
+    robot = "class Robot(wpilib.TimedRobot):\n    def bind(self, a, c): a.onTrue(c)\n"
+    (found,) = hints(robot)
+    assert found.startswith("1: no command ever runs: Robot is a wpilib.TimedRobot")
+    assert hints(robot.replace("a.onTrue(c)", "a.onTrue(c); commands2.CommandScheduler.getInstance().run()")) == []
+    assert hints(robot.replace("wpilib.TimedRobot", "commands2.TimedCommandRobot")) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        (
+            "self.go().schedule()",
+            "each time this line starts a new command, which ends the one before / Move it to tel",
+        ),
+        ("if self.c: self.c.schedule()", "starts the command again, as soon as it has ended"),
+        ("if self.pad.getAButtonPressed(): self.c.schedule()", ""),
+        ("self.timer.restart()", "each time self.timer.restart() starts again from 0 / Move it to teleopInit."),
+        ("if self.done: self.timer.restart()", ""),
+        ("t = wpilib.Timer()", "makes a new Timer in each loop, which knows nothing of the last one / Write self.t = "),
+        ("self.drive.arcadeDrive(1, 0)", ""),
+        ("self.motor.set(50)", "power is from -1 to 1, so 50 is full power / If it is in percent, write 0.5"),
+        ("self.motor.set(-1)", ""),
+        ("self.motor.setVoltage(12)", ""),
+    ],
+)
+def test_what_is_done_in_each_loop(line: str, found: str) -> None:
+    robot = f"""
+    class Robot:
+        def robotInit(self):
+            self.timer = wpilib.Timer()
+            self.motor = wpilib.PWMSparkMax(1)
+            self.timer.start()
+        def go(self): return self.run(self.stop)
+        def teleopPeriodic(self):
+            {line}
+    """
+    assert [found in each for each in hints(robot)] == [True] * bool(found)
+
+
+def test_a_drive_that_is_set_once() -> None:
+    robot = """
+    import wpilib.drive
+    class Robot:
+        def robotInit(self):
+            self.drive = wpilib.drive.DifferentialDrive(print, print)
+        def autonomousInit(self):
+            self.drive.arcadeDrive(0.5, 0)
+        def autonomousPeriodic(self): pass
+    """
+    (found,) = hints(robot)
+    assert found.startswith("6: self.drive.arcadeDrive(0.5, 0) is called once, and motor safety stops the motors")
+    assert hints(robot.replace("pass", "self.go()")) == []
+    assert hints(robot.replace("0.5", "0")) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "right"),
+    [
+        ("Rotation2d(90)", "Rotation2d.fromDegrees(90)"),
+        ("Rotation2d(1)", ""),
+        ("Pose2d(1, 2, 90)", "Pose2d(1, 2, Rotation2d.fromDegrees(90))"),
+        ("Pose2d(1, 20, Rotation2d())", ""),
+        ("math.sin(self.gyro.getAngle())", "math.sin(math.radians(self.gyro.getAngle()))"),
+    ],
+)
+def test_an_angle_in_degrees_where_radians_belong(line: str, right: str) -> None:
+    text = f"import math\nfrom wpimath.geometry import Pose2d, Rotation2d\ndef go(self):\n    return {line}\n"
+    assert [f"Write {right}" in each for each in hints(text)] == [True] * bool(right)
+
+
+def test_a_value_that_nothing_uses() -> None:
+    text = "import wpimath\ndef go(speed, gyro):\n    wpimath.applyDeadband(speed, 0.1)\n    gyro.getAngle()\n"
+    (found,) = hints(text)
+    assert found.endswith("and nothing is done with it / Write speed = wpimath.applyDeadband(speed, 0.1)")
+
+
+def test_a_test_with_a_robot_of_its_own_and_late_inputs() -> None:
+    test = """
+    import unittest
+    class MyRobot(wpilib.TimedRobot): pass
+    class TestIt(unittest.TestCase):
+        def test_it(self):
+            MyRobot()
+    def test_late(control, hal_data):
+        control.run_test(lambda tm: tm < 1)
+        hal_data["dio"][0]["value"] = True
+    """
+    found = hints(test, is_test=True)
+    assert [each[:30] for each in found] == [
+        "3: TestIt is a unittest.TestCa",
+        "8: hal_data['dio'][0]['value']",
+        "5: MyRobot() makes a robot tha",
+    ]
 
 
 def test_a_command_that_nothing_uses() -> None:

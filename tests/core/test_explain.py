@@ -11,6 +11,7 @@ from textwrap import dedent
 from types import ModuleType
 
 import commands2
+import commands2.button
 import pytest
 import wpilib
 import wpilib.drive
@@ -284,6 +285,55 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ("speed += 1", "speed has no value yet", "Write self.speed += 1, and self.speed = 0 in robotInit"),
         ("self.speed = 1\nspeed += 1", "speed has no value yet", "Write self.speed += 1."),
         ("def go(a, *, speed): pass\ngo(1)", "go() was called without 'speed'", "It takes: go(a, speed=...)"),
+        # A name that another class has
+        (
+            "self.pad = wpilib.Joystick(0)\nself.pad.getLeftY()",
+            "self.pad, an object of Joystick, has no getLeftY",
+            "XboxController has it: write wpilib.XboxController(0) in robot.py:2, where it is made",
+        ),
+        (
+            "import ntcore\nt = ntcore.NetworkTableInstance.getDefault().getDoubleTopic('a')\nt.set(1)",
+            "t, an object of DoubleTopic, has no set",
+            "write publisher = t.publish() once, and then publisher.set(...)",
+        ),
+        (
+            "p = commands2.button.CommandXboxController(0)\np.getAButton()",
+            "has no getAButton",
+            "XboxController has it: write p.getHID().getAButton(...)",
+        ),
+        ("wpilib.DoubleSolenoid.kForward", "has no kForward", "Write wpilib.DoubleSolenoid.Value.kForward"),
+        ("wpilib.XboxController(0).getRightTrigger()", "has no getRightTrigger", "Did you mean getRightTriggerAxis?"),
+        (
+            "class Arm:\n    def go(self): self.runOnce(self.go)\nArm().go()",
+            "Arm has no runOnce",
+            "Arm(commands2.Subsystem):",
+        ),
+        (
+            "import wpilib.drive.DifferentialDrive",
+            "is a class of wpilib.drive",
+            "from wpilib.drive import DifferentialDrive",
+        ),
+        ("class A(wpilib.Timer()): pass", "wpilib.Timer() is an object", "Write class A(wpilib.Timer):"),
+        (
+            "commands2.PrintCommand('a').addRequirements([self])",
+            "addRequirements() got a list",
+            "addRequirements(self)",
+        ),
+        ("wpilib.drive.DifferentialDrive(0, 1)", "got 0, a number, and no MotorController", "Create an object first"),
+        (
+            "s = wpilib.DoubleSolenoid(wpilib.PneumaticsModuleType.REVPH, 0, 1)\ns.set('forward')",
+            "set() got 'forward', a text",
+            "Write wpilib.DoubleSolenoid.Value.kForward",
+        ),
+        (
+            "commands2.button.JoystickButton(0, 1)",
+            "JoystickButton() got 0, which is a number",
+            "an object with getRawButton",
+        ),
+        ("s = {'Fast': 1}\ns['fast']", "s has no key 'fast'", "Did you mean 'Fast'?"),
+        ("for each in range(10 / 2): pass", "range() takes whole numbers", "Write 10 // 2"),
+        ("a = 2.5\nif a > 1 & a < 3: pass", "& computes with the bits of 1 and a", "Write a > 1 and a < 3"),
+        ("2.0 * '0.5'", "a text or a list is multiplied", "float(text)"),
         # What only the driver station knows
         (
             "sign = {1: 2}[wpilib.DriverStation.getAlliance()]",

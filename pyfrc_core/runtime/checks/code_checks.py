@@ -17,6 +17,7 @@ from .opmodes_never_run import find_opmodes_never_run
 from .setting_names import find_misspelled_settings
 from .sources import sources
 from .wrong_moments import find_wrong_moments
+from .wrong_tests import find_wrong_tests
 from .wrong_units import find_wrong_units
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ def find_code_warnings(project: Project) -> list[CodeWarning]:
         *find_lost_commands(kinds),
         *find_wrong_moments(kinds),
         *find_wrong_units(kinds),
+        *find_wrong_tests(kinds),
         *find_wrong_comparisons(files),
         *find_early_reads(robots),
         *find_misspelled_settings(project),

@@ -66,7 +66,7 @@ def _never_equal(enum: type[Any], value: str | int, place: str) -> CodeWarning:
 
 @cache
 def _enums() -> dict[str, type[Any]]:
-    """Return the enums, and bool, that functions of WPILib return, by the function's name, if all of this name return one."""
+    """Return the enums, or bool, that WPILib's functions return, by their name, if all of this name return it."""
     found: dict[str, type[Any] | None] = {}
     for module in [each for name, each in list(sys.modules.items()) if name in names.LIBRARIES]:
         for cls in [each for each in vars(module).values() if isinstance(each, type)]:

@@ -7,6 +7,7 @@ import re
 import sys
 from collections.abc import Iterator
 from functools import cached_property
+from types import BuiltinFunctionType
 from typing import Any
 
 from ...explain.places import last_name
@@ -23,7 +24,9 @@ _ENDLESS = re.compile(
 #: What the documentation of a function says that returns a value.
 _VALUE = re.compile(r"\) -> (?:float|int|bool|str|wpimath\.(?:units|geometry)\.[\w.]+)$", re.MULTILINE)
 #: How methods begin that change nothing.
-_ASKS = re.compile(r"(?:get|is|has|at)(?=[A-Z_]|$)(?!.*(?:Pressed|Released|_pressed|_released|nstance))")
+_ASKS = re.compile(
+    r"(?:get|is|has|at|to|from|calculate)(?=[A-Z_]|$)(?!.*(?:Pressed|Released|_pressed|_released|nstance))"
+)
 
 
 class Kinds:
@@ -45,11 +48,13 @@ class Kinds:
                     self._hold(node, source)
 
     def _hold(self, node: ast.Assign | ast.AnnAssign | ast.arg, source: Source) -> None:
-        value, annotation = getattr(node, "value", None), getattr(node, "annotation", None)
+        value: ast.expr | None = getattr(node, "value", None)
+        annotation: ast.expr | None = getattr(node, "annotation", None)
+        targets: list[Any] = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", node)]
         if isinstance(value, ast.Constant) and value.value is None:
             return
         found = self.of(value, source) if value is not None else object_of(annotation, source)
-        for target in node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", node)]:
+        for target in targets:
             name = getattr(target, "arg", "") or last_name(target)
             cls = found if isinstance(found, type) else None
             for key in (("", name), (source.name, name)) if annotation is not None or value is not None else ():
@@ -81,9 +86,9 @@ class Kinds:
         module = str(getattr(called, "__module__", None))
         if isinstance(called, type) or not module.startswith(("wpimath", "wpilib", "math")):
             return False
-        asks = not isinstance(call.func, ast.Attribute) or _ASKS.match(call.func.attr) is not None
+        asks = isinstance(called, BuiltinFunctionType) or _ASKS.match(last_name(call.func)) is not None
         is_value = module == "math" or _VALUE.search(str(called.__doc__)) is not None
-        return is_value and (asks or not module.startswith("wpilib"))
+        return is_value and (asks or "geometry" in module)
 
     # -- commands --------------------------------------------------------------------------------------------------
 

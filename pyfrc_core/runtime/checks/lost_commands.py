@@ -24,13 +24,25 @@ def find_lost_commands(kinds: Kinds) -> Iterator[CodeWarning]:
     defined = dict(users_definitions((each.name, each.tree) for each in robots))
     callers = {last_name(call.func): place for place, call in _used_calls(robots)}
     for source in robots:
+        assigned = {
+            each.id for each in ast.walk(source.tree) if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)
+        }
         for function in (each for each in ast.walk(source.tree) if isinstance(each, ast.FunctionDef)):
             for each in ast.walk(function):
-                if isinstance(each, ast.Expr) and kinds.makes_command(each.value, source):
+                if (
+                    isinstance(each, ast.Expr)
+                    and isinstance(each.value, ast.Call)
+                    and kinds.makes_command(each.value, source)
+                ):
                     yield _dropped(each.value, function, source, callers.get(function.name, ""))
         for call in (each for each in ast.walk(source.tree) if isinstance(each, ast.Call)):
             name = last_name(call.func)
-            if name in BINDINGS and call.args and (found := no_command(call.args[0], defined)):
+            if (
+                name in BINDINGS
+                and call.args
+                and last_name(call.args[0]) not in assigned
+                and (found := no_command(call.args[0], defined))
+            ):
                 yield CodeWarning(source.at(call), f"{name}() got {found[0]}", found[1])
             elif name in _CALLING:
                 yield from _made_inside(call, kinds, source)

@@ -14,7 +14,6 @@ from .sources import Source
 
 _TIMER = {"get", "haselapsed", "advanceifelapsed"}
 _TOGGLED = "is never set, so toggle() does nothing: it is off"
-_PULSES = "counts pulses, and no metres or turns: setDistancePerPulse() is never called"
 #: What is useless before it is started: by the class, the methods that start it, those that use it, the effect, and
 #: what to write, if it is more than the call.
 _STARTED = {
@@ -22,7 +21,6 @@ _STARTED = {
     "AddressableLED": ({"start"}, {"setdata"}, "is never started, so it stays dark", ""),
     "Notifier": ({"startperiodic", "startsingle"}, set(), "is never started, so its function is never called", ""),
     "DoubleSolenoid": ({"set"}, {"toggle"}, _TOGGLED, "{}.set(wpilib.DoubleSolenoid.Value.kReverse)"),
-    "Encoder": ({"setdistanceperpulse"}, {"getdistance", "getrate"}, _PULSES, "{}.setDistancePerPulse(1 / PULSES)"),
     "SendableChooser": (
         set(),
         {"getselected"},

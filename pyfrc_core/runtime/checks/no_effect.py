@@ -39,7 +39,7 @@ def find_lines_without_effect(kinds: Kinds) -> Iterator[CodeWarning]:
             if isinstance(node, ast.Expr):
                 yield from _of_expression(node.value, kinds, source)
             elif isinstance(node, ast.Assign):
-                yield from _of_assignment(node, source)
+                yield from _of_assignment(node, kinds, source)
             elif isinstance(node, (ast.If, ast.While, ast.IfExp, ast.Assert)):
                 for each in _conditions(node.test):
                     name = last_name(each)
@@ -99,9 +99,16 @@ def _of_expression(value: ast.expr, kinds: Kinds, source: Source) -> Iterator[Co
         yield CodeWarning(source.at(value), text, remedy)
 
 
-def _of_assignment(node: ast.Assign, source: Source) -> Iterator[CodeWarning]:
+def _of_assignment(node: ast.Assign, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
     """Yield ``speed =+ 1``."""
     value, target = node.value, node.targets[0]
+    if isinstance(target, ast.Attribute) and (owner := kinds.of(target.value, source)) is not None:
+        setter = f"set{target.attr[:1].upper()}{target.attr[1:]}"
+        if hasattr(owner, setter) and not hasattr(owner, target.attr) and last_name(target.value) != "self":
+            written = f"{ast.unparse(target.value)}.{setter}({ast.unparse(value)})"
+            yield CodeWarning(
+                source.at(node), f"{ast.unparse(target)} is a new name, which nothing reads", f"Write {written}"
+            )
     if not isinstance(value, ast.UnaryOp) or not isinstance(value.op, (ast.UAdd, ast.USub)):
         return
     sign = "+" if isinstance(value.op, ast.UAdd) else "-"

@@ -1,4 +1,4 @@
-"""Find what happens in each loop and should happen once, and a drive that is set once and should be set in each loop."""
+"""Find what happens in each loop and should happen once, and a drive that is set once and not in each loop."""
 
 from __future__ import annotations
 
@@ -44,18 +44,18 @@ def _in_each_loop(method: ast.FunctionDef, kinds: Kinds, source: Source) -> Iter
                 text = f"{method.name} makes a new {called.__name__} in each loop, which knows nothing of the last one"
                 remedy = f"Write self.{name} = {written} in {made_at}, and use self.{name} here"
                 yield CodeWarning(source.at(call), text, remedy)
-        call = statement.value if isinstance(statement, ast.Expr) else None
-        if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Attribute):
+        once = statement.value if isinstance(statement, ast.Expr) else None
+        if not isinstance(once, ast.Call) or not isinstance(once.func, ast.Attribute):
             continue
-        if call.func.attr == "schedule" and not call.args:
-            new = kinds.makes_command(call.func.value, source)
+        if once.func.attr == "schedule" and not once.args:
+            new = kinds.makes_command(once.func.value, source)
             what = "a new command, which ends the one before" if new else "the command again, as soon as it has ended"
             text = f"{method.name} is called every 20 ms, and each time this line starts {what}"
             remedy = f"Move it to {beginning}; or bind the command to a button in __init__: button.onTrue(command)"
-            yield CodeWarning(source.at(call), text, remedy)
-        elif normalized(call.func.attr) in _RESTARTS and not call.args and kinds.is_library(call, source):
-            text = f"{method.name} is called every 20 ms, and each time {ast.unparse(call)} starts again from 0"
-            yield CodeWarning(source.at(call), text, f"Move it to {beginning}.")
+            yield CodeWarning(source.at(once), text, remedy)
+        elif normalized(once.func.attr) in _RESTARTS and not once.args and kinds.is_library(once, source):
+            text = f"{method.name} is called every 20 ms, and each time {ast.unparse(once)} starts again from 0"
+            yield CodeWarning(source.at(once), text, f"Move it to {beginning}.")
 
 
 def _remembers(cls: type[Any]) -> bool:

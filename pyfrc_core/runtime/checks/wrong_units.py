@@ -34,7 +34,7 @@ def find_wrong_units(kinds: Kinds) -> Iterator[CodeWarning]:
 
 
 def _rotations(called: object, count: int) -> list[int]:
-    """Return which of a library's function's parameters are angles: WPILib takes a number for a Rotation2d as radians."""
+    """Return which parameters of a library's function are angles: WPILib takes a number for a Rotation2d as radians."""
     function = called.__init__ if isinstance(called, type) else called  # type: ignore[misc]
     forms = _FORM.findall(str(function.__doc__)) if str(getattr(called, "__module__", "")).startswith("wpi") else []
     kinds = [re.findall(r"(?<![.\w])(?!self)\w+: ([\w.]+)", form) for form in forms]
