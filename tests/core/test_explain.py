@@ -326,7 +326,7 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "Write wpilib.DoubleSolenoid.Value.kForward",
         ),
         (
-            "commands2.button.JoystickButton(0, 1)",
+            "commands2.button.JoystickButton(0, 1).onTrue(commands2.PrintCommand('a'))",
             "JoystickButton() got 0, which is a number",
             "an object with getRawButton",
         ),
