@@ -127,7 +127,7 @@ ROWS = (
     ),
     KnownError(
         r"MagicInjectError: (?:Component|Autonomous mode) .+? has variable (?P<name>\w+) "
-        r"\(type <class '(?P<type>(?!builtins|wpi|rev|phoenix|navx|ntcore|commands2)[^']+)'>\), which is absent",
+        r"\(type <class '(?P<type>(?!wpi|rev|phoenix|navx|ntcore|commands2)\w+\.[^']+)'>\), which is absent",
         "class {cls} asks for {name}, which the robot does not declare",
         "Write {name}: {type} among the components of the robot's class.",
         at="{name}",

@@ -86,9 +86,10 @@ class Kinds:
         module = str(getattr(called, "__module__", None))
         if isinstance(called, type) or not module.startswith(("wpimath", "wpilib", "math")):
             return False
-        asks = isinstance(called, BuiltinFunctionType) or _ASKS.match(last_name(call.func)) is not None
+        asks = _ASKS.match(last_name(call.func)) is not None
         is_value = module == "math" or _VALUE.search(str(called.__doc__)) is not None
-        return is_value and (asks or "geometry" in module)
+        is_function = isinstance(called, BuiltinFunctionType) and not module.startswith("wpilib")
+        return is_value and (asks or is_function or "geometry" in module)
 
     # -- commands --------------------------------------------------------------------------------------------------
 
