@@ -17,8 +17,18 @@ from ..wording import counted
 from .calls import called_on_class
 from .explanation import Explanation, ask_for
 from .names import home_of
-from .places import calls_at, frames_of, last_name, owner_of, passed_to, robot_calls, users_frame, value_of
-from .returned import class_of
+from .places import (
+    calls_at,
+    frames_of,
+    last_name,
+    owner_of,
+    passed_to,
+    robot_calls,
+    users_frame,
+    value_of,
+    without_return,
+)
+from .returned import class_of, numbers_of
 
 _INCOMPATIBLE = re.compile(
     r"TypeError: (?:\nTypeError: )?(?:\w+\.)*(?P<name>\w+)\(\): incompatible (?:function|constructor) arguments\..*?\n"
@@ -147,7 +157,7 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
     values = _values(found["got"], len(call.args) + len(call.keywords))
     none = next((at for at, value in enumerate(values) if value == "None"), None)
     if none is not None and none < len(got):
-        return _got_none(name, got[none], takes)
+        return _got_none(name, got[none], files, takes)
     shown = ", ".join(got) or "no arguments"
     count = len(got)
     needed = sorted({len([each for each in form if "=" not in each]) for form in forms})
@@ -156,6 +166,10 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
         need = f"{needed[0]}" if needed[0] == most else f"{needed[0]} to {most}"
         text = f"{name}() was called with {counted(count, 'value')}, but takes {need}"
         return Explanation(text, f"It takes: {takes}")
+    if len(got) == 2 and not call.keywords and (swapped := _swapped(values, got, forms)):
+        return Explanation(
+            f"{name}() got its two values in the wrong order", f"Write {name}({swapped})\n  It takes: {takes}"
+        )
     paths = {each.rpartition(".")[2]: each for each in re.findall(r": ([\w.]+)", found["forms"])}
     for at, (value, written) in enumerate(zip(values, got, strict=False)):
         kinds = [form[at].partition(": ")[2].partition(" = ")[0] for form in forms if at < len(form)]
@@ -200,8 +214,15 @@ def _wrong(value: str, written: str, kinds: list[str], paths: dict[str, str]) ->
         return f"{written}, a text", remedy
     if re.fullmatch(r"-?\d+(\.\d+)?|True|False", value) and kinds == ["str"]:
         return f"{written}, which is no text", f"Write str({written}), or the text in quotes."
-    if (of := re.match(r"<(?:[\w.]*\.)?(\w+) ", value)) and kinds == ["number"]:
-        return f"{written}, an object of {of[1]}", "Pass a number."
+    if (of := re.match(r"<?(?:[\w.]*\.)?([A-Z]\w+)[ (]", value)) and kinds == ["number"]:
+        numbers = numbers_of(getattr(sys.modules.get(home_of(of[1])), of[1], object))
+        shown = ", ".join(f".{each}()" for each in numbers[:6])
+        return (
+            f"{written}, an object of {of[1]}",
+            f"Pass a number, such as one of these of it: {shown}" if shown else "Pass a number.",
+        )
+    if value[:1] == "(" and kinds == ["number"]:
+        return f"{written}, which is {value}", f"Is there a comma too much, as in {written} = 0.5,? It makes a tuple."
     classes = [kind for kind in kinds if kind[:1].isupper() and "[" not in kind]
     if re.fullmatch(r"-?\d+(\.\d+)?", value) and classes and len(classes) + len(functions) == len(kinds):
         return f"{written}, a number, and no {classes[0]}", _object_for(classes[0], written)
@@ -210,12 +231,21 @@ def _wrong(value: str, written: str, kinds: list[str], paths: dict[str, str]) ->
     return None
 
 
+def _swapped(values: list[str], got: list[str], forms: list[list[str]]) -> str:
+    """Return two arguments in the other order, if one is a text where a number belongs, and the other the opposite."""
+    kinds = [[each.partition(": ")[2].partition(" = ")[0] for each in form] for form in forms]
+    are = ["str" if each[:1] in "'\"" else "number" for each in values]
+    return ", ".join(reversed(got)) if len(are) == 2 and are[0] != are[1] and [are[1], are[0]] in kinds else ""
+
+
 def _value_for(text: str, kinds: list[str]) -> str:
     """Return what to write for a text, where an enum's value or something else belongs."""
     for cls in (class_of(each) for each in kinds):
         known = {re.sub("^k", "", each).lower(): each for each in getattr(cls, "__members__", ())}
         if cls is not None and (close := get_close_matches(text.lower(), known, n=1)):
             return f"Write {cls.__module__.replace('._wpilib', '')}.{cls.__qualname__}.{known[close[0]]}"
+    if kinds == ["number"]:
+        return "Pass a number, and no text."
     return f"It must be: {' or '.join(each.rpartition('.')[2] for each in kinds)}."
 
 
@@ -247,7 +277,7 @@ def _text_passed(got: str, files: RobotFiles) -> Explanation | None:
     return None
 
 
-def _got_none(name: str, written: str, takes: str = "") -> Explanation:
+def _got_none(name: str, written: str, files: RobotFiles, takes: str = "") -> Explanation:
     """Explain an argument that is None.
 
     :param written: the argument as the user has written it
@@ -255,7 +285,9 @@ def _got_none(name: str, written: str, takes: str = "") -> Explanation:
     form = f"\n  It takes: {takes}" if takes else ""
     if written in ("None", ""):
         return Explanation(f"{name}() got None", f"Pass a value.{form}")
-    return Explanation(f"{name}() got None, from {written}", f"{ask_for(written)}{form}")
+    return Explanation(
+        f"{name}() got None, from {written}", f"{without_return(written, files) or ask_for(written)}{form}"
+    )
 
 
 def _parameters(text: str) -> list[str]:
@@ -330,5 +362,5 @@ def _wrong_type(error: BaseException, files: RobotFiles) -> Explanation | None:
     call = next(iter(calls_at(*where, name)), None)
     got = _written(call) if call is not None else []
     if wrong:
-        return _got_none(name, got[0] if len(got) == 1 else "")
+        return _got_none(name, got[0] if len(got) == 1 else "", files)
     return Explanation(f"{name}() does not take {', '.join(got) or 'a value of this type'}", "Pass a number.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import builtins
 import inspect
 import re
 from types import FrameType, ModuleType
@@ -14,6 +15,7 @@ from .explanation import Explanation, ask_for
 from .names import earlier_name
 from .places import (
     UNKNOWN,
+    beginning,
     calls_at,
     frames_of,
     functions_around,
@@ -149,6 +151,9 @@ def _called_value(frame: FrameType, line: int, files: RobotFiles) -> Explanation
             text = f"{written} was a method, but something has set it to {shown}"
             return Explanation(text, f"Search for {name} = and choose another name there.")
         kind = type(value).__name__
+        if hasattr(builtins, written):
+            text = f"{written} is {value!r} here, and no longer Python's function {written}()"
+            return Explanation(text, f"Write another name for it where {written} = ... stands.")
         if isinstance(call.func, ast.Name) and (explained := _no_functions(frame, line, files)):
             return explained
         instead = f"{written}[...]" if isinstance(value, (list, tuple, dict)) else written
@@ -278,6 +283,9 @@ def _count(found: re.Match[str], frame: FrameType, line: int, files: RobotFiles)
             got = f"with {found['keyword']}="
         elif found["missing"]:
             got = f"without {found['missing']}"
+        if call.args and ast.unparse(call.args[0]) == "self" == ast.unparse(call.func).partition(".")[0]:
+            rest = ", ".join(map(ast.unparse, call.args[1:]))
+            return Explanation(f"{name}() gets self twice: before the dot, and in ()", f"Write {name}({rest}){at}")
         takes = f"It takes: {name}({', '.join(parameters)}){at}"
         return Explanation(f"{name}() was called {got}", _SUCH_AS.get(found["name"], takes))
     return None
@@ -295,7 +303,8 @@ def called_on_class(call: ast.Call, cls: type, frame: FrameType, files: RobotFil
     if held := next((each[1] for each in made_by(cls.__name__, files)), ""):
         return Explanation(text, f"Write {held}.{name}(...)")
     if written.rpartition(".")[2] == cls.__name__:
-        remedy = f"Create an object in robotInit, as in: self.it = {written}(...). Then call: self.it.{name}(...)"
+        start = beginning(frame)
+        remedy = f"Create an object in {start}, as in: self.it = {written}(...). Then call: self.it.{name}(...)"
         return Explanation(text, remedy)
     passed = (place for place, call in robot_calls(files) if cls.__name__ in map(last_name, call.args))
     text = f"{written} is the class {cls.__name__}, and no object of it"

@@ -62,6 +62,8 @@ GONE = {
     "PIDController": "wpimath.controller.PIDController",
     "PowerDistributionPanel": "wpilib.PowerDistribution",
     "AddressableLEDBuffer": "[wpilib.AddressableLED.LEDData() for _ in range(60)]",
+    "PIDController.get": "calculate(measurement)",
+    "CameraServer.startAutomaticCapture": "wpilib.CameraServer.launch()",
     "GearTooth": "wpilib.Counter",
     "Shuffleboard": "wpilib.SmartDashboard",
     "Filesystem": "wpilib.getDeployDirectory() and wpilib.getOperatingDirectory()",
@@ -408,9 +410,9 @@ def earlier_name(name: str, owner: type) -> str:
 
 def home_of(name: str) -> str:
     """Return the module of WPILib that has a class or function of this name; empty if none has."""
-    for module in _HOMES if name[:1].isupper() and "wpilib" in sys.modules else ():
+    for module in _HOMES if len(name) > 5 and "wpilib" in sys.modules else ():
         try:
-            if find_spec(module) is not None and hasattr(import_module(module), name):
+            if find_spec(module) is not None and callable(getattr(import_module(module), name, None)):
                 return module
         except ImportError:  # the package is not installed
             continue
@@ -455,7 +457,7 @@ def meant(name: str, known: list[str]) -> str:
     longer = [each for each in known if set(words) <= set(_words(each, whole=True)) and each[0] != "_"]
     if same and begins != words[:1] and _words(same[0], whole=True)[:1] != begins:
         same = [each for each in longer if _words(each, whole=True)[:1] == begins] or same
-    close = same[:1] or get_close_matches(name, known, n=1, cutoff=0.75) or longer
+    close = same[:1] or get_close_matches(name, known, n=1, cutoff=0.75 if len(name) > 3 else 0.9) or longer
     return f"Did you mean {' or '.join(close[:_SHOWN])}?" if words and close else ""
 
 

@@ -174,6 +174,24 @@ def made_by(name: str, files: RobotFiles) -> Iterator[tuple[str, str, ast.Call]]
                 yield f"{file}:{node.lineno}", ast.unparse(node.targets[0]), value
 
 
+def beginning(frame: FrameType) -> str:
+    """Return the method in which the object whose method runs makes what it has."""
+    known = dir(frame.f_locals.get("self"))
+    return next((each for each in ("createObjects", "robotInit", "robot_init") if each in known), "__init__")
+
+
+def without_return(written: str, files: RobotFiles) -> str:
+    """Return what to write in the user's function, if an expression is the call of one that returns nothing."""
+    for file, tree in robot_trees(files):
+        for each in ast.walk(tree):
+            if isinstance(each, ast.FunctionDef) and re.search(rf"\b{each.name}\([^()]*\)$", written):
+                last = each.body[-1]
+                if not any(isinstance(node, ast.Return) for node in ast.walk(each)):
+                    what = ast.unparse(last) if isinstance(last, ast.Expr) else "its value"
+                    return f"{each.name}() returns nothing: write return {what} in {file}:{last.lineno}"
+    return ""
+
+
 def calls_at(frame: FrameType, line: int, name: str) -> list[ast.Call]:
     """Return the calls of a function or class, by its last name, in the statement at a line of a file."""
     calls = [node for node in ast.walk(parsed(frame.f_code.co_filename)) if isinstance(node, ast.Call)]

@@ -359,7 +359,7 @@ def test_the_alliance_is_read_before_it_is_known() -> None:
     assert found.startswith("3: the alliance is not known yet in robotInit: getAlliance() is None until")
     assert "Read it in autonomousInit and teleopInit" in found
     assert hints(early.replace("= wpilib.DriverStation.get", "= lambda: wpilib.DriverStation.get")) == []
-    assert hints(early + "\n    def autonomousInit(self): self.alliance = getAlliance()\n") == []
+    assert hints(early + "\n        def autonomousInit(self): self.alliance = getAlliance()\n") == []
     assert hints(early.replace("robotInit", "teleopInit")) == []
 
 

@@ -88,7 +88,7 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         (
             "def speed(): pass\nwpilib.PWMSparkMax(1).set(speed())",
             "set() got None, from speed()",
-            "Does speed() return something?\n  It takes: set(value: number)",
+            "speed() returns nothing: write return its value in robot.py:2\n  It takes: set(value: number)",
         ),
         ("wpilib.PWMSparkMax(1).set(speed=1)", "set() has no argument speed", "It takes: set(value: number)"),
         (
@@ -263,7 +263,8 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ("wpilib.PWMSparkMax(1).set(wpilib.Timer())", "got wpilib.Timer(), an object of Timer", "Pass a number."),
         ("kForward", "name 'kForward' is not defined", "Did you mean wpilib.DoubleSolenoid.Value.kForward?"),
         ("a, b = 3.0", "cannot unpack", "write one name before the =."),
-        ("wpilib.SmartDashboard.putNumber(3, 'x')", "putNumber() got 3, which is no text", "Write str(3)"),
+        ("wpilib.SmartDashboard.putString('a', 3)", "putString() got 3, which is no text", "Write str(3)"),
+        ("wpilib.SmartDashboard.putNumber(3, 'x')", "got its two values in the wrong order", "putNumber('x', 3)"),
         (
             "s = wpilib.DoubleSolenoid(wpilib.PneumaticsModuleType.REVPH, 0, 1)\ns.set(True)",
             "set() does not take True",

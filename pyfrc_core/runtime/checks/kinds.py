@@ -123,6 +123,11 @@ class Kinds:
             self.is_endless(each, where, calls - 1) for each, where in self._returned(name, calls)
         )
 
+    def returns_nothing(self, name: str) -> bool:
+        """Return whether all functions of the user's with this name return nothing, and there are some."""
+        found = self._functions.get(name, [])
+        return bool(found) and not any(isinstance(node, ast.Return) for each, _ in found for node in ast.walk(each))
+
     def _by_subsystem(self, made: ast.Call, source: Source) -> bool:
         owner = self.of(made.func.value, source) if isinstance(made.func, ast.Attribute) else None
         function = getattr(owner, last_name(made.func), None)

@@ -88,6 +88,10 @@ def _dropped(made: ast.Call, function: ast.FunctionDef, source: Source, caller: 
 def _made_inside(call: ast.Call, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
     """Yield ``runOnce(lambda: self.arm.raise_it())``, where that function returns a command."""
     for each in call.args:
+        if isinstance(each, ast.Call) and kinds.returns_nothing(last_name(each.func)):
+            text = f"{ast.unparse(each)} runs here, once, and {last_name(call.func)}() gets None"
+            right = f"lambda: {ast.unparse(each)}" if each.args else f"{ast.unparse(each.func)} without ()"
+            yield CodeWarning(source.at(each), text, f"Write {right}")
         made = each.body if isinstance(each, ast.Lambda) else ast.Call(each, [], [])
         if not isinstance(each, (ast.Lambda, ast.Attribute, ast.Name)) or not kinds.makes_command(made, source):
             continue

@@ -24,6 +24,10 @@ _RESTARTS = frozenset({"reset", "restart", "zeroyaw"})
 
 def find_wrong_moments(kinds: Kinds) -> Iterator[CodeWarning]:
     for source in (each for each in kinds.sources if not each.is_test):
+        for function in (each for each in source.tree.body if isinstance(each, ast.FunctionDef)):
+            if function.name in names.OF_MODES and [each.arg for each in function.args.args] == ["self"]:
+                text = f"WPILib never calls {function.name}: it is outside of the robot's class"
+                yield CodeWarning(source.at(function), text, "Indent it as much as the methods of the class.")
         for cls in (each for each in ast.walk(source.tree) if isinstance(each, ast.ClassDef)):
             methods = {each.name: each for each in cls.body if isinstance(each, ast.FunctionDef)}
             for method in methods.values():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 
 from ...explain.places import last_name
@@ -10,6 +11,8 @@ from .code_warning import CodeWarning
 from .kinds import Kinds, object_of
 from .sources import Source
 
+#: A line that sets what only robot code sets.
+_OUTPUT = re.compile(r"hal_data\['(?:pwm|relay|solenoid)'\]\[\d+\](?:\['\w+'\])? = ")
 _RUNS = "control.run_test(lambda tm: tm < 3)"
 
 
@@ -35,6 +38,9 @@ def find_wrong_tests(kinds: Kinds) -> Iterator[CodeWarning]:
 def _too_late(test: ast.FunctionDef, source: Source) -> Iterator[CodeWarning]:
     """Yield inputs that are set after ``control.run_test(...)``."""
     calls = [at for at, each in enumerate(test.body) if "control.run_test(" in ast.unparse(each)]
+    for each in (each for each in test.body if _OUTPUT.match(ast.unparse(each))):
+        text = f"{ast.unparse(each)} sets an output, and the robot's code sets it again"
+        yield CodeWarning(source.at(each), text, "Set what the robot reads, such as joysticks, and assert its outputs.")
     for each in test.body[calls[0] + 1 :] if len(calls) == 1 else ():
         written = ast.unparse(each)
         if isinstance(each, ast.Assign) and written.startswith("hal_data["):
