@@ -257,7 +257,10 @@ def _object_for(kind: str, written: str) -> str:
         return f"Write {kind}.fromDegrees({written}), if it is in degrees: from {home} import {kind}"
     if getattr(cls, "__module__", "").startswith("wpimath"):
         return f"Write {kind}(...), from {home} import {kind}"
-    return f"Create an object first, and pass that: a {kind}."
+    known = vars(sys.modules.get("wpilib", object))
+    derived = [name for name, each in known.items() if isinstance(each, type) and cls in each.__mro__[1:]]
+    example = "PWMSparkMax" if "PWMSparkMax" in derived else next(iter(derived), kind)
+    return f"Write wpilib.{example}({written}), or the name of an object that is made already."
 
 
 def _pass_function(written: str) -> str:

@@ -11,8 +11,8 @@ from types import FrameType, ModuleType
 from ..errors import nearest, text_of
 from ..project.robot_files import RobotFiles
 from ..wording import counted
+from .earlier_names import earlier_name
 from .explanation import Explanation, ask_for
-from .names import earlier_name
 from .places import (
     UNKNOWN,
     beginning,

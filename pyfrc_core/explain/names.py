@@ -18,6 +18,7 @@ from types import FrameType
 
 from ..project.robot_files import RobotFiles
 from . import places
+from .earlier_names import GONE, earlier_name
 from .explanation import Explanation
 from .other_season import OF_WPIMATH, in_2027
 from .places import (
@@ -36,120 +37,8 @@ from .places import (
 )
 from .returned import class_of, maker_of, returned_by, short_name, sibling_of
 
-
-def _spark(setting: str) -> str:
-    """Return how a motor controller of REV is set up: all settings at once."""
-    once = "MOTOR.configure(config, rev.ResetMode.kResetSafeParameters, rev.PersistMode.kPersistParameters)"
-    return f"config = rev.SparkMaxConfig(); config.{setting}; and once, with all settings: {once}"
-
-
 #: Names of other languages: what Python calls them.
 _ELSEWHERE = {"true": "True", "false": "False", "null": "None", "nil": "None", "NULL": "None", "this": "self"}
-
-#: Names of earlier seasons: what to write instead.
-GONE = {
-    # wpilib
-    "IterativeRobot": "wpilib.TimedRobot",
-    "SampleRobot": "wpilib.TimedRobot",
-    "RobotDrive": "wpilib.drive.DifferentialDrive",
-    "SpeedController": "wpilib.interfaces.MotorController",
-    "SpeedControllerGroup": "wpilib.MotorControllerGroup",
-    "Victor": "wpilib.PWMVictorSPX",
-    "Jaguar": "wpilib.PWMSparkMax",
-    "PWMSpark": "wpilib.Spark",
-    "PWMVictorSP": "wpilib.VictorSP",
-    "PWMTalon": "wpilib.PWMTalonSRX",
-    "PIDController": "wpimath.controller.PIDController",
-    "PowerDistributionPanel": "wpilib.PowerDistribution",
-    "AddressableLEDBuffer": "[wpilib.AddressableLED.LEDData() for _ in range(60)]",
-    "PIDController.get": "calculate(measurement)",
-    "CameraServer.startAutomaticCapture": "wpilib.CameraServer.launch()",
-    "GearTooth": "wpilib.Counter",
-    "Shuffleboard": "wpilib.SmartDashboard",
-    "Filesystem": "wpilib.getDeployDirectory() and wpilib.getOperatingDirectory()",
-    "command": "the package commands2",
-    "Hand": "getLeftX(), getRightX(), getLeftY() and getRightY()",
-    "GenericHID.getX": "getLeftX() or getRightX()",
-    "GenericHID.getY": "getLeftY() or getRightY()",
-    "GenericHID.getButton": "getRawButton(number), or the buttons by name, such as getAButton()",
-    "GenericHID.POV": "getPOV(), an angle in degrees: 0 is up, 90 right, and -1 that none is pressed",
-    "Timer.delay": "timer.get() or hasElapsed(seconds), asked each time: a robot that waits does nothing else",
-    "PWMMotorController.follow": "LEADER.addFollower(FOLLOWER)",
-    "DutyCycleEncoder.getAbsolutePosition": "get(), in turns from 0 to 1",
-    "AnalogEncoder.getAbsolutePosition": "get(), in turns from 0 to 1",
-    "DutyCycleEncoder.getDistance": "get(), in turns from 0 to 1, and your own factor",
-    "DutyCycleEncoder.setDistancePerRotation": "DutyCycleEncoder(channel, fullRange, expectedZero)",
-    "DutyCycleEncoder.reset": "DutyCycleEncoder(channel, fullRange, expectedZero)",
-    "DifferentialDrive.setRightSideInverted": "setInverted(True) of the right motor",
-    "NetworkTableInstance.getInstance": "ntcore.NetworkTableInstance.getDefault()",
-    "Compressor.start": "enableDigital()",
-    "setClosedLoopControl": "enableDigital() or disable()",
-    "Command.addSequential": "one.andThen(other)",
-    "Command.addParallel": "one.alongWith(other)",
-    "setInterruptible": "withInterruptBehavior(commands2.InterruptionBehavior.kCancelIncoming)",
-    "hasPeriodPassed": "hasElapsed(seconds), or advanceIfElapsed(seconds) for something that repeats",
-    "getInstance": "the methods of the class itself, such as wpilib.DriverStation.isEnabled()",
-    "addDefault": "setDefaultOption",
-    "addObject": "addOption",
-    "setSpeed": "set",
-    "isOperatorControl": "isTeleop",
-    "getBumper": "getLeftBumper and getRightBumper",
-    "getTriggerAxis": "getLeftTriggerAxis and getRightTriggerAxis",
-    "getStickButton": "getLeftStickButton and getRightStickButton",
-    "isSysBrownedOut": "isBrownedOut",
-    "putInt": "putNumber",
-    "putDouble": "putNumber",
-    "getDouble": "getNumber",
-    # commands2
-    "CommandBase": "commands2.Command",
-    "SubsystemBase": "commands2.Subsystem",
-    "Scheduler": "commands2.CommandScheduler",
-    "whenPressed": "onTrue",
-    "whenActive": "onTrue",
-    "whenReleased": "onFalse",
-    "whenInactive": "onFalse",
-    "whenHeld": "whileTrue",
-    "whileActiveOnce": "whileTrue",
-    "whileHeld": "whileTrue(command.repeatedly())",
-    "whileActiveContinous": "whileTrue(command.repeatedly())",
-    "whileActiveContinuous": "whileTrue(command.repeatedly())",
-    "toggleWhenPressed": "toggleOnTrue",
-    "toggleWhenActive": "toggleOnTrue",
-    "requires": "addRequirements",
-    "PerpetualCommand": "commands2.RepeatCommand",
-    "perpetually": "repeatedly",
-    "withInterrupt": "until",
-    "MecanumControllerCommand": "commands2.SwerveControllerCommand or a command of your own",
-    # vendors
-    "CANSparkMax": "rev.SparkMax",
-    "CANSparkMaxLowLevel": "rev.SparkLowLevel",
-    "CANSparkFlex": "rev.SparkFlex",
-    "CANEncoder": "rev.RelativeEncoder",
-    "CANPIDController": "rev.SparkClosedLoopController",
-    "SparkMaxPIDController": "rev.SparkClosedLoopController",
-    "SparkPIDController": "rev.SparkClosedLoopController",
-    "getPIDController": "getClosedLoopController",
-    "setSmartCurrentLimit": _spark("smartCurrentLimit(40)"),
-    "setIdleMode": _spark("setIdleMode(rev.SparkMaxConfig.IdleMode.kBrake)"),
-    "SparkBase.follow": _spark("follow(LEADER)"),
-    "setOpenLoopRampRate": _spark("openLoopRampRate(0.5)"),
-    "enableVoltageCompensation": _spark("voltageCompensation(12)"),
-    "setPositionConversionFactor": _spark("encoder.positionConversionFactor(0.05)"),
-    "setVelocityConversionFactor": _spark("encoder.velocityConversionFactor(0.05)"),
-    "SparkClosedLoopController.setP": _spark("closedLoop.P(0.1)"),
-    "restoreFactoryDefaults": _spark("inverted(False)"),
-    "burnFlash": _spark("inverted(False)"),
-    "AHRS_SPI": "navx.AHRS.create_spi()",
-    "WPI_TalonFX": "phoenix6.hardware.TalonFX",
-    "NetworkTables": "ntcore.NetworkTableInstance.getDefault()",
-    # pyfrc: words of WPILib, where the fixtures have those of 2019
-    "TestController.set_teleop": "control.set_operator_control(enabled=True)",
-    "TestController.set_teleoperated": "control.set_operator_control(enabled=True)",
-    "TestController.set_disabled": "control.set_operator_control(enabled=False)",
-    "TestController.enable": "control.set_operator_control(enabled=True) or control.set_autonomous(enabled=True)",
-    "TestController.disable": "control.set_operator_control(enabled=False)",
-    "FakeTime.sleep": "fake_time.increment_time_by(seconds), or control.step_timing(...) for a robot that runs",
-}
 
 #: The parameters of tests.
 _FIXTURES = frozenset({"control", "fake_time", "hal_data", "physics_controller", "robot", "robot_file", "robot_path"})
@@ -400,12 +289,6 @@ def _of_attribute(name: str, frame: FrameType, line: int) -> Iterator[ast.expr]:
     for each in ast.walk(statement_at(frame, line)):
         if isinstance(each, ast.Attribute) and each.attr == name:
             yield each.value
-
-
-def earlier_name(name: str, owner: type) -> str:
-    """Return what replaces a name of earlier seasons in a class; empty if none is known."""
-    keys = [f"{base.__name__}.{name}" for base in owner.__mro__] + [name]
-    return next((in_2027(GONE[key]) for key in keys if key in GONE), "")
 
 
 def home_of(name: str) -> str:

@@ -49,7 +49,17 @@ from .device_misuse import warning_of_misuse
 from .fake_time import FakeTime
 from .hangs import ROBOT_FIXTURES, WatchedTests
 from .options import READY_MADE_DIRECTORY, READY_MADE_TESTS, TestOptions
-from .reporting import BUG, NEVER_RUN, UNREPEATABLE, bug_of, never_ran_the_robot, put_first, seed_section
+from .reporting import (
+    BUG,
+    NEVER_ENABLED,
+    NEVER_RUN,
+    UNREPEATABLE,
+    bug_of,
+    never_enabled_the_robot,
+    never_ran_the_robot,
+    put_first,
+    seed_section,
+)
 from .reraise import THEIRS, ReraisePlugin
 
 if TYPE_CHECKING:
@@ -367,6 +377,8 @@ class PyFrcPlugin(WatchedTests):
                 report.longrepr = f"{file}:{(line or 0) + 1}: there is no fixture {error.argname!r}\n  {known}"
             if never_run:
                 report.sections.append(NEVER_RUN)
+            elif isinstance(error, AssertionError) and never_enabled_the_robot(item):
+                report.sections.append(NEVER_ENABLED)
             elif isinstance(error, AssertionError) and not hasattr(report, BUG):
                 report.sections += opmodes.hint_without_opmode(item)
             report.sections.append(seed_section(self.options, item))

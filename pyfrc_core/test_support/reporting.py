@@ -30,6 +30,13 @@ NEVER_RUN = (
     "The robot was never run in this test: call control.run_test(...), or step inside `with control.run_robot():`.",
 )
 
+#: The same for one that never enabled the robot.
+NEVER_ENABLED = (
+    "pyfrc",
+    "The robot was disabled in this test: write control.set_operator_control(enabled=True) before the run, or "
+    "control.set_autonomous(enabled=True).",
+)
+
 #: Numbers in a message, such as times and addresses, differ from test to test.
 _NUMBER = re.compile(r"0x[0-9a-f]+|\d+(\.\d+)?(e-?\d+)?")
 
@@ -69,6 +76,17 @@ def never_ran_the_robot(item: pytest.Item, failure: pytest.ExceptionInfo[BaseExc
         if re.search(r"^[^#\n]*\.run_(test|robot)\(", inspect.getsource(function), re.MULTILINE):
             return False  # it has failed before that line
     return all(str(entry.path) != controller.__file__ for entry in failure.traceback)
+
+
+def never_enabled_the_robot(item: pytest.Item) -> bool:
+    """Return whether a test of the user's ran its robot and never enabled it, by the words in it."""
+    run = (getattr(item, "funcargs", None) or {}).get("_robot_run")
+    with suppress(OSError, TypeError):
+        source = inspect.getsource(getattr(item, "function", None))  # type: ignore[arg-type]
+        if isinstance(run, RobotRun) and run.started:
+            runs = re.search(r"^[^#\n]*control\.run_test\(lambda", source, re.MULTILINE)
+            return runs is not None and re.search("enable|set_|practice|replay|mode", source) is None
+    return False
 
 
 def seed_section(options: TestOptions, item: pytest.Item) -> tuple[str, str]:

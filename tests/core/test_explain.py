@@ -20,7 +20,7 @@ from pyfrc_core.config.packages import PACKAGES, SUCCESSORS, install_line, robot
 from pyfrc_core.config.robotpy import load_robot_packages, unknown_components
 from pyfrc_core.errors import SettingsError
 from pyfrc_core.explain import explain
-from pyfrc_core.explain.names import GONE
+from pyfrc_core.explain.earlier_names import GONE
 from pyfrc_core.project.robot_files import RobotFiles
 from pyfrc_core.runtime.checks.failures import headline
 from pyfrc_core.season import SEASONS
@@ -320,7 +320,11 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "addRequirements() got a list",
             "addRequirements(self)",
         ),
-        ("wpilib.drive.DifferentialDrive(0, 1)", "got 0, a number, and no MotorController", "Create an object first"),
+        (
+            "wpilib.drive.DifferentialDrive(0, 1)",
+            "got 0, a number, and no MotorController",
+            "Write wpilib.PWMSparkMax(0), or the name",
+        ),
         (
             "s = wpilib.DoubleSolenoid(wpilib.PneumaticsModuleType.REVPH, 0, 1)\ns.set('forward')",
             "set() got 'forward', a text",
