@@ -93,7 +93,7 @@ def command(
 def _report(synced: Synced) -> None:
     from pyfrc_core.season import CURRENT
     from pyfrc_core.sync import LOCK_FILE, cache_of
-    from pyfrc_core.sync.changes import changes
+    from pyfrc_core.sync.lock import changes
     from pyfrc_core.wording import counted, size_text
 
     lock, previous = synced.lock, synced.previous

@@ -19,7 +19,7 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
 #: What `venv` and the agent make in an environment. On Linux, lib64 is a link to lib there.
 _MADE = re.compile(
-    r"bin|include|(?:pyvenv\.cfg|environment\.json|\.gitignore|lib64|bin/(?:python|pip|activate)[\d.]*(?:\.\w+)?)(?:/.*)?",
+    r"bin|include|(?:pyvenv\.cfg|environment\.json|\.gitignore|lib64|bin/(?:python|activate)[\d.]*(?:\.\w+)?)(?:/.*)?",
     re.IGNORECASE,
 )
 _MAX_UNPACKED_BYTES = 1 << 30
@@ -75,8 +75,7 @@ def files_of(archive: ZipFile, wheel: str, packages: str) -> list[WheelFile]:
             raise WheelError(f"{wheel} has a link, which wheels cannot have: {name!r}")
         if member.flag_bits & _ENCRYPTED or member.compress_type not in (ZIP_STORED, ZIP_DEFLATED):
             raise WheelError(f"{wheel} has a file that robots cannot unpack: {name!r}")
-        replaces_pip = path.startswith(f"{packages}/pip/") and not wheel.startswith("pip-")
-        if _MADE.fullmatch(path) or f"{packages}/".startswith(f"{path}/") or replaces_pip:
+        if _MADE.fullmatch(path) or f"{packages}/".startswith(f"{path}/"):
             raise WheelError(f"{wheel} has a file in the place of Python's own: {name!r}")
         file = WheelFile(path, member, bool(mode & 0o111) or path.startswith("bin/"))
         same = found.setdefault(unicodedata.normalize("NFC", path).casefold(), file)

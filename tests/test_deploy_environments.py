@@ -70,8 +70,9 @@ def new_robot(root: Path, controller: ControllerKind = SYSTEMCORE) -> LocalRobot
 
 
 def send_python(robot: LocalRobot) -> None:
-    system = robot.controller.layout.python
-    python = robot.paths.of(system) if system else robot.home / ".pyfrc/pythons" / PYTHON / "bin/python3"
+    python = robot.home / ".pyfrc/pythons" / PYTHON / "bin/python3"
+    if robot.controller.install_python.is_system:
+        python = robot.paths.of(robot.controller.python)
     python.parent.mkdir(parents=True, exist_ok=True)
     python.unlink(missing_ok=True)
     python.symlink_to(os.path.realpath(sys.executable))
@@ -80,7 +81,7 @@ def send_python(robot: LocalRobot) -> None:
 def their_packages(robot: LocalRobot) -> Path:
     """The directory where another tool installs packages."""
     layout = robot.controller.layout
-    place = robot.paths.of(layout.environment or str(Path(layout.python).parents[1])) / "lib/python3.14/site-packages"
+    place = robot.paths.of(str(Path(layout.python).parents[1])) / "lib/python3.14/site-packages"
     place.mkdir(parents=True)
     return place
 
@@ -98,7 +99,7 @@ def install(robot: LocalRobot, agents: Agents, packages: Packages, name: str, **
     send_python(robot)  # if a deploy that does not need it has removed it
     with agent(robot, agents, **cut) as session:
         wheels = packages.wheels[name]
-        python = None if robot.controller.layout.python else PYTHON
+        python = None if robot.controller.install_python.is_system else PYTHON
         return session.install(name, python, wheels, [5_000] * len(wheels.entries))
 
 

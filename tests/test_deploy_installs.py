@@ -99,9 +99,6 @@ def test_from_nothing_to_two_rollbacks(blank: Computer, laptop: Laptop, project:
     if IS_ROBORIO:
         assert not (blank.disk / "usr/local/pyfrc/installing").exists()
         assert blank.run("find", "/home/lvuser", "!", "-user", "lvuser").stdout == ""
-    else:
-        python = blank.home / ".python/bin/python3"
-        assert python.parent.parent.is_symlink(), "where today's tool looks for it"
 
 
 @nightly
@@ -142,8 +139,6 @@ def test_what_todays_tool_has_installed_is_kept_for_the_releases_that_use_it(
         assert laptop.run(robot, "deploy", "--rollback").code == 0
         robot.said("plain program 1")
         assert (robot.home / "robotCommand").read_text(encoding="utf-8") == start
-        if not IS_ROBORIO:
-            assert (robot.home / "venv").readlink().name == "taken-1"
 
 
 @pytest.mark.season_2026

@@ -246,7 +246,14 @@ def test_files_that_gitignore_names_as_secrets_are_private(tmp_path: Path) -> No
     assert private_files(tmp_path / "repository/robot/nested", (), ["api_key.txt"]) == {}
 
 
-def test_without_gitignore_nothing_is_a_secret(tmp_path: Path) -> None:
+def test_keys_are_private_by_their_names(tmp_path: Path) -> None:
+    keys = ["id_rsa", "keys/id_ed25519", "deploy.pem", "server.KEY", "a.p12", "passwords.kdbx", "config/prod.env"]
+    make(tmp_path, *keys, "robot.py", "id_rsa.pub", "known_hosts", "environment.py", "keys.json", ".env", ".netrc")
+    assert private_files(tmp_path) == dict.fromkeys(sorted(keys), "files of this name hold keys or passwords")
+    assert private_files(tmp_path, (), ["id_*", "*.*"]) == {}
+
+
+def test_without_gitignore_nothing_else_is_a_secret(tmp_path: Path) -> None:
     make(tmp_path, "robot.py", "secret.txt")
     (tmp_path.parent / ".gitignore").write_text("secret.txt\n")
     try:

@@ -37,6 +37,7 @@ ONE_USER = Layout(
     texts={},
     other_start="[.]jar",
     other_files=("/srv/pilot/*.jar",),
+    python="/srv/pilot/venv/bin/python3",
 )
 LAYOUTS = [*(each.layout for each in CONTROLLERS), ONE_USER]
 

@@ -314,30 +314,8 @@ t.main(r)
 """
 #: In the order of their imports. The bootstrap calls `main` of the last one.
 _MODULES = (
-    "__init__",
-    "system",
-    "wire",
-    "activity",
-    "disk",
-    "imports",
-    "layout",
-    "robot_paths",
-    "release_record",
-    "console",
-    "virtual",
-    "carrying",
-    "compiling",
-    "wheels",
-    "environment_files",
-    "environments",
-    "releases",
-    "integrity",
-    "content_index",
-    "transaction",
-    "start_monitor",
-    "host",
-    "program",
-    "serve",
+    "__init__ system wire activity disk imports layout robot_paths release_record console virtual carrying compiling "
+    "environment_files environments releases integrity content_index transaction start_monitor host program serve"
 )
 
 
@@ -363,7 +341,7 @@ def agent_package() -> bytes:
     package = wire.__name__.rpartition(".")[0]
     directory = Path(wire.__file__).parent
     files = {wheel_files.__name__: Path(wheel_files.__file__)}
-    files |= {f"{package}.{each}".removesuffix(".__init__"): directory / f"{each}.py" for each in _MODULES}
+    files |= {f"{package}.{each}".removesuffix(".__init__"): directory / f"{each}.py" for each in _MODULES.split()}
     modules = [[name, _DOCSTRING.sub(_emptied, file.read_text("utf-8"))] for name, file in files.items()]
     packed = zlib.compress(json.dumps(modules).encode(), 9)
     return b"%08d" % len(packed) + packed

@@ -11,6 +11,7 @@ from importlib import import_module
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from ..errors import PyfrcError
 from .discovery import CONNECT_SECONDS, Address
 from .errors import ConnectionFailedError, DeployError
 from .host_keys import HostKey, Recognized, RobotKeys
@@ -30,6 +31,8 @@ _LOST_SECONDS = 20
 #: The maximum output of a command, in bytes.
 _MAX_OUTPUT_BYTES = 100_000
 
+#: What paramiko says of a server that does not speak SSH.
+_NO_SESSION = ("Invalid packet", "Error reading SSH protocol banner", "Indecipherable protocol", "No existing session")
 _CHECK_LINK = "Check the link (radio, cable, power of the robot) and run the command again."
 
 
@@ -106,13 +109,19 @@ class Connection:
 
         :raises ConnectionFailedError: if the connection is lost
         """
-        import paramiko
-
         try:
             channel = self._transport.open_session(timeout=STEP_SECONDS)
             channel.settimeout(_LOST_SECONDS)
-            channel.exec_command(command)
-        except (paramiko.SSHException, OSError, EOFError) as error:
+            limit = threading.Timer(STEP_SECONDS, _close, [channel])  # paramiko has none for the response
+            limit.start()
+            try:
+                channel.exec_command(command)
+            finally:
+                limit.cancel()
+        except Exception as error:  # paramiko raises what its thread has met: any, if the server violates the protocol
+            if self._transport.is_active():
+                what = f"the robot does not run commands over SSH: {getattr(error, 'text', error)}"
+                raise ConnectionFailedError(what, where=str(self.address), remedy=_CHECK_LINK) from error
             raise connection_lost(self.address, error) from error
         return channel
 
@@ -123,8 +132,7 @@ class Connection:
         try:
             yield channel
         finally:
-            with contextlib.suppress(OSError, EOFError):  # the connection may be lost
-                channel.close()
+            _close(channel)
 
     def run(self, command: str) -> tuple[int, str]:
         """Run a command, and return its exit code and its output.
@@ -199,7 +207,7 @@ def connect(
         recognized = keys.check(key, accepted_key, robot_name, pin)
     except BaseException as error:
         transport.close()
-        if isinstance(error, (paramiko.SSHException, OSError, EOFError)):
+        if isinstance(error, Exception) and not isinstance(error, PyfrcError):
             raise _not_let_in(address, error) from error
         raise
     transport.set_keepalive(_ALIVE_SECONDS)
@@ -209,6 +217,11 @@ def connect(
         return connect(address, controller, keys, user=user, accepted_key=accepted, pin=False, credentials=credentials)
 
     return Connection(transport, address, controller, key, recognized, reconnect)
+
+
+def _close(channel: paramiko.Channel) -> None:
+    with contextlib.suppress(OSError, EOFError):  # the connection may be lost
+        channel.close()
 
 
 def _set_socket_options(connected: socket.socket) -> None:
@@ -234,9 +247,11 @@ def _kind_of_key(algorithm: str) -> str:
 
 
 def _not_let_in(address: Address, error: BaseException) -> ConnectionFailedError:
+    import paramiko
+
     what = str(error)
-    if isinstance(error, EOFError) or what.startswith("Invalid packet"):
-        what = "the server closed the connection, or violated the SSH protocol"
+    if not isinstance(error, (paramiko.SSHException, OSError)) or what.startswith(_NO_SESSION):
+        what = "the server closed the connection, did not respond in time, or violated the SSH protocol"
     return ConnectionFailedError(f"could not log in to the robot: {what}", where=str(address), remedy=_CHECK_LINK)
 
 

@@ -64,8 +64,9 @@ class Environment:
     @property
     def python(self) -> str:
         """The path of its Python on the robot."""
-        layout = self.controller.layout
-        return layout.python or f"{layout.home}/.pyfrc/pythons/{self.python_name}/bin/python3"
+        if self.controller.install_python.is_system:
+            return self.controller.python
+        return f"{self.controller.layout.home}/.pyfrc/pythons/{self.python_name}/bin/python3"
 
     @cached_property
     def wheels(self) -> Manifest:
@@ -79,7 +80,7 @@ class Environment:
     def is_met_by(self, facts: RobotFacts) -> bool:
         """Return whether the robot has all of it already, in this environment or in another tool's."""
         same = facts.python == self.lock.python.version
-        if self.controller.layout.python:  # which is replaced by no newer one: the old program needs it
+        if self.controller.install_python.is_system:  # which is replaced by no newer one: the old program needs it
             same = python_problem(facts.python, str(CURRENT.year)) is None
         packages = {each.name: each.version for each in self.lock.packages}
         same = same and facts.packages.items() >= packages.items()
@@ -147,9 +148,8 @@ def _install(connection: Connection, robot: AgentClient | None, wanted: Environm
     from .agent_client import AgentClient
 
     wheels = wanted.wheels  # first: all of them have to be here
-    installer, has_place = wanted.controller.install_python, bool(wanted.controller.layout.python)
-    sent_python = False
-    if robot is None or not has_place:
+    installer, sent_python = wanted.controller.install_python, False
+    if robot is None or not installer.is_system:
         phase.doing(str(wanted.lock.python))
         with contextlib.ExitStack() as stack:
             user = connection
@@ -167,7 +167,7 @@ def _install(connection: Connection, robot: AgentClient | None, wanted: Environm
 
 def install_packages(robot: AgentClient, wanted: Environment, phase: Phase) -> None:
     """Make an environment on a robot that has its Python, and replace damaged files of all environments."""
-    wheels, python = wanted.wheels, None if wanted.controller.layout.python else wanted.python_name
+    wheels, python = wanted.wheels, None if wanted.controller.install_python.is_system else wanted.python_name
     sent = robot.install(wanted.name, python, wheels, [_unpacked_size(each) for each in wheels.entries], phase.work)
     phase.detail = f"{counted(sent, 'package')} of {len(wheels.entries)} sent"
 

@@ -111,12 +111,14 @@ def log_in(
             offered += 1
             with contextlib.suppress(paramiko.AuthenticationException):
                 transport.auth_publickey(user, own)
+            if transport.is_authenticated():
                 return
     _refuse_other_controller(address, controller)  # before a question that cannot help
     if "password" in allowed and controller.password and credentials.ask_password is not None:
         with contextlib.suppress(paramiko.AuthenticationException):
             password = credentials.ask_password(f"{user}@{address} (its key: {key.fingerprint})")
             transport.auth_password(user, password, fallback=False)
+        if transport.is_authenticated():
             return
     raise _refused(address, controller, user, allowed, offered, credentials)
 
@@ -130,15 +132,13 @@ def _try_password(transport: paramiko.Transport, user: str, password: str) -> li
 
     try:
         # Robots without passwords accept their users without authentication.
-        transport.auth_none(user)
-        return None
+        allowed = transport.auth_none(user)
     except paramiko.BadAuthenticationType as refused:
         allowed = refused.allowed_types
     if "password" in allowed:
         with contextlib.suppress(paramiko.AuthenticationException):
             transport.auth_password(user, password, fallback=False)
-            return None
-    return allowed
+    return None if transport.is_authenticated() else allowed
 
 
 def _refuse_other_controller(address: Address, controller: ControllerKind) -> None:

@@ -44,6 +44,9 @@ _SECRET = re.compile(
     re.IGNORECASE,
 )
 
+#: Names of files that hold keys or passwords, whatever git does with them.
+_KEY_FILE = re.compile(r"id_(?:rsa|dsa|ecdsa|ed25519)(?:_sk)?|.+\.(?:env|key|pem|ppk|p12|pfx|jks|kdbx)", re.IGNORECASE)
+
 
 class _Rule(NamedTuple):
     """One line of a ``.gitignore``.
@@ -246,6 +249,8 @@ class _Walk:
             return f"leads to {ascii_path(target)}, which is not uploaded itself"
         if self._secrets.include(file) or self._secrets.include(self._root / path):
             return ".gitignore names it as a secret"
+        if _KEY_FILE.fullmatch(file.name) or _KEY_FILE.fullmatch(path.rpartition("/")[2]):
+            return "files of this name hold keys or passwords"
         return ""
 
     def _link_target(self, path: str, above: tuple[Path, ...]) -> Path:

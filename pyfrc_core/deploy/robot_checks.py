@@ -75,7 +75,7 @@ def obstacles(facts: RobotFacts, controller: ControllerKind) -> Iterator[Obstacl
     wrong_python = python_problem(facts.python, ours)
     if wrong_python is not None:
         # The system's Python is not replaced: the program that is there needs it.
-        stays = bool(controller.layout.python) and facts.image != VIRTUAL_IMAGE
+        stays = controller.install_python.is_system and facts.image != VIRTUAL_IMAGE
         yield Obstacle(wrong_python, image if stays else prepare, certain=False, installable=not stays)
     if facts.wpilib not in (None, ours):
         text = f"the robot has wpilib {facts.wpilib}, this computer has {ours}: what passes here may fail there"

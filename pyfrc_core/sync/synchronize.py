@@ -146,18 +146,16 @@ def _other_requirements(whose: str, lock: Lock, wanted: Wanted) -> PyfrcError:
     )
 
 
-def _index_of(locked: LockedFile) -> str | None:
-    """Return where a locked file came from. Locks of older versions have only its address."""
-    return locked.index or (source_of(locked.url) if locked.url else None)
-
-
 def _refuse_other_index(found: LockedFile, old: LockedFile | None) -> None:
     """Refuse another version from another index than the locked one: it may be a stranger's of the same name."""
-    if old is None or old.version == found.version or found.index == _index_of(old):
+    if old is None or old.version == found.version:
         return
-    if old.index is None and old.url is not None and source_of(old.url) == source_of(found.url or ""):
-        return  # an older version has locked only the address
-    places = [f"from {each}" if each else "from a directory" for each in (found.index, _index_of(old))]
+    now, before = found.index, old.index
+    if before is None:  # from a directory; or an older version has locked only the address
+        now, before = (source_of(each.url or "file:") for each in (found, old))
+    if now == before:
+        return
+    places = [f"from {each}" if each else "from a directory" for each in (now, before)]
     raise PyfrcError(
         f"{found} would come {places[0]}, and the locked {old.version} came {places[1]}",
         remedy="If that is right: pyfrc sync --upgrade. Otherwise, check pip's settings: pip config list",
@@ -253,7 +251,7 @@ class _Work:
     def _package(self, found: LockedFile, old: LockedFile | None) -> LockedFile:
         new = replace(found, url=_without_file(found.url))
         if old is not None and old.version == found.version:
-            new = replace(old, index=_index_of(old))
+            new = replace(old, index=found.index) if old.url == new.url else old
         if new.size and self._cache.has(new):
             return new
         there = self._cache.path_of(new)

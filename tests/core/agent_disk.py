@@ -106,7 +106,7 @@ class AgentDisk:
 
     def install(self, environment: str, wheels: Mapping[str, Mapping[str, str]]) -> list[str]:
         """Install an environment with these wheels, and return those that were sent."""
-        python = None if self.places.layout.python else PYTHON
+        python = PYTHON if self.places.layout.installing.endswith("/pythons") else None
         interpreter = self.places.of(self.places.layout.python)
         if python is not None:
             interpreter = self.places.own / "pythons" / python / "bin/python3"

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from pyfrc_core.deploy.agent import environments, releases
+from pyfrc_core.deploy.agent import disk as agent_disk
 
 _STEPS = {"os.rename", "os.link", "os.symlink", "os.mkdir", "os.remove", "os.rmdir", "ctypes.dlsym"}
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT
@@ -185,8 +185,7 @@ def noted(root: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[LossyDisk]:
     with monkeypatch.context() as patch:
         patch.setattr(os, "fsync", sync_file)
         patch.delattr(os, "fork")  # the agent compiles by itself then
-        for module in (releases, environments):
-            patch.setattr(module, "flush", lambda directory: quietly(disk.sync))
+        patch.setattr(agent_disk, "flush", lambda directory: quietly(disk.sync))
         _active = disk
         try:
             yield disk

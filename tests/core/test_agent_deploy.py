@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pyfrc_core.deploy.agent import disk, releases, serve, transaction
+from pyfrc_core.deploy.agent import disk, serve, transaction
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.releases import Releases
 
@@ -20,7 +20,7 @@ TWO = {**ONE, "robot.py": "# two\nimport arm\n"}
 @pytest.fixture
 def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> AgentDisk:
     """A robot with an empty disk, on which nothing has to wait for the disk."""
-    monkeypatch.setattr(releases, "flush", lambda directory: None)
+    monkeypatch.setattr(disk, "flush", lambda directory: None)
     return AgentDisk(tmp_path / "robot")
 
 
@@ -41,7 +41,7 @@ def test_the_order_in_which_a_deploy_changes_the_disk(robot: AgentDisk, monkeypa
         numbers = sorted(each.name for each in robot.places.releases.glob("[0-9]*"))
         log.append(f"{directory.name}: {' '.join(numbers)}, {robot.startable()}")
 
-    monkeypatch.setattr(releases, "flush", flush)
+    monkeypatch.setattr(disk, "flush", flush)
     robot.deploy(TWO, TWO["robot.py"])
     assert log == [
         ".pyfrc: 1 1.json, py/robot.py: # one",  # the contents
@@ -239,7 +239,7 @@ def test_links_of_another_tools_program_stay_valid(robot: AgentDisk) -> None:
 def test_the_debris_of_a_deploy_that_was_cut_is_cleared_up(robot: AgentDisk) -> None:
     robot.deploy(ONE, *ONE.values())
     own = robot.places.own
-    for debris in ("incoming/robot.py", "trash-1/robot.py", "carried", "releases/.1.json.new"):
+    for debris in ("incoming/robot.py", "trash-1/robot.py", "between", "releases/.1.json.new"):
         (own / debris).parent.mkdir(parents=True, exist_ok=True)
         (own / debris).write_text("")
     (own / "releases/8.json").write_text("{}")

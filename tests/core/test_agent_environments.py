@@ -64,7 +64,7 @@ def robot_in_memory() -> Iterator[Robot]:
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(EnvironmentFiles, "_run", run_quickly)
-    monkeypatch.setattr("pyfrc_core.deploy.agent.environments.flush", lambda directory: None)
+    monkeypatch.setattr("pyfrc_core.deploy.agent.disk.flush", lambda directory: None)
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pyfrc_core.deploy.agent import releases
+from pyfrc_core.deploy.agent import disk
 
 from .agent_disk import AgentDisk
 
@@ -24,7 +24,7 @@ TWO = {**ONE, "robot.py": "# two\nimport arm\n"}
 @pytest.fixture
 def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> AgentDisk:
     """A robot with two releases."""
-    monkeypatch.setattr(releases, "flush", lambda directory: None)
+    monkeypatch.setattr(disk, "flush", lambda directory: None)
     robot = AgentDisk(tmp_path / "robot")
     robot.deploy(ONE, *robot.needed(ONE))
     robot.deploy(TWO, TWO["robot.py"])

@@ -44,8 +44,7 @@ def packages_of(environment: str | None) -> Files:
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(EnvironmentFiles, "_run", run_quickly)
-    for module in ("releases", "environments"):
-        monkeypatch.setattr(f"pyfrc_core.deploy.agent.{module}.flush", lambda directory: None)
+    monkeypatch.setattr("pyfrc_core.deploy.agent.disk.flush", lambda directory: None)
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from pyfrc_core.deploy.agent import host, releases, transaction
+from pyfrc_core.deploy.agent import disk, host, transaction
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.content_index import ContentIndex
 from pyfrc_core.deploy.agent.host import RealRobot
@@ -29,7 +29,7 @@ TWO = {**ONE, "robot.py": "# two\nimport arm\n"}
 @pytest.fixture
 def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> AgentDisk:
     """A robot with an empty disk, on which nothing has to wait for the disk."""
-    monkeypatch.setattr(releases, "flush", lambda directory: None)
+    monkeypatch.setattr(disk, "flush", lambda directory: None)
     return AgentDisk(tmp_path / "robot")
 
 
@@ -126,7 +126,7 @@ def test_undeploy_is_on_the_disk_before_the_program_is_stopped_and_when_it_is_do
         there = [name for name in ("robotCommand", "py", ".pyfrc") if (robot.home / name).exists()]
         log.append(f"{what}: {' '.join(there)}")
 
-    monkeypatch.setattr(releases, "flush", lambda directory: note(f"flush {directory.name}"))
+    monkeypatch.setattr(disk, "flush", lambda directory: note(f"flush {directory.name}"))
     monkeypatch.setattr(RealRobot, "stop", lambda host, start: note("stop"))
     robot.ask({"op": "undeploy"})
     assert log == ["flush lvuser: py .pyfrc", "stop: py .pyfrc", "flush lvuser: "]

@@ -24,10 +24,9 @@ from typing import Any
 
 from pyfrc_core.deploy.agent import (
     compiling,
-    environments,
+    disk,
     host,
     program,
-    releases,
     robot_paths,
     serve,
     start_monitor,
@@ -69,7 +68,7 @@ class Steps:
             # A function, which is bound to the path as the original is; our own method would not be.
             pathlib.Path.open = lambda path, *args, **options: self._opening(path, *args, **options)  # type: ignore[method-assign,assignment]
             os.fsync = self._fsyncing
-            for module in (system, releases, environments):
+            for module in (system, disk):
                 module.flush = self._flushing  # type: ignore[attr-defined]
         sys.addaudithook(self._hook)
 

@@ -12,20 +12,29 @@ from contextlib import suppress
 from pathlib import Path
 
 from .activity import Activity
-from .system import link_file, linked_directory, user
+from .system import flush, link_file, linked_directory, user
 
 BLOCK = 1 << 16
 
 
-def write_whole(file: Path, text: str, mode: int = 0o644) -> None:
-    """Write a file atomically: after a power cut it has the old or the new content."""
-    beside = file.with_name(f".{file.name}.new")
+def write_whole(file: Path, text: str, mode: int = 0o644, between: Path | None = None) -> None:
+    """Write a file atomically: after a power cut it has the old or the new content.
+
+    :param between: its name until it takes its place; default: one beside it
+    """
+    beside = between or file.with_name(f".{file.name}.new")
     with beside.open("w", encoding="utf-8", errors="surrogateescape") as stream:
         stream.write(text)
         stream.flush()
         os.fsync(stream.fileno())
     beside.chmod(mode)
     beside.replace(file)
+
+
+def sync(directory: Path, activity: Activity) -> None:
+    """Wait until all data written to this file system is on the disk."""
+    activity.begin("sync")
+    activity.wait_for(flush, directory)
 
 
 def text_of(file: Path) -> str | None:

@@ -5,24 +5,31 @@ A file is written once and is read-only, since other environments may share it: 
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, NamedTuple
+from zipfile import ZipFile
 
-from ...wheel_files import files_of, open_wheel, owners
+from ...wheel_files import WheelFile, files_of, open_wheel, owners
 from .activity import Activity
 from .compiling import compiled_hashes
-from .disk import different_files, everything_below, fingerprint, link_or_copy, remove, replace_by_link, text_of
+from .disk import BLOCK, everything_below, fingerprint, link_or_copy, remove, replace_by_link, text_of
 from .robot_paths import Refusal
-from .wheels import unpack_wheel
 
 #: An environment's record: the name of its Python (None: the system's), and the hashes of its files by their paths:
 #: what `venv` has made, what each wheel has (by the SHA-256 of the wheel, in their order), and compiled files.
 RECORD = "environment.json"
 #: Memory for compiling packages, in kB. A robot with 256 MB runs its program meanwhile.
 _COMPILING_KILOBYTES = 40_000
+_SCRIPT = b"#!python"
+#: The beginning of a script, for sh and for Python: it starts with the Python beside it, so it is the same everywhere.
+_START = b"#!/bin/sh\n'''exec' \"$(dirname \"$0\")/python3\" \"$0\" \"$@\"\n' '''\n"
+#: The modification time of all files: compiled files stay valid when a file is replaced by the same one.
+_TIME = 315_532_800
 
 Record = dict[str, Any]
 
@@ -60,12 +67,10 @@ class EnvironmentFiles:
     """Makes and mends the files of environments.
 
     :param received: the directory with received wheels, by their hashes
-    :param takes_pip: whether an environment has pip, if its Python can install that
     """
 
-    def __init__(self, received: Path, takes_pip: bool, activity: Activity) -> None:
+    def __init__(self, received: Path, activity: Activity) -> None:
         self._received = received
-        self._takes_pip = takes_pip
         self._activity = activity
 
     def make(self, place: Path, python: Path, wheels: list[Wheel], there: dict[str, Path]) -> Record:
@@ -79,14 +84,13 @@ class EnvironmentFiles:
         remove(place)
         place.parent.mkdir(parents=True, exist_ok=True)
         self._activity.begin("environment")
-        packages = self._make_bare(python, place, not any(each.file.startswith("pip-") for each in wheels))
+        packages = self._make_bare(python, place)
         made = {}
         for path, entry in everything_below(place):
             if not entry.is_dir(follow_symlinks=False):
                 if not entry.is_symlink():
                     Path(entry.path).chmod(entry.stat().st_mode & 0o555)
-                if not path.startswith(f"{packages}/"):
-                    made[path] = fingerprint(entry.path, self._activity)
+                made[path] = fingerprint(entry.path, self._activity)
         names = {each.sha256: each.file for each in wheels}
         records = {source: read_record(source) for source in set(there.values())}
         hashes = {sha256: wheels_in(records[source])[sha256] for sha256, source in there.items()}
@@ -102,16 +106,14 @@ class EnvironmentFiles:
                 self._link(there[sha256], records[there[sha256]]["compiled"], own, place)
             else:
                 wheel = self._received / sha256
-                hashes[sha256] = unpack_wheel(wheel, name, place, packages, self._activity, own.__contains__)
+                hashes[sha256] = _unpack_wheel(wheel, name, place, packages, self._activity, own.__contains__)
                 remove(wheel)
         compiled = self._compile(place, packages, owner)
         return {"made": made, "wheels": {sha256: hashes[sha256] for sha256 in names}, "compiled": compiled}
 
-    def _make_bare(self, python: Path, place: Path, with_pip: bool = False) -> str:
+    def _make_bare(self, python: Path, place: Path) -> str:
         """Make an environment without packages. Return their directory, relative to it."""
-        # Debian's Python cannot install pip, and another one may have it already.
-        with_pip = with_pip and self._takes_pip and any(python.parent.parent.glob("lib/python3*/ensurepip"))
-        self._run([str(python), "-m", "venv", *([] if with_pip else ["--without-pip"]), str(place)])
+        self._run([str(python), "-m", "venv", "--without-pip", str(place)])
         packages = next(iter(place.glob("lib/python3*/site-packages")), None)
         if packages is None:
             raise Refusal("environment", f"{python} has made no environment")
@@ -120,7 +122,7 @@ class EnvironmentFiles:
     def _link(self, source: Path, compiled: dict[str, str], paths: set[str], place: Path) -> None:
         """Link files of another environment, with their compiled files."""
         forms: dict[str, list[str]] = {}
-        for form in compiled.keys() - different_files(source, compiled, self._activity, {}):
+        for form in compiled:
             directory, _, name = form.rpartition("__pycache__/")
             forms.setdefault(f"{directory}{name.rsplit('.cpython-', 1)[0]}.py", []).append(form)
         for path in paths:
@@ -148,7 +150,7 @@ class EnvironmentFiles:
         good = {}
         for each in wheels:
             received, place = self._received / each.sha256, new / each.sha256
-            hashes = unpack_wheel(received, each.file, place, "lib", self._activity, lambda path: True)
+            hashes = _unpack_wheel(received, each.file, place, "lib", self._activity, lambda path: True)
             good.update({sha256: place / path for path, sha256 in hashes.items()})
         return good
 
@@ -191,3 +193,42 @@ class EnvironmentFiles:
         if check and run.returncode:
             said = run.stdout.decode(errors="replace").strip().splitlines()[-1:]
             raise Refusal("environment", f"{command[0]} cannot make an environment: {''.join(said)}")
+
+
+def _unpack_wheel(
+    wheel: Path, name: str, place: Path, packages: str, activity: Activity, is_wanted: Callable[[str], bool]
+) -> dict[str, str]:
+    """Unpack a wheel as the specification of wheels says. No file that exists is written to.
+
+    Return the SHA-256 of each of its files by path.
+
+    :param is_wanted: whether it is the wheel from which the file of a path comes; others are only hashed
+    :raises WheelError: if it is damaged, or cannot be installed
+    """
+    with open_wheel(wheel, name) as archive:
+        hashes = {
+            each.path: _unpack(archive, each, place / each.path if is_wanted(each.path) else None, activity)
+            for each in files_of(archive, name, packages)
+        }
+    activity.step()
+    return hashes
+
+
+def _unpack(archive: ZipFile, file: WheelFile, target: Path | None, activity: Activity) -> str:
+    if target is not None:
+        target.parent.mkdir(parents=True, exist_ok=True)
+    digest = hashlib.sha256()
+    with archive.open(file.member) as content, nullcontext() if target is None else target.open("xb") as stream:
+        block = content.read(BLOCK)
+        if block.startswith(_SCRIPT) and file.path.startswith("bin/"):
+            block = _START + block.partition(b"\n")[2]
+        while block:
+            digest.update(block)
+            if stream is not None:
+                stream.write(block)
+            block = content.read(BLOCK)
+            activity.step(0)
+    if target is not None:
+        target.chmod(0o555 if file.executable else 0o444)
+        os.utime(target, (_TIME, _TIME))
+    return digest.hexdigest()

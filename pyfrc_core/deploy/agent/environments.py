@@ -1,9 +1,8 @@
 """Python environments on the robot: each has a Python and packages, and is never changed once it is complete.
 
-Each release's record names its environment. The one that programs start with is a link, as the code is, and a switch to
-a release replaces both links (`releases`). Where the system has a Python, the start command names the environment
-instead. An environment is complete when it has its record, which is written last. Its files are never changed, so
-environments share those of the same wheel. What a disk has damaged is replaced by new files (`mend`).
+Each release's record names its environment, and so does its start command. An environment is complete when it has its
+record, which is written last. Its files are never changed, so environments share those of the same wheel. What a disk
+has damaged is replaced by new files (`mend`).
 """
 
 from __future__ import annotations
@@ -13,18 +12,19 @@ import os
 import re
 import sys
 from collections.abc import Iterable
-from contextlib import suppress
-from itertools import count
 from pathlib import Path
 from typing import Any
 
 from .activity import Activity
-from .disk import different_files, free_bytes, remove, write_whole
+from .disk import different_files, free_bytes, remove, sync, write_whole
 from .environment_files import RECORD, EnvironmentFiles, Record, Wheel, files_in, read_record, wheels_in
-from .robot_paths import Refusal, RobotPaths
-from .system import exchange, flush, linked_directory, make_link
+from .robot_paths import Refusal, RobotPaths, in_environment
+from .system import linked_directory
 
-_NAME, _TAKEN = re.compile(r"[0-9a-f]{16}"), re.compile(r"taken-\d+")
+_NAME = re.compile(r"[0-9a-f]{16}")
+#: Earlier versions have given such names to another tool's environment when they replaced it.
+_TAKEN = re.compile(r"taken-\d+")
+_PYTHON = re.compile(r"(/\S+)/bin/python3")
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 #: The directory of files that are to replace damaged ones.
 _NEW = "new"
@@ -33,21 +33,15 @@ _RESERVE = 8 << 20
 
 
 class Environments:
-    """The environments on the robot, and the files that they are made of.
-
-    :param paths: the robot's files; the layout must have environments
-    """
+    """The environments on the robot, and the files that they are made of."""
 
     def __init__(self, paths: RobotPaths, activity: Activity) -> None:
         self._paths = paths
         self._activity = activity
-        #: The link to the environment that programs start with, or a directory created by another tool; None: start
-        #: commands name it.
-        self.link = paths.of(paths.layout.environment) if paths.layout.environment else None
         self._directory = paths.own / "environments"
         self._pythons = paths.own / "pythons"
         self._wheels = paths.own / "wheels"
-        self._files = EnvironmentFiles(self._wheels, self.link is not None, activity)
+        self._files = EnvironmentFiles(self._wheels, activity)
 
     def directory(self, name: str) -> Path:
         """Return the directory of an environment."""
@@ -60,67 +54,27 @@ class Environments:
 
     def of_this_process(self) -> str | None:
         """Return the environment in which this agent runs, or None: another tool's, or a Python without one."""
-        place = Path(sys.prefix).resolve()
-        return place.name if place.parent == self._directory.resolve() and self.is_usable(place.name) else None
+        return self._at(Path(sys.prefix))
 
     def current(self) -> str | None:
         """Return the environment that programs start with, or None: another tool's, or none."""
-        if self.link is None:
-            pattern = re.escape(self._paths.layout.environments) + "/([0-9a-f]{16})/"
-            found = re.search(pattern, self._paths.start_command())
-            return found[1] if found is not None and self.is_usable(found[1]) else None
-        place = linked_directory(self.link)
-        if place is None or place.parent != self._directory or not self.is_usable(place.name):
-            return None
-        return place.name
+        found = _PYTHON.search(self._paths.start_command())
+        return None if found is None else self._at(self._paths.of(found[1]))
 
-    def other_than_current(self, name: str | None) -> str | None:
-        """Return the environment of a release if the link leads to another one now, else None.
+    def _at(self, place: Path) -> str | None:
+        place = place.resolve()  # start commands of earlier versions have a link to it
+        return place.name if place.parent == self._directory.resolve() and self.is_usable(place.name) else None
 
-        :raises Refusal: if it is no longer there
+    def in_commands(self, commands: dict[str, str | None], name: str | None) -> dict[str, str | None]:
+        """Return a release's start commands with its environment.
+
+        :raises Refusal: if that is no longer there
         """
-        if name is None or name == self.current():
-            return None
-        if self.is_usable(name):
-            return None if self.link is None else name
-        if self.next_taken() is not None and _TAKEN.fullmatch(name):
-            return None  # interrupted before another tool's environment was moved: it is in its place still
-        raise Refusal("release", "the packages of this release are no longer on the robot", "Choose another.")
-
-    def next_taken(self) -> str | None:
-        """Return a name for another tool's environment that will be replaced, or None if there is none."""
-        if self.link is not None and self.link.is_dir() and linked_directory(self.link) is None:
-            names = (f"taken-{number}" for number in count(1))
-            return next(name for name in names if not self.directory(name).exists())
-        return None
-
-    def replace_link(self, name: str, taken: str | None) -> None:
-        """Let programs start with an environment. The start command refers to its own directory meanwhile.
-
-        :param taken: the name for another tool's environment that is in its place
-        """
-        assert self.link is not None
-        link = self._paths.own / "venv" if taken is None else self.directory(taken)
-        remove(link)
-        make_link(link, self.directory(name), self.link)
-        if taken is None:
-            link.replace(self.link)
-        elif not exchange(link, self.link):
-            link.replace(self._paths.own / "venv")
-            self.link.rename(self.directory(taken))
-            (self._paths.own / "venv").replace(self.link)
-        self._show_python(name)
-
-    def _show_python(self, name: str) -> None:
-        """Let other tools find the environment's Python where they look for it, unless they have one there."""
-        python = self._record(name).get("python")
-        place = self._paths.of(self._paths.layout.shown_python)
-        if python is not None and (linked_directory(place) is not None or not place.exists()):
-            with suppress(OSError):
-                link = self._paths.own / "python"
-                remove(link)
-                make_link(link, self._pythons / str(python), place)
-                link.replace(place)
+        if name is not None and not self.is_usable(name):
+            if not _TAKEN.fullmatch(name):
+                raise Refusal("release", "the packages of this release are no longer on the robot", "Choose another.")
+            name = None  # it is where the other tool has made it
+        return in_environment(self._paths.layout, commands, name)
 
     def install(self, request: dict[str, Any], receive: Any) -> None:
         """Make an environment, unless it is there, and replace damaged files of all environments.
@@ -140,7 +94,7 @@ class Environments:
             what = "the Python that was sent is no longer there: another computer has deployed meanwhile"
             raise Refusal("environment", what, "Run the command again.")
         complete, damaged = self.is_usable(name), self.damaged()
-        there = {} if complete else self._unpacked(python, {each.sha256 for each in wheels})
+        there = {} if complete else self._unpacked(python, {each.sha256 for each in wheels}, damaged)
         lacking = [] if complete else [each for each in wheels if each.sha256 not in there]
         missing = [each for each in wheels if each in lacking or self._is_in(each.sha256, damaged)]
         if missing or not complete:
@@ -154,15 +108,11 @@ class Environments:
             made = self._files.make(self.directory(name), interpreter, wheels, sources)
             self._write_record(name, {"python": python, **made})
         if damaged or not complete:
-            self._flush()
+            sync(self._paths.own, self._activity)
         remove(self._wheels)
 
-    def _flush(self) -> None:
-        self._activity.begin("sync")
-        self._activity.wait_for(flush, self._paths.own)
-
     def _write_record(self, name: str, record: Record) -> None:
-        self._flush()  # what it is about
+        sync(self._paths.own, self._activity)  # what it is about
         write_whole(self.directory(name) / RECORD, json.dumps(record))
 
     def _python(self, name: str | None) -> Path:
@@ -178,7 +128,7 @@ class Environments:
             record = self._record(name)
             if made := [path for path in paths if path in record["made"]]:
                 good |= self._files.make_again(self.directory(name), self._python(record["python"]), made, new / name)
-        self._flush()
+        sync(self._paths.own, self._activity)
         for name, paths in damaged.items():
             self._write_record(name, self._files.mend(self.directory(name), paths, good))
         remove(new)
@@ -202,19 +152,14 @@ class Environments:
         found = ((wheels_in(self._record(name)).get(sha256, {}), paths) for name, paths in damaged.items())
         return any(not files.keys().isdisjoint(paths) for files, paths in found)
 
-    def _unpacked(self, python: str | None, wanted: set[str]) -> dict[str, str]:
+    def _unpacked(self, python: str | None, wanted: set[str], damaged: dict[str, list[str]]) -> dict[str, str]:
         """Return the environments in which all files of wanted wheels are, undamaged, by wheel."""
         found: dict[str, str] = {}
-        known: dict[tuple[int, int], str] = {}
         for name in self._complete():
             record = self._record(name)
             files, wheels = files_in(record), wheels_in(record) if record.get("python") == python else {}
-            for sha256 in (wanted & wheels.keys()) - found.keys():
-                hashes = wheels[sha256]
-                if all(files[path] == hashes[path] for path in hashes) and not different_files(
-                    self.directory(name), hashes, self._activity, known
-                ):
-                    found[sha256] = name
+            good = {path: sha256 for path, sha256 in files.items() if path not in damaged.get(name, ())}
+            found.update({each: name for each in wanted & wheels.keys() if wheels[each].items() <= good.items()})
         return found
 
     def _check_disk_space(self, needed: int) -> None:
@@ -234,7 +179,7 @@ class Environments:
         for name in ("venv", "python", _NEW):
             remove(self._paths.own / name)
         for place in self._directory.iterdir() if self._directory.is_dir() else ():
-            # Of a taken environment that is not in its place yet, there is only the link for the exchange.
+            # A link is what an interrupted exchange of an earlier version has left.
             if linked_directory(place) is not None or (_NAME.fullmatch(place.name) and not self.is_usable(place.name)):
                 remove(place)
         remove(self._wheels)
@@ -249,12 +194,15 @@ class Environments:
             if place.name not in here and (_NAME.fullmatch(place.name) or _TAKEN.fullmatch(place.name)):
                 remove(place / RECORD)  # first: it is not complete from now on
                 remove(place)
-        records = [self._record(name) for name in here if name is not None]
-        shown = linked_directory(self._paths.of(self._paths.layout.shown_python))
-        pythons = {record.get("python") for record in records} | {None if shown is None else shown.name}
+        links = [self._paths.of(each) for each in self._paths.layout.former_links]
+        shown = {place.name for place in map(linked_directory, links) if place is not None}  # another tool may use it
+        pythons = {self._record(name).get("python") for name in here if name is not None} | shown
         for place in list(self._pythons.iterdir()) if self._pythons.is_dir() else ():
             if _NAME.fullmatch(place.name) and place.name not in pythons:
                 remove(place)
+        for link in links:
+            if linked_directory(link) is not None and not link.exists():
+                remove(link)
 
     def _record(self, name: str) -> Record:
         return read_record(self.directory(name))

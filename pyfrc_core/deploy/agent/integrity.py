@@ -31,9 +31,7 @@ def different_in_release(releases: Releases, number: int) -> list[str]:
 
 def different_code(releases: Releases) -> list[str]:
     """Return the code that differs from what was deployed or installed: of the current release, and of packages."""
-    current, installed = releases.current(), {}
-    if releases.environments is not None:
-        installed = releases.environments.damaged()
+    current, installed = releases.current(), releases.environments.damaged()
     found = [] if current is None else different_in_release(releases, current)
     packages = {path for paths in installed.values() for path in paths}
     return [*(path for path in found if path.endswith(_CODE)), *sorted(packages)]

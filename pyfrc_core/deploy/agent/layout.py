@@ -30,10 +30,9 @@ class Layout(NamedTuple):
     :param other_files:   patterns of their files; one that ends with a slash is a directory, if it has files
     :param command_mode:  the permissions of the files with start commands
     :param can_fail:      whether the exit code of `stop` and `restart` says that they have failed
-    :param environment:   a link to the Python environment that programs start with, in `home`; empty if `python` is not
-    :param shown_python:  where other tools look for its Python
-    :param python:        the system's Python, in the start commands; a program with an environment of its own starts
-        with the Python of that instead
+    :param python:        the Python in the start commands, of the system or another tool; a program with an environment
+        of pyfrc's starts with the Python of that instead
+    :param former_links:  links to environments and Pythons, which earlier versions have made
     :param installing:    the directory in which scripts of pyfrc write, in names that begin with their process's number
     :param output:        a command that prints what the program prints from then on; without one, the console service
         on the robot sends that
@@ -57,23 +56,17 @@ class Layout(NamedTuple):
     texts: Mapping[str, str]
     other_start: str
     other_files: Sequence[str]
+    python: str
     command_mode: int = 0o644
     can_fail: bool = False
     output: Sequence[str] = ()
-    environment: str = ""
-    shown_python: str = ""
-    python: str = ""
     installing: str = ""
+    former_links: Sequence[str] = ()
 
     @property
     def by_administrator(self) -> str:
         """Return where a user types a command for the administrator, for messages."""
         return f"as {self.administrator} on the robot:" if self.administrator != self.user else "on the robot: sudo"
-
-    @property
-    def has_environments(self) -> bool:
-        """Return whether programs can start with environments of their own."""
-        return bool(self.environment or self.python)
 
     @property
     def environments(self) -> str:

@@ -17,14 +17,14 @@ from pathlib import Path
 
 from .activity import Activity
 from .carrying import Carried, carry_over
-from .disk import allow_changes, make_links_absolute, remove, remove_if_possible, text_of, write_whole
+from .disk import allow_changes, make_links_absolute, remove, remove_if_possible, sync, text_of, write_whole
 from .environments import Environments
 from .release_record import Record, parse_record, standing
 from .robot_paths import Refusal, RobotPaths
-from .system import REPLACES_LINKS, exchange, flush, linked_directory, make_link, replace_link
+from .system import REPLACES_LINKS, exchange, linked_directory, make_link, replace_link
 
 _KEPT = 3
-_TRASH, _CARRIED = "trash-", "carried"
+_TRASH = "trash-"
 _RECORD, _UNFINISHED_RECORD = re.compile(r"\d+\.json"), re.compile(r"\.\d+\.json\.new")
 
 
@@ -38,13 +38,8 @@ class Releases:
         self._records: dict[int, tuple[tuple[int, ...], Record]] = {}
         #: Releases whose cached record could not be written, as on a full disk.
         self._unwritten: set[int] = set()
-        #: Environments with the packages of releases, on a controller that has them.
-        self.environments = Environments(paths, activity) if paths.layout.has_environments else None
-
-    def flush(self, directory: Path) -> None:
-        """Wait until all data written to this file system is on the disk."""
-        self.activity.begin("sync")
-        self.activity.wait_for(flush, directory)
+        #: Environments with the packages of releases.
+        self.environments = Environments(paths, activity)
 
     def remove(self, path: Path, *, if_possible: bool = False) -> None:
         """Remove a file or a directory tree, if it exists.
@@ -158,26 +153,20 @@ class Releases:
     def switch(self, number: int, commands: dict[str, str | None], taken: int | None) -> None:
         """Make a release current. At every moment, the start command refers to the complete old or new program.
 
-        If the start command and the environment stay the same, one rename is enough. Otherwise the command first refers
-        to the release's and the environment's own directories, which is the moment of the switch, and to ``~/py`` again
-        after the links have been replaced.
+        If the start command, which names the environment, stays the same, one rename is enough. Otherwise the command
+        first refers to the release's own directory, which is the moment of the switch, and to ``~/py`` again after the
+        link has been replaced.
 
         :param taken: the release number for another tool's directory in ``~/py``, whose record is already written
         """
+        commands = self.environments.in_commands(commands, self.record(number).get("environment"))
         code, direct_code = f"{self.paths.layout.code}/", f"{self.paths.releases_on_robot}/{number}/"
         direct = {name: text and text.replace(code, direct_code) for name, text in commands.items()}
-        changed = any(text_of(self.paths.home / name) != text for name, text in commands.items())
-        environment = None
-        if self.environments is not None:
-            environment = self.environments.other_than_current(self.record(number).get("environment"))
-        if environment is not None:
-            shared, own = f"{self.paths.layout.environment}/", f"{self.paths.layout.environments}/{environment}/"
-            direct = {name: text and text.replace(shared, own) for name, text in direct.items()}
-        detour = changed or environment is not None or not REPLACES_LINKS
+        detour = not REPLACES_LINKS or any(text_of(self.paths.home / name) != text for name, text in commands.items())
         link = self.paths.own / "py" if taken is None else self.directory(taken)
         remove(link)
         make_link(link, self.directory(number), self.paths.code)
-        self.flush(self.paths.own)
+        sync(self.paths.own, self.activity)
         if detour:
             self._write_commands(direct)
         if taken is None:
@@ -190,21 +179,9 @@ class Releases:
             link.replace(self.paths.own / "py")
             self.paths.code.rename(self.directory(taken))
             (self.paths.own / "py").replace(self.paths.code)
-        if environment is not None:
-            self._switch_environment(environment)
-        self.flush(self.paths.home)
+        sync(self.paths.home, self.activity)
         if detour:
             self._write_commands(commands)
-
-    def _switch_environment(self, environment: str) -> None:
-        """Replace the link to the environment. Another tool's environment becomes that of the releases that use it."""
-        assert self.environments is not None
-        taken = self.environments.next_taken()
-        if taken is not None:
-            for number in self.numbers():
-                self.update_record(number, lambda record: {"environment": taken, **record})
-            self.flush(self.paths.own)
-        self.environments.replace_link(environment, taken)
 
     def write_command(self, name: str, text: str) -> None:
         """Write a file with a start command."""
@@ -214,7 +191,7 @@ class Releases:
         for name, text in commands.items():
             if text is not None:
                 self.write_command(name, text)
-        self.flush(self.paths.home)
+        sync(self.paths.home, self.activity)
         for name, text in commands.items():
             if text is None:
                 remove(self.paths.home / name)
@@ -251,7 +228,7 @@ class Releases:
         :raises Refusal: if the directory cannot be moved
         """
         self.require_movable_code()
-        make_links_absolute(self.paths.code, self.paths.own / _CARRIED)
+        make_links_absolute(self.paths.code, self.paths.between)
         commands = {name: text_of(self.paths.home / name) for name in self.paths.layout.command_files}
         deployed = text_of(self.paths.code / "deploy.json")
         try:
@@ -259,8 +236,7 @@ class Releases:
         except ValueError:
             about = {}
         record: Record = {"taken": True, "debug": self.paths.is_debug(), "commands": commands, "deploy": about}
-        environment = None if self.environments is None else self.environments.current()
-        if environment is not None:
+        if (environment := self.environments.current()) is not None:
             record["environment"] = environment
         self.write_record(number, record)
 
@@ -277,8 +253,7 @@ class Releases:
                 self.adopt_directory(taken)
             self.switch(number, self.record(number).get("commands") or {}, taken)
         self._remove_remains()
-        if self.environments is not None:
-            self.environments.remove_remains()
+        self.environments.remove_remains()
         current = self.current()
         if current is not None:
             self.carry_late_writes(current)
@@ -290,7 +265,7 @@ class Releases:
         for each in self.paths.own.iterdir():
             if re.fullmatch(rf"{_TRASH}\d+", each.name):
                 self.remove(each, if_possible=True)
-            elif each.name in (self.paths.incoming.name, "py", _CARRIED):
+            elif each.name in (self.paths.incoming.name, self.paths.between.name, "py"):
                 self.remove(each)
         startable = self._startable()
         for each in self.paths.releases.iterdir() if self.paths.releases.is_dir() else ():
@@ -354,8 +329,7 @@ class Releases:
             if number not in keep:
                 with suppress(PermissionError):  # another user's
                     self.discard(number)
-        if self.environments is not None:
-            self.environments.remove_unused(self.record(number).get("environment") for number in self.numbers())
+        self.environments.remove_unused(self.record(number).get("environment") for number in self.numbers())
 
     def _free_name(self, prefix: str) -> Path:
         names = (self.paths.own / f"{prefix}{number}" for number in count(1))
@@ -381,7 +355,7 @@ class Releases:
         :param manifest: the deployed files of `new`, if it is not a release yet
         """
         manifests = self.manifest_paths(old), self.manifest_paths(new) or set() if manifest is None else manifest
-        return carry_over(old, new, manifests, before, self.paths.own / _CARRIED, self.activity)
+        return carry_over(old, new, manifests, before, self.paths.between, self.activity)
 
     def carry_late_writes(self, number: int) -> None:
         """Link files that the previous program wrote after the switch. Call this once, after its end."""

@@ -50,6 +50,8 @@ class RobotPaths:
         self.releases = self.own / "releases"
         #: Where the next release is assembled.
         self.incoming = self.own / "incoming"
+        #: The name of a file until it takes its place in a release, where it would be the program's.
+        self.between = self.own / "between"
         self.lock = self.own / "lock"
         #: Where the robot finds the releases.
         self.releases_on_robot = f"{layout.home}/.pyfrc/releases"
@@ -71,7 +73,7 @@ class RobotPaths:
 def start_commands(layout: Layout, main: str, debug: bool, environment: str | None = None) -> dict[str, str | None]:
     """Return the content of the robot's start command files for a program with this main file.
 
-    :param environment: the environment that it starts with; None: the current one, or the system's Python
+    :param environment: the environment that it starts with; None: with the layout's Python
     :raises Refusal: if the main file's name has characters that are not allowed in a command
     """
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_./-]*", main):
@@ -80,14 +82,21 @@ def start_commands(layout: Layout, main: str, debug: bool, environment: str | No
             f"the main file cannot be called {main!r}: its name is part of the robot's start command",
             "Give it a name of letters, digits, '_', '-' and '.'.",
         )
-    file = f"{layout.code}/{main}"
-    start, start_debug = layout.start.replace("{main}", file), layout.start_debug.replace("{main}", file)
-    if environment is not None and layout.python:
-        own = f"{layout.environments}/{environment}/bin/python3"
-        start, start_debug = start.replace(layout.python, own), start_debug.replace(layout.python, own)
+    start, start_debug = (
+        each.replace("{main}", f"{layout.code}/{main}") for each in (layout.start, layout.start_debug)
+    )
+    commands: dict[str, str | None] = {layout.command: start_debug if debug and not layout.debug_command else start}
     if layout.debug_command:
-        return {layout.command: start, layout.debug_command: start_debug}
-    return {layout.command: start_debug if debug else start}
+        commands[layout.debug_command] = start_debug
+    return in_environment(layout, commands, environment)
+
+
+def in_environment(layout: Layout, commands: dict[str, str | None], environment: str | None) -> dict[str, str | None]:
+    """Return start commands with the Python of an environment; None: as they are."""
+    if environment is None:
+        return commands
+    own = f"{layout.environments}/{environment}/bin/python3"
+    return {name: text and text.replace(layout.python, own) for name, text in commands.items()}
 
 
 class Lock:

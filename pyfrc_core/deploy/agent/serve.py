@@ -14,7 +14,7 @@ from typing import Any, BinaryIO
 from ...wheel_files import WheelError
 from .activity import Activity
 from .content_index import WantedFile
-from .disk import disk_problem, files_below, free_bytes, remove, sha256_of, text_of
+from .disk import different_files, disk_problem, files_below, free_bytes, remove, sync, text_of
 from .environment_files import Wheel
 from .host import Host, RealRobot, age_of
 from .imports import look_up
@@ -155,7 +155,7 @@ class Agent:
             "command": text_of(self._paths.home / layout.command),
             "debug": self._paths.is_debug(),
             "running": bool(program),
-            "environment": None if releases.environments is None else releases.environments.of_this_process(),
+            "environment": releases.environments.of_this_process(),
             "program_age": age_of(program),
             "remains": bool(layout.installing and list(self._paths.of(layout.installing).glob("[0-9]*.*"))),
             "other_languages": self._host.other_languages(),
@@ -196,9 +196,6 @@ class Agent:
 
     def _install(self, request: Message) -> Message:
         """Make an environment beside the current one. Nothing starts with it before a deploy selects it."""
-        environments = self._releases.environments
-        if environments is None:
-            raise Refusal("protocol", f"the packages of a {self._paths.layout.name} are not installed in this way")
 
         def receive(missing: list[Wheel], files: list[Path]) -> None:
             total = sum(each.size for each in missing)
@@ -212,7 +209,7 @@ class Agent:
 
         with self._transaction():
             self._recover()
-            environments.install(request, receive)
+            self._releases.environments.install(request, receive)
         return {}
 
     def _deploy(self, request: Message) -> Message:
@@ -333,19 +330,11 @@ class Agent:
             record["carried"] = {"from": current if taken is None else taken, "files": carried.files}
             with suppress(OSError):  # on a full disk, late writes stay in the other release
                 releases.write_record(number, record)
-        changed = self._changed(files, directory)
+        self._activity.begin("check", len(files))
+        changed = sorted(different_files(directory, files, self._activity, {}))
         releases.switch(number, record["commands"], taken)
         releases.set_debug(bool(record.get("debug")))
         return {"release": number, "previous": current, "changed": changed, "about": self._summary(number)}
-
-    def _changed(self, files: dict[str, str], directory: Path) -> list[str]:
-        self._activity.begin("check", len(files))
-        changed = []
-        for path, sha256 in files.items():
-            if sha256_of(f"{directory}/{path}", self._activity) != sha256:
-                changed.append(path)
-            self._activity.step()
-        return sorted(changed)
 
     def _undeploy(self) -> Message:
         """Remove the start commands, so that a power cut cannot restart the program; then stop it, then remove it."""
@@ -355,7 +344,7 @@ class Agent:
             for name in self._paths.layout.command_files:
                 remove(self._paths.home / name)
             self._releases.set_debug(False)
-            self._releases.flush(self._paths.home)
+            sync(self._paths.home, self._activity)
             self._activity.begin("stop")
             self._activity.wait_for(partial(self._host.stop, start=False))
             there = self._paths.code.exists() or self._paths.code.is_symlink()
@@ -364,5 +353,5 @@ class Agent:
             with suppress(OSError):  # Windows cannot remove an open file
                 remove(self._paths.lock)
                 self._paths.own.rmdir()
-            self._releases.flush(self._paths.home)
+            sync(self._paths.home, self._activity)
         return {"removed": there}

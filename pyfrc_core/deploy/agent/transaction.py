@@ -15,7 +15,7 @@ from .activity import Activity
 from .carrying import Carried
 from .compiling import CompiledForms, Compiler, compile_below, compiled_hashes
 from .content_index import DEPLOY_JSON, ContentIndex, WantedFile, parse_manifest
-from .disk import BLOCK, files_below, free_bytes, link_or_copy, remove, sha256_of, write_whole
+from .disk import BLOCK, files_below, free_bytes, link_or_copy, remove, sha256_of, sync, write_whole
 from .integrity import compiled_files, mend_releases
 from .release_record import NEVER_RUN, Record
 from .releases import Releases
@@ -139,7 +139,7 @@ class Deploy:
         compile_below(directory, self._debug, self._activity, self._paths.layout.code, self._program)
         self._linked = record.get("compiled", {})
         record["compiled"] = self._compiled(directory)
-        write_whole(directory / DEPLOY_JSON, json.dumps(self._about, indent=2))
+        self._write_about(directory)
         self._releases.write_record(current, record)
         self._switch(current, None)
         done = {"release": current, "previous": current, "files": 0, "bytes": 0, "taken": None, "unchanged": True}
@@ -238,13 +238,16 @@ class Deploy:
             self._activity.step()
         return linked
 
+    def _write_about(self, directory: Path) -> None:
+        write_whole(directory / DEPLOY_JSON, json.dumps(self._about, indent=2), between=self._paths.between)
+
     def _compiled(self, directory: Path) -> dict[str, str]:
         return compiled_hashes(directory, (each.path for each in self._wanted), self._activity, self._linked)
 
     def _release(self) -> Message:
         releases, paths = self._releases, self._paths
-        releases.flush(paths.own)  # the contents, which takes long; the rest is small
-        write_whole(paths.incoming / DEPLOY_JSON, json.dumps(self._about, indent=2))
+        sync(paths.own, self._activity)  # the contents, which takes long; the rest is small
+        self._write_about(paths.incoming)
         previous, taken = releases.current(), None
         if releases.is_other_tools():
             taken = releases.next_number()
@@ -269,7 +272,7 @@ class Deploy:
             carried = releases.carry_over(code, paths.incoming.resolve(), None, manifest)
             record["carried"] = {"from": record["from"], "files": carried.files}
         releases.write_record(number, record)
-        releases.flush(paths.own)
+        sync(paths.own, self._activity)
         paths.incoming.rename(releases.directory(number))
         try:
             self._switch(number, taken)
@@ -296,7 +299,7 @@ class Deploy:
         current = self._releases.current()
         if current is not None and wanted:
             self._releases.update_record(current, lambda record: {**record, **NEVER_RUN})  # another program now
-        self._releases.flush(self._paths.own)
+        sync(self._paths.own, self._activity)
         compiled = CompiledForms()
         for each in wanted:
             target = code / each.path
@@ -307,7 +310,7 @@ class Deploy:
             compiled.link(str(self._paths.incoming / each.path), str(target))
         self._releases.remove(self._paths.incoming)
         compile_below(code, self._debug, self._activity, self._paths.layout.code)
-        write_whole(code / DEPLOY_JSON, json.dumps(self._about, indent=2))
+        self._write_about(code)
         if current is not None:
             record = self._releases.record(current)
             record["files"] = {**record.get("files", {}), **{each.path: each.sha256 for each in self._wanted}}
@@ -316,7 +319,7 @@ class Deploy:
             self._releases.write_record(current, record)
         for name in self._paths.layout.command_files:
             self._releases.write_command(name, self._commands[name] or "")
-        self._releases.flush(self._paths.home)
+        sync(self._paths.home, self._activity)
         self._releases.set_debug(self._debug)
         return {"release": current, "previous": current, "taken": None, "unchanged": not wanted}
 

@@ -40,11 +40,13 @@ class PythonInstaller:
         its file, ``{kilobytes}`` have to be free
     :param user:   who runs it
     :param needed: returns how many bytes have to be free for a file
+    :param is_system: whether it installs the system's Python, which no newer one replaces; others have a name each
     """
 
     script: str
     user: str
     needed: Callable[[Path], int]
+    is_system: bool = False
 
 
 @dataclass(frozen=True)
@@ -65,9 +67,8 @@ class ControllerKind:
     """A kind of computer on robots.
 
     :param layout:           its files and commands, which the agent needs
-    :param python:           the path of its Python
-    :param find_python:      shell commands that set ``p`` to the Python that the current program starts with
     :param install_python:   installs Python
+    :param check_python:     a shell command that exits with 127 if its Python is not complete, and a semicolon
     :param password:         of its users, unless the team has changed it
     :param shared_hosts:     hosts that all teams' robots have, as on a USB cable
     :param machine:          the beginning of its processor architecture, as `platform.machine` returns it
@@ -89,8 +90,6 @@ class ControllerKind:
     """
 
     layout: Layout
-    python: str
-    find_python: str
     install_python: PythonInstaller
     password: str
     shared_hosts: tuple[str, ...]
@@ -101,6 +100,7 @@ class ControllerKind:
     stations: tuple[DriverStation, ...]
     addresses: Callable[[int], list[tuple[str, str]]]
     team_of_host: Callable[[str], int | None]
+    check_python: str = ""
     has_image_file: bool = False
     image_in: Callable[[Texts], str | None] = lambda texts: None
     image_problem: Callable[[str | None, str, Sequence[str]], str | None] = lambda image, wpilib, accepted: None
@@ -115,6 +115,11 @@ class ControllerKind:
         return self.layout.name
 
     @property
+    def python(self) -> str:
+        """The path of its Python, which programs without an environment start with."""
+        return self.layout.python
+
+    @property
     def remove_remains(self) -> AdministratorTask:
         """Removes what interrupted installations have left."""
         script, what = remove_remains(self.layout.installing), "what an interrupted installation had left on the robot"
@@ -125,11 +130,12 @@ class ControllerKind:
 
         :param environment: the name of an environment, whose Python is taken if it is complete
         """
-        other = ""
+        layout, other = self.layout, ""
         if environment is not None:
-            place = f"{self.layout.environments}/{environment}"
+            place = f"{layout.environments}/{environment}"
             other = f"[ ! -e {place}/environment.json ] || p={place}/bin/python3; "
-        return f"{self.find_python}; {other}exec $p"
+        named = f"grep -o '{layout.environments}/[^/]*/bin/python3' {layout.home}/{layout.command} 2> /dev/null"
+        return f'{self.check_python}p=$({named}); [ -x "$p" ] || p={self.python}; {other}exec $p'
 
 
 def team_of_address(host: str) -> int | None:

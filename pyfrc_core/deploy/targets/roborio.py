@@ -187,11 +187,6 @@ fi
 sync
 rm -f installing
 """
-_ENVIRONMENTS = f"{_LAYOUT.environments}/[0-9a-f]*/bin/python3"
-_FIND_PYTHON = (
-    f"[ ! -e {_OWN}/installing ] || exit 127; "
-    f'p=$(grep -o "{_ENVIRONMENTS}" {_HOME}/{_LAYOUT.command} 2> /dev/null); [ -x "$p" ] || p={_PYTHON}'
-)
 
 
 def _needed_for_python(package: Path) -> int:
@@ -200,9 +195,8 @@ def _needed_for_python(package: Path) -> int:
 
 ROBORIO = ControllerKind(
     layout=_LAYOUT,
-    python=_PYTHON,
-    find_python=_FIND_PYTHON,
-    install_python=PythonInstaller(_INSTALL_PYTHON, _LAYOUT.administrator, _needed_for_python),
+    install_python=PythonInstaller(_INSTALL_PYTHON, _LAYOUT.administrator, _needed_for_python, is_system=True),
+    check_python=f"[ ! -e {_OWN}/installing ] || exit 127; ",
     password="",
     shared_hosts=(_USB_CABLE,),
     machine="arm",

@@ -25,8 +25,7 @@ from .roborio import NI_STATION
 
 _USER = "systemcore"
 _HOME = f"/home/{_USER}"
-_ENVIRONMENT = f"{_HOME}/venv"
-_PYTHON = f"{_ENVIRONMENT}/bin/python3"
+_PYTHON = f"{_HOME}/venv/bin/python3"
 _PYTHONS = f"{_HOME}/.pyfrc/pythons"
 _PROGRAMS = (f"{_HOME}/*.jar", f"{_HOME}/frcUserProgram")
 _SUDO = ("/usr/bin/sudo", "-n")
@@ -57,9 +56,9 @@ _LAYOUT = Layout(
     other_start="[.]jar|frcUserProgram",
     other_files=_PROGRAMS,
     command_mode=0o755,
-    environment=_ENVIRONMENT,
-    shown_python=f"{_HOME}/.python",
+    python=_PYTHON,
     installing=_PYTHONS,
+    former_links=(f"{_HOME}/venv", f"{_HOME}/.python"),
     can_fail=True,
     # The messages of the program's processes; with --unit, those of systemd about it would come, too.
     output=("journalctl", "--follow", "--lines=0", "--output=cat", "_SYSTEMD_UNIT=robot.service"),
@@ -118,8 +117,6 @@ def _needed_for_python(archive: Path) -> int:
 
 SYSTEMCORE = ControllerKind(
     layout=_LAYOUT,
-    python=_PYTHON,
-    find_python=f"p={_PYTHON}",
     install_python=PythonInstaller(_INSTALL_PYTHON, _USER, _needed_for_python),
     password=_USER,
     shared_hosts=(_NAME, _WIFI, *_USB_CABLE),

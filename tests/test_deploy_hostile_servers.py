@@ -1,0 +1,175 @@
+"""150 servers that are no robot, or one that misbehaves: one sentence and exit code 1, within the time limits."""
+
+from __future__ import annotations
+
+import struct
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import paramiko
+import pytest
+from hostile_ssh import Serve, garbage, kex_init, packet, printing, repeats, says, serving, ssh
+
+from pyfrc_core.deploy import connection, login
+from pyfrc_core.deploy.agent_client import AgentClient
+from pyfrc_core.deploy.agent_stream import TimeLimits
+from pyfrc_core.deploy.connection import connect
+from pyfrc_core.deploy.errors import DeployError
+from pyfrc_core.deploy.host_keys import HostKeys
+from pyfrc_core.deploy.targets.roborio import ROBORIO
+
+SSH = b"SSH-2.0-robot\r\n"
+#: Time limits of each step, and of everything with them; seconds.
+_STEP, _ALL = 0.3, 8.0
+
+
+def before_the_greeting() -> Iterator[tuple[str, Serve]]:
+    for seed in range(12):
+        for then in ("close", "silence"):
+            yield f"garbage {seed}, {then}", says(garbage(seed, 3**seed % 4000), then)
+    texts = {
+        "nothing": b"",
+        "half of it": b"SSH-",
+        "without an end": SSH[:-2],
+        "an old version": b"SSH-1.5-old\r\n",
+        "a number": b"SSH-99.9-robot\r\n",
+        "a long one": b"SSH-2.0-" + b"x" * 10_000 + b"\r\n",
+        "no text": b"SSH-2.0-\xff\xfe\0\r\n",
+        "a web server": b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n",
+        "TLS": bytes.fromhex("15030100020228"),
+        "mail": b"220 mail\r\n" * 200,
+        "only lines": b"\n" * 5_000,
+    }
+    for name, text in texts.items():
+        for then in ("close", "reset", "silence"):
+            yield f"{name}, {then}", says(text, then)
+    yield "lines for ever", repeats(b"wait\r\n")
+    yield "bytes for ever", repeats(b"x" * 1000)
+    yield "zeros for ever", repeats(bytes(1000))
+    yield "a greeting for ever", repeats(SSH)
+    yield "a greeting in an endless line", repeats(b"SSH-")
+    yield "a slow line", repeats(b"S", pause=0.1)
+    yield "slow lines", repeats(b"wait\r\n", pause=0.1)
+
+
+def in_the_key_exchange() -> Iterator[tuple[str, Serve]]:
+    packets = {
+        "a packet of no length": bytes(64),
+        "a huge packet": b"\xff" * 64,
+        "a packet of 32 MB": struct.pack(">IB", 1 << 25, 4) + b"\x14" + bytes(64),
+        "too much padding": struct.pack(">IB", 12, 250) + bytes(64),
+        "an odd length": struct.pack(">IB", 13, 4) + bytes(64),
+        "a disconnect": packet(b"\x01" + struct.pack(">II", 2, 4) + b"away" + bytes(4)),
+        "a disconnect of no text": packet(b"\x01" + struct.pack(">II", 2, 99) + b"\xff"),
+        "an empty packet": packet(b""),
+        "a second greeting": SSH,
+        "a packet of the login without keys": packet(b"\x06" + struct.pack(">I", 12) + b"ssh-userauth"),
+        "an unknown packet": packet(b"\xc8" + b"x" * 20),
+        "a packet of the login": packet(b"\x34"),
+        "a key without an exchange": packet(b"\x1f" + bytes(60)),
+        "no kex in common": kex_init("rot13"),
+        "no key in common": kex_init("curve25519-sha256@libssh.org", "rot13"),
+        "no cipher in common": kex_init("curve25519-sha256@libssh.org", "ecdsa-sha2-nistp256", "rot13", "rot13"),
+        "names that are no text": kex_init("\udcff".encode(errors="surrogateescape").decode("latin-1")),
+        "an exchange cut short": packet(b"\x14" + bytes(16) + struct.pack(">I", 1000) + b"x"),
+        "an exchange and garbage": kex_init() + garbage(5),
+        "a wrong reply": kex_init() + packet(b"\x1f" + struct.pack(">I", 4) + b"evil" + bytes(40)),
+        "a reply cut short": kex_init() + packet(b"\x1f" + struct.pack(">I", 1 << 20)),
+        "new keys too soon": kex_init() + packet(b"\x15"),
+    }
+    for name, data in packets.items():
+        for then in ("close", "silence"):
+            yield f"{name}, {then}", says(SSH + data, then)
+    yield "ignored packets for ever", repeats(packet(b"\x02" + struct.pack(">I", 4) + b"text"), SSH)
+    yield "debug packets for ever", repeats(packet(b"\x04\0" + struct.pack(">I", 4) + b"text" + bytes(4)), SSH)
+    yield "exchanges for ever", repeats(kex_init(), SSH, 0.01)
+    yield "one byte after the other", repeats(b"\0", SSH, 0.1)
+
+
+def at_the_login() -> Iterator[tuple[str, Serve]]:
+    for methods in (
+        "",
+        "password",
+        "publickey",
+        "keyboard-interactive",
+        "hostbased",
+        "gssapi-with-mic",
+        "rot13,\x1b[2J",
+    ):
+        yield f"refused, {methods!r} is allowed", ssh(methods=methods, login=paramiko.AUTH_FAILED)
+        yield f"in part, {methods!r} is allowed", ssh(methods=methods, login=paramiko.AUTH_PARTIALLY_SUCCESSFUL)
+    yield "closed", ssh(login="close")
+    yield "silence", ssh(login="sleep")
+
+
+def in_a_channel() -> Iterator[tuple[str, Serve]]:
+    for number in range(1, 5):
+        yield f"no channel ({number})", ssh(opening=number)
+    yield "closed", ssh(opening="close")
+    yield "silence", ssh(opening="sleep")
+    yield "no command", ssh()
+    yield "closed at the command", ssh(command="close")
+    yield "silence at the command", ssh(command="sleep")
+    for status in (0, 1, 3, 126, 127, 255, 4_000_000_000):
+        yield f"exit code {status}", ssh(command=printing(b"", status))
+    yield "a login script", ssh(command=printing(b"Welcome to the robot\n" * 10))
+    yield "garbage", ssh(command=printing(garbage(7, 4000)))
+    yield "garbage as errors", ssh(command=printing(garbage(7, 4000), 1, errors=True))
+    yield "output for ever", ssh(command=printing(b"\0\0\1\0" * 1000, None, for_ever=True))
+    yield "errors for ever", ssh(command=printing(b"x" * 4000, None, for_ever=True, errors=True))
+    yield "half a frame", ssh(command=printing(b"\0\0\0\x64J" + bytes(10), None))
+    yield "nothing", ssh(command=printing(b"", None))
+    yield "a frame of 4 GB", ssh(command=printing(b"\xff\xff\xff\xffJ" + bytes(10), None))
+
+
+SERVERS = {
+    f"{stage.__name__}: {name}": serve
+    for stage in (before_the_greeting, in_the_key_exchange, at_the_login, in_a_channel)
+    for name, serve in stage()
+}
+
+
+def meet(serve: Serve, directory: Path) -> tuple[BaseException | None, float]:
+    """Connect to a server and start an agent there. Return what is raised, and how long it took."""
+    limits, begin = TimeLimits(_STEP, _STEP, _STEP, 1.0), time.monotonic()
+    with serving(serve) as address:
+        try:
+            with connect(address, ROBORIO, HostKeys(directory).of_robot(address, ROBORIO)) as connected:
+                AgentClient.start(connected, limits=limits)
+        except BaseException as error:
+            return error, time.monotonic() - begin
+    return None, time.monotonic() - begin
+
+
+def test_all_servers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """At once, since most of the time is spent with waiting."""
+    for module in (connection, login):
+        monkeypatch.setattr(module, "STEP_SECONDS", _STEP)
+    monkeypatch.setattr(connection, "_LOST_SECONDS", 1)
+    assert len(SERVERS) >= 150
+    found: dict[str, tuple[BaseException | None, float]] = {}
+    waiting = list(SERVERS)
+
+    def work() -> None:
+        while waiting:
+            name = waiting.pop()
+            directory = tmp_path / str(len(waiting))
+            directory.mkdir()
+            found[name] = meet(SERVERS[name], directory)
+
+    threads = [threading.Thread(target=work, daemon=True) for _ in range(16)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(120)
+    assert found.keys() == SERVERS.keys(), "some connection never ends"
+    for name, (error, seconds) in found.items():
+        assert isinstance(error, DeployError), f"{name}: {error!r}"
+        assert error.exit_code == 1, name
+        text = str(error)
+        assert text.isprintable() or "\n" in text, f"{name}: {text!r}"
+        assert "\x1b" not in text, f"{name}: {text!r}"
+        assert error.remedy, name
+        assert seconds < _ALL, f"{name}: {seconds:.1f} s"
