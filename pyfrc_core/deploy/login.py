@@ -80,6 +80,12 @@ def _key_in(file: Path) -> paramiko.PKey:
         ) from None
     except OSError as error:
         raise RefusedError(f"this key cannot be read: {error.strerror or error}", where=file) from None
+    except paramiko.SSHException as error:  # it cannot read some valid keys of ECDSA
+        raise RefusedError(
+            f"paramiko cannot read this key: {error}",
+            where=file,
+            remedy="Add it to your SSH agent: ssh-add FILE, and use --ssh-agent. Or take a key of Ed25519.",
+        ) from None
     except Exception as error:  # invalid content causes many kinds of errors
         raise RefusedError(
             f"this is not a private key: {error}", where=file, remedy="Use the file without .pub at its end."
