@@ -143,14 +143,11 @@ def hal_data() -> str:
     from pyfrc_core.hal import device_table
 
     rows = []
-    for kind in device_table.KINDS:
+    for kind in sorted(device_table.KINDS, key=lambda kind: kind.count is None):
         live = [each for each in kind.fields if each.hal or each.get]
-        if live:
-            rows.append((f'`["{kind.name}"][0]` to `[{kind.count - 1}]`', _fields(live)))
-    for name in ("ACCELEROMETER", "POWER", "ROBORIO", "ONBOARD_IMU"):
-        live = [each for each in getattr(device_table, name, ()) if each.hal or each.get]
-        if live:
-            rows.append((f'`["{name.lower()}"]`', _fields(live)))
+        if live and kind.name and not kind.by_number:
+            numbers = "" if kind.count is None else f"[0]` to `[{kind.count - 1}]"
+            rows.append((f'`["{kind.name}"]{numbers}`', _fields(live)))
     return _table("place | keys", rows)
 
 

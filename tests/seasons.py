@@ -28,6 +28,7 @@ IN_2027 = frozenset(
         "logs",
         "lost_driver_station",
         "motion",
+        "one_row",
         "robot_time",
         "scripts",
         "sim_headless",

@@ -17,11 +17,12 @@ if missing_tkinter():  # some imports below need it
     require(WINDOW, missing_tkinter())
 
 from pyfrc_core.config.sim import SimConfig
+from pyfrc_core.hal.fields import RowKind
 from pyfrc_core.physics.pose import Pose
 from pyfrc_core.processes.standstill import Standstill
 from pyfrc_core.sim import Field, Scene, Snapshot, Status
 from pyfrc_core.sim.engine.snapshot import Failure
-from pyfrc_core.sim.ui.models.devices import SETTABLE, Row, RowKind, panels_of
+from pyfrc_core.sim.ui.models.devices import SETTABLE, Row, panels_of
 from pyfrc_core.sim.ui.models.driver_station_keys import DriverStationKeys
 from pyfrc_core.sim.ui.models.gamepads import HINT, GamepadRouter, Reading
 from pyfrc_core.sim.ui.models.joysticks import RELEASED, Sticks, axis_labels, button_labels
@@ -108,7 +109,12 @@ def test_each_device_has_its_row() -> None:
         "Analog inputs": [("0", "slider")],
         "Analog outputs": [("1", "meter")],
         "Relays": [("0", "relay")],
-        "Pneumatics": [("PCM 0", "lamps"), ("Compressor", "lamp"), ("Pressure switch", "switch"), ("PH 1", "lamps")],
+        "Pneumatics": [
+            ("PCM 0", "lamps"),
+            ("PH 1", "lamps"),
+            ("PCM 0 compressor", "lamp"),
+            ("PCM 0 pressure switch", "switch"),
+        ],
         "Encoders and counters": [("Encoder 0", "number"), ("Counter 1", "number")],
         "Gyros": [("Analog 0", "slider"), ("ADXRS450[0]", "text"), ("angle_x", "slider")],
         "CAN and SimDevices": [

@@ -36,11 +36,10 @@ if TYPE_CHECKING:
     from .season_2026 import counters as counters
     from .season_2026 import device_table as device_table
     from .season_2026 import driver_station as driver_station
-    from .season_2026 import outputs as outputs
     from .season_2026 import pneumatics as pneumatics
 
 #: The modules of each season's package.
-_OF_A_SEASON = ("accessors", "counters", "device_table", "driver_station", "outputs", "pneumatics")
+_OF_A_SEASON = ("accessors", "counters", "device_table", "driver_station", "pneumatics")
 
 __all__ = [
     "Choice",

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import chain
 from typing import Any
 
-from ..wpi import station
-from . import device_table, driver_station
+from . import device_table
 from .change_reader import ChangeReader
 from .containers import LiveDict, LiveList, Slot, plain, stored
 from .kinds import UnknownKey, WrongPath, WrongType
 from .modules import Modules
 from .paths import Segment, format_path, join, parse_path
-from .robot_devices import RobotDevices
+from .robot_devices import Device, RobotDevices
 from .sim_devices import RobotDict, SimDevices
 from .tree_reader import TreeReader
 
@@ -48,27 +48,16 @@ class HalData(LiveDict):
 
     @staticmethod
     def _values() -> dict[str, Slot]:
-        return {
-            **device_table.values(),
-            "user_program_state": Slot(station.program_state, None),
-            "error_data": stored(),
-            "pwm_loop_timing": stored(40),
-            "d0_pwm_rate": stored(),
-        }
+        own = [kind.slots() for kind in device_table.KINDS if not kind.name]
+        missing = {"error_data": stored(), "pwm_loop_timing": stored(40), "d0_pwm_rate": stored()}
+        return dict(chain.from_iterable(slots.items() for slots in (*own, missing)))
 
     def _branch_builders(self) -> dict[str, Callable[[], Any]]:
-        modules = self.modules
+        kinds = [kind for kind in device_table.KINDS if kind.name]
         return {
-            **device_table.groups(),
-            "event": driver_station.EventData,
-            "joysticks": driver_station.joysticks,
+            **{kind.name: kind.branch for kind in kinds if not kind.by_number},
             "robot": lambda: RobotDict(self["CAN"]),
-            **{kind.name: kind.devices for kind in device_table.KINDS},
-            "pcm": lambda: modules.pcm,
-            "ph": lambda: modules.ph,
-            "pcm_compressor": lambda: modules.pcm_compressor,
-            "ph_compressor": lambda: modules.ph_compressor,
-            "pdp": lambda: modules.pdp,
+            **{kind.name: partial(self.modules.by_key.__getitem__, kind.name) for kind in kinds if kind.by_number},
             "CAN": SimDevices,
         }
 
@@ -185,6 +174,15 @@ class HalData(LiveDict):
         """Return the devices that exist in the HAL, such as ``pwm[3]``."""
         return self._robot_devices.existing()
 
+    def devices(self) -> list[Device]:
+        """Return the devices that exist without the robot, and those that it has made; no SimDevices."""
+        self.created()
+        return [*self._robot_devices.always(), *self._robot_devices.made()]
+
+    def created(self) -> list[bool]:
+        """Return whether each device that the robot can make exists: the same list as long as nothing changes."""
+        return self._robot_devices.created()
+
     def leaves(self) -> list[tuple[str, Any]]:
         """Return the current state of the robot and its inputs as pairs of path and plain value, in a fixed order.
 
@@ -205,7 +203,7 @@ class HalData(LiveDict):
         return ChangeReader(self._new_reader())
 
     def _new_reader(self) -> TreeReader:
-        return TreeReader(self, self.modules, self._robot_devices)
+        return TreeReader(self, self._robot_devices)
 
     @cached_property
     def _reader(self) -> TreeReader:

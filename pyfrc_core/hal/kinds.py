@@ -76,6 +76,7 @@ class ValueKind:
     :param default: the value of a field of this kind where the HAL has no such channel
     :param load: returns the value to show, from WPILib's value
     :param plain: returns the value to record, from WPILib's value, where that differs from the value to show
+    :param max_bytes: the length of the longest text, for a kind of texts
     """
 
     expected: str
@@ -83,6 +84,7 @@ class ValueKind:
     default: Any = None
     load: Callable[[Any], Any] | None = None
     plain: Callable[[Any], Any] | None = None
+    max_bytes: int = 0
 
     def check(self, value: object, where: str) -> Any:
         """Return the value to store.
@@ -168,7 +170,7 @@ def text(max_bytes: int) -> ValueKind:
             raise ValueError
         return value
 
-    return ValueKind(f"a text of at most {max_bytes} bytes", convert, "")
+    return ValueKind(f"a text of at most {max_bytes} bytes", convert, "", max_bytes=max_bytes)
 
 
 def choice(names: dict[str, int], make: Callable[[int], Any] = int) -> ValueKind:

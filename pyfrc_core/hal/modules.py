@@ -8,43 +8,12 @@ from typing import Any
 
 from . import pneumatics
 from .containers import LiveDict, LiveList, Slot, ValueList
-from .fields import HAS_SOURCE, INITIALIZED, DeviceField, group
-from .kinds import BOOL, FLOAT, choice
+from .fields import INITIALIZED, group
+from .kinds import BOOL, FLOAT
 from .paths import join
-
-HUB_COMPRESSOR_MODE = choice({"disabled": 0, "digital": 1, "analog": 2, "hybrid": 3})
+from .shared_rows import CHANNELS, DISTRIBUTION, HUB_COMPRESSOR, PCM_COMPRESSOR
 
 MODULES = 63  # CAN device numbers 0 to 62; the HAL does not check beyond
-CHANNELS = 24  # of a power distribution module
-
-COMPRESSOR = (
-    INITIALIZED,
-    DeviceField("on", "CompressorOn", BOOL),
-    DeviceField("pressure_switch", "PressureSwitch", BOOL),
-    DeviceField("current", "CompressorCurrent", FLOAT),
-    HAS_SOURCE,
-)
-PCM_COMPRESSOR = (*COMPRESSOR, DeviceField("closed_loop_enabled", "ClosedLoopEnabled", BOOL))
-HUB_COMPRESSOR_FIELDS = (
-    *COMPRESSOR,
-    DeviceField("config_type", "CompressorConfigType", HUB_COMPRESSOR_MODE),
-    DeviceField(
-        "closed_loop_enabled",
-        "CompressorConfigType",
-        BOOL,
-        same_as="config_type",
-        recorded=False,
-        get=pneumatics.is_closed_loop,
-        put=pneumatics.set_closed_loop,
-    ),
-)
-DISTRIBUTION = (
-    INITIALIZED,
-    DeviceField("voltage", "Voltage", FLOAT),
-    DeviceField("temperature", "Temperature", FLOAT),
-    DeviceField("total_power", default=0.0),
-    DeviceField("total_energy", default=0.0),
-)
 
 
 def solenoid(module: Any, path: str, channel: int) -> LiveDict:
@@ -55,10 +24,7 @@ def solenoid(module: Any, path: str, channel: int) -> LiveDict:
             return pneumatics.watch_solenoid(module, channel, fire)
 
         get, put = pneumatics.solenoid(module, channel)
-        return {
-            "initialized": INITIALIZED.slot(module),
-            "value": Slot(get, put, BOOL, watch, unset=False),
-        }
+        return {"initialized": INITIALIZED.slot(module), "value": Slot(get, put, BOOL, watch, unset=False)}
 
     return LiveDict(path, build)
 
@@ -127,17 +93,33 @@ class Modules:
         self._hub_solenoids = lru_cache(None)(lambda n: self._solenoids(join("ph", n), self._hub_sim(n), 16))
         self._pcm_solenoids = lru_cache(None)(lambda n: self._solenoids(join("pcm", n), self._pcm_sim(n), 8))
         self._hub_compressor = lru_cache(None)(
-            lambda n: group(join("ph_compressor", n), self._hub_sim(n), HUB_COMPRESSOR_FIELDS)
+            lambda n: group(join("ph_compressor", n), self._hub_sim(n), HUB_COMPRESSOR)
         )
         self._pcm_compressor = lru_cache(None)(
             lambda n: group(join("pcm_compressor", n), self._pcm_sim(n), PCM_COMPRESSOR)
         )
         distributions = lru_cache(None)(lambda n: distribution(join("pdp", n), self._power_sim(n)))
-        self.ph = ModuleDict("ph", self._has_hub, self._hub_solenoids)
-        self.pcm = ModuleDict("pcm", lambda n: self._has_pcm(n) or self._has_hub(n), self._either, early=0)
-        self.ph_compressor = ModuleDict("ph_compressor", self._has_hub, self._hub_compressor)
-        self.pcm_compressor = ModuleDict("pcm_compressor", self._has_pcm, self._pcm_compressor)
-        self.pdp = ModuleDict("pdp", lambda n: pneumatics.exists(self._power_sim(n)), distributions, early=0)
+        #: Whether there is a module with a number, and its part of the tree, by the keys there.
+        self._parts: dict[str, tuple[Callable[[int], bool], Callable[[int], LiveDict | LiveList]]] = {
+            "pcm": (self._has_pcm, self._pcm_solenoids),
+            "ph": (self._has_hub, self._hub_solenoids),
+            "pcm_compressor": (self._has_pcm, self._pcm_compressor),
+            "ph_compressor": (self._has_hub, self._hub_compressor),
+            "pdp": (lambda n: pneumatics.exists(self._power_sim(n)), distributions),
+        }
+        #: The parts by key: dicts of the modules that exist, by number.
+        self.by_key = {
+            key: ModuleDict(key, *part, early=0 if key == "pdp" else None) for key, part in self._parts.items()
+        }
+        self.by_key["pcm"] = ModuleDict("pcm", lambda n: self._has_pcm(n) or self._has_hub(n), self._either, early=0)
+
+    def made(self, key: str) -> list[tuple[int, LiveDict | LiveList]]:
+        """Return the modules that the robot has made: their numbers, and their parts of the tree.
+
+        :param key: which part of the tree
+        """
+        exists, part = self._parts[key]
+        return [(number, part(number)) for number in range(MODULES) if exists(number)]
 
     def _has_pcm(self, module: int) -> bool:
         return pneumatics.exists(self._pcm_sim(module))
@@ -162,19 +144,11 @@ class Modules:
     @property
     def compressor(self) -> LiveDict:
         """The compressor of the robot's first module, CTRE's before REV's; by default that of CTRE's module 0."""
-        for number in self.pcm_compressor:
-            return self._pcm_compressor(number)
-        for number in self.ph_compressor:
-            return self._hub_compressor(number)
+        for key in ("pcm_compressor", "ph_compressor"):
+            for number in self.by_key[key]:
+                found: LiveDict = self._parts[key][1](number)  # type: ignore[assignment]
+                return found
         return self._pcm_compressor(0)
-
-    def pcm_solenoids(self) -> list[LiveList]:
-        """Return the solenoids of every CTRE module that the robot has created."""
-        return [self._pcm_solenoids(number) for number in self.pcm_compressor]
-
-    def hub_solenoids(self) -> list[LiveList]:
-        """Return the solenoids of every REV hub that the robot has created."""
-        return [self._hub_solenoids(number) for number in self.ph_compressor]
 
     def initialized(self) -> list[Slot]:
         """Return a slot for each possible module that says whether the robot has created it."""

@@ -15,13 +15,9 @@ from functools import partial
 from typing import Any
 
 from ..wpi import motor_controllers, station
-from . import outputs, pneumatics
+from . import tree
 from .can_outputs import CanOutputs
-from .created_devices import CreatedDevices
-from .fields import INITIALIZED
-from .modules import MODULES
-
-_PCM_CHANNELS, _HUB_CHANNELS = 8, 16
+from .containers import LiveList, Slot
 
 #: Restores one output.
 Restore = Callable[[], None]
@@ -31,7 +27,7 @@ class OutputGate:
     """Turns off the outputs of a robot that is not enabled, while its physics runs."""
 
     def __init__(self) -> None:
-        self._channels = _Channels()
+        self._outputs = _Outputs()
         self._can = CanOutputs()
         self._getters = _MotorGetters()
         self._closed = False
@@ -48,7 +44,7 @@ class OutputGate:
             yield
             return
         self._closed = True
-        restores = [*self._channels.turn_off(), *self._can.turn_off(), *self._getters.turn_off()]
+        restores = [*self._outputs.turn_off(), *self._can.turn_off(), *self._getters.turn_off()]
         try:
             yield
         finally:
@@ -57,39 +53,43 @@ class OutputGate:
                 restore()
 
 
-class _Channels:
-    """The PWM outputs, relays and solenoids that the robot has created."""
+class _Outputs:
+    """The outputs in the device table that the robot has created."""
 
     def __init__(self) -> None:
-        self._outputs = outputs.Channels()
-        self._pneumatics: list[tuple[Any, int]] = [
-            *((pneumatics.Pcm(number), _PCM_CHANNELS) for number in range(MODULES)),
-            *((pneumatics.Hub(number), _HUB_CHANNELS) for number in range(MODULES)),
-        ]
-        self._devices = CreatedDevices(
-            [*self._outputs.initialized, *(INITIALIZED.slot(module) for module, _ in self._pneumatics)]
-        )
         self._created: list[bool] | None = None
-        self._switches: list[tuple[Callable[[], bool], Callable[[bool], None]]] = []
+        #: The access to what is turned off, and its value then, by device; and whether that is to be turned off.
+        self._outputs: list[tuple[Callable[[], bool], list[tuple[Slot, Any]]]] = []
 
     def turn_off(self) -> Iterator[Restore]:
         """Turn off the outputs that are on."""
-        created = self._devices.created()
+        created = tree().created()
         if created is not self._created:
-            self._created = created
-            self._find(created)
-        yield from self._outputs.turn_off()
-        for get, put in self._switches:
-            if get():
-                put(False)
-                yield partial(outputs.restore, get, put, False, True)
+            self._created, self._outputs = created, list(_find_outputs())
+        for is_on, slots in self._outputs:
+            for slot, off in slots if is_on() else ():
+                before = slot.get()
+                if before != off:
+                    _put(slot, off)
+                    yield partial(_restore, slot, off, before)
 
-    def _find(self, created: list[bool]) -> None:
-        is_created = iter(created)
-        self._switches = self._outputs.find(is_created)
-        for module, channels in self._pneumatics:
-            if next(is_created):
-                self._switches += [pneumatics.solenoid(module, channel) for channel in range(channels)]
+
+def _find_outputs() -> Iterator[tuple[Callable[[], bool], list[tuple[Slot, Any]]]]:
+    for device in tree().devices():
+        fields = [field for field in device.kind.fields if field.off is not None]
+        for place in (device.place if isinstance(device.place, LiveList) else [device.place]) if fields else ():
+            yield partial(device.kind.is_on, place), [(place._slot(field.name), field.off) for field in fields]
+
+
+def _put(slot: Slot, value: Any) -> None:
+    assert slot.set is not None
+    slot.set(value)
+
+
+def _restore(slot: Slot, off: Any, before: Any) -> None:
+    """Restore an output, unless it was written meanwhile."""
+    if slot.get() == off:
+        _put(slot, before)
 
 
 class _MotorGetters:

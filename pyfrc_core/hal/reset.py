@@ -6,6 +6,7 @@ from ..wpi import devices
 from . import counters, pneumatics, tree
 from .created_devices import prepare_reset
 from .modules import MODULES
+from .paths import join
 
 
 def forget_inputs() -> None:
@@ -16,14 +17,15 @@ def forget_inputs() -> None:
 
 
 def forget_what_stays() -> None:
-    """Forget power distributions and the accelerometer: in WPILib's simulation, they stay when their objects are gone.
+    """Forget power distributions and what the controller has one of, such as an accelerometer.
 
-    They do no harm.
+    In WPILib's simulation, they stay when their objects are gone. They do no harm.
     """
     for number in range(MODULES):
         module = pneumatics.PowerDistribution(number)
         if pneumatics.exists(module):
             prepare_reset()
             pneumatics.reset(module)
-    if "accelerometer" in (data := tree()):
-        data["accelerometer"]["active"] = False
+    for device in tree().devices():
+        if device.number is None and device.kind.exists and tree().can_write(join(device.path, device.kind.exists)):
+            device.place[device.kind.exists] = False

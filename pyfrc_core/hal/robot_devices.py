@@ -1,16 +1,35 @@
-"""Which devices of `hal_data` exist: those of the roboRIO, the modules on the CAN bus, and SimDevices."""
+"""Which devices of `hal_data` exist: those of the controller, the modules on the CAN bus, and SimDevices."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 from ..wpi import timing
 from . import device_table
-from .containers import LiveDict
+from .containers import LiveDict, Slot
 from .created_devices import CreatedDevices
+from .fields import DeviceKind
 from .modules import Modules
 from .paths import join
 from .sim_devices import SimDevices
+
+
+class Device(NamedTuple):
+    """A device in a tree.
+
+    :param number: None, if there is only one
+    :param place: its part of the tree; of a pneumatics module, the list of its solenoids
+    """
+
+    kind: DeviceKind
+    number: int | None
+    place: Any
+
+    @property
+    def path(self) -> str:
+        """Its path in `hal_data`; empty for the values of the root."""
+        return self.kind.name if self.number is None else join(self.kind.name, self.number)
 
 
 class RobotDevices:
@@ -22,25 +41,39 @@ class RobotDevices:
 
     def __init__(self, tree: LiveDict, modules: Modules) -> None:
         self._can: SimDevices = tree["CAN"]
-        channels = [
-            (kind.name, index, slot) for kind in device_table.KINDS for index, slot in enumerate(kind.initialized())
-        ]
+        self._modules = modules
+        self._by_number = [kind for kind in device_table.KINDS if kind.by_number]
+        self._always: list[Device] = []
+        #: Other devices of the controller, and a slot for each that says whether it exists.
+        self._own: list[Device] = []
+        self._slots: list[Slot] = []
+        for kind in device_table.KINDS:
+            if not kind.exists and kind.build is None:
+                self._always.append(Device(kind, None, tree[kind.name] if kind.name else tree))
+            for number, slot in enumerate(kind.initialized()):
+                numbered = kind.count is not None
+                place = tree[kind.name][number] if numbered else tree[kind.name]
+                self._own.append(Device(kind, number if numbered else None, place))
+                self._slots.append(slot)
+        self._names = [device.path for device in self._own]
         module_slots = list(modules.initialized())
-        self._channels = [(kind, index) for kind, index, _ in channels]
-        self._names = [join(kind, index) for kind, index in self._channels]
         self._names += ["pneumatics or power distribution"] * len(module_slots)
-        self._names += device_table.MAY_EXIST
-        self._slots = [*(slot for _, _, slot in channels), *module_slots]
-        self._slots += [tree[name]._slot(key) for name, key in device_table.MAY_EXIST.items()]
+        self._slots += module_slots
         self._devices = CreatedDevices(self._slots)
 
     def created(self) -> list[bool]:
         """Return, for each that is no SimDevice, whether it exists; the same list object as long as nothing changes."""
         return self._devices.created()
 
-    def channels(self) -> Iterator[tuple[str, int]]:
-        """Return the kind and the index of each device of the roboRIO, as of the last call of `created`."""
-        return (channel for channel, exists in zip(self._channels, self.created(), strict=False) if exists)
+    def always(self) -> list[Device]:
+        """Return the devices that exist without the robot."""
+        return self._always
+
+    def made(self) -> Iterator[Device]:
+        """Return the devices that the robot has made, as of the last call of `created`; no SimDevices."""
+        yield from (device for device, exists in zip(self._own, self.created(), strict=False) if exists)
+        for kind in self._by_number:
+            yield from (Device(kind, number, place) for number, place in self._modules.made(kind.name))
 
     def any_exist(self) -> bool:
         """Return whether any device exists, or any thread of WPILib that waits for an alarm."""

@@ -8,9 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from . import device_table
-from .containers import LiveDict, plain
-from .modules import Modules
+from .containers import LiveDict, LiveList, plain
 from .paths import join
 from .robot_devices import RobotDevices
 from .sim_device_list import Signature
@@ -27,12 +25,11 @@ class TreeReader:
     """Reads the values of `HalData.leaves`.
 
     :param tree: `HalData`
-    :param modules: its modules on the CAN bus
     :param devices: its devices
     """
 
-    def __init__(self, tree: LiveDict, modules: Modules, devices: RobotDevices) -> None:
-        self._tree, self._modules, self._devices = tree, modules, devices
+    def __init__(self, tree: LiveDict, devices: RobotDevices) -> None:
+        self._tree, self._devices = tree, devices
         self._can: SimDevices = tree["CAN"]
         self._robot: RobotDict = tree["robot"]
         self._event: driver_station.EventData = tree["event"]
@@ -89,27 +86,14 @@ class TreeReader:
         yield from (join("custom", key) for key in self._tree["custom"])
 
     def _always(self) -> Iterator[_Leaf]:
-        tree = self._tree
-        yield from _of(tree["control"])
-        for name, keys in device_table.RECORDED.items():
-            yield from _of(tree[name], *keys)
-        yield from _of(tree, *device_table.RECORDED_VALUES)
+        places = [device.place for device in self._devices.always()]
+        for place in dict(zip(map(id, places), places, strict=True)).values():
+            yield from _of(place)
 
     def _present(self) -> Iterator[_Leaf]:
-        tree = self._tree
-        for name, exists in device_table.MAY_EXIST.items():
-            if tree[name][exists]:
-                yield from _of(tree[name])
-        for kind, index in self._devices.channels():
-            yield from _of(tree[kind][index])
-        modules = self._modules
-        for pneumatics in (modules.pcm_solenoids(), modules.hub_solenoids()):
-            for solenoids in pneumatics:
-                for solenoid in solenoids:
-                    yield from _of(solenoid, "value")
-        for branch in (modules.pcm_compressor, modules.ph_compressor, modules.pdp):
-            for module in branch.values():
-                yield from _of(module)
+        for device in self._devices.made():
+            for each in device.place if isinstance(device.place, LiveList) else [device.place]:
+                yield from _of(each)
         for name in sorted(self._can):
             yield from _of(self._can.device(name))
 

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
 from ..config.document import document_of
 from ..config.resolve import resolve_document
 from ..config.sim import SimConfig
 from ..errors import RobotCodeError
-from ..hal import HalData, device_table
+from ..hal import HalData, rows
 from ..wpi import dashboards, geometry
 from .drivetrains import DriveVector
 from .parameters import ParameterError
 from .pose import METRES_PER_FOOT, Pose, along_arc, walls_of
 
 if TYPE_CHECKING:
+    from ..hal.fields import DeviceField
     from .visionsim import VisionSimTarget
 
 __all__ = ["PhysicsEngine", "PhysicsInitException", "PhysicsInterface"]
@@ -260,13 +261,13 @@ class PhysicsInterface:
 
     def _move(self, forward: float, right: float, turn: float) -> geometry.Pose2d:
         _check(forward, right, turn)
-        if (self._device_gyros or device_table.HAS_IMU) and self._hal_data is not None:
+        if (self._device_gyros or any(rows.gyros(numbered=False))) and self._hal_data is not None:
             degrees = math.degrees(turn)
             self._device_rate.turned += degrees
             angles = self._hal_data["robot"]
             for key in self._device_gyros:
                 angles[key] = angles.get(key, 0.0) + degrees
-            device_table.turn_imu(self._hal_data, degrees)
+            self._turn_gyros(degrees, numbered=False)
         pose = self._current()
         if not (forward or right or turn):  # at rest, no update for dashboards is needed
             return self._shown
@@ -276,16 +277,37 @@ class PhysicsInterface:
     def _turn_analog_gyros(self, turn: float) -> None:
         if turn and self._hal_data is not None:
             self._analog_rate.turned += math.degrees(turn)
-            device_table.turn_analog_gyros(self._hal_data, math.degrees(turn))
+            self._turn_gyros(math.degrees(turn), numbered=True)
+
+    def _gyros(self, numbered: bool) -> Iterator[tuple[Any, DeviceField]]:
+        """Return the gyros of `hal_data`, with a field of each that turns with the robot.
+
+        :param numbered: whether those at channels of the controller; else its own ones
+        """
+        for kind, field in rows.gyros(numbered):
+            for gyro in self._hal_data[kind.name] if numbered else [self._hal_data[kind.name]]:
+                yield gyro, field
+
+    def _turn_gyros(self, degrees: float, numbered: bool) -> None:
+        """Turn the gyros at channels of the controller, or its own ones."""
+        for gyro, field in self._gyros(numbered):
+            if field.heading:
+                gyro[field.name] += degrees * field.heading
+
+    def _set_rates(self, degrees: float, numbered: bool) -> None:
+        """Set how fast they turn clockwise, in degrees per second."""
+        for gyro, field in self._gyros(numbered):
+            if field.turning:
+                gyro[field.name] = degrees * field.turning
 
     def update_rates(self, tm_diff: float) -> None:
         """Set the gyros' rates after `update_sim`, in degrees/s, from the angles that it has turned them by."""
         if self._hal_data is None:
             return
         if self._analog_rate.update(tm_diff):
-            device_table.set_analog_gyro_rates(self._hal_data, self._analog_rate.value)
+            self._set_rates(self._analog_rate.value, numbered=True)
         if self._device_rate.update(tm_diff):
-            device_table.set_imu_rate(self._hal_data, self._device_rate.value)
+            self._set_rates(self._device_rate.value, numbered=False)
             values = self._hal_data["robot"]
             for key in self._device_gyros:
                 rate_key = f"{key.removesuffix('angle')}rate"

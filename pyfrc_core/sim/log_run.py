@@ -18,13 +18,14 @@ from typing import Any, Literal
 
 from ..compat.unrepeatable import may_not_repeat
 from ..errors import UsageError
+from ..hal.rows import is_input
 from ..project import Project
 from ..runtime.robot_time import PACKET_US
 from ..runtime.scripts import kit_names
 from ..runtime.scripts.inputs_file import is_data_log, load_inputs
 from ..runtime.scripts.network_targets import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript, Step, script_beside, trace_beside
-from ..runtime.scripts.sensors import HOLD, INFINITE, is_input, is_sensor
+from ..runtime.scripts.sensors import HOLD, INFINITE, is_sensor
 from ..season import CURRENT
 from ..shell import quoted
 from ..wording import from_here

@@ -47,7 +47,7 @@ def found(changes: Changes) -> dict[str, Any]:
 def create_all(tree: HalData) -> None:
     """Create one device of each kind, or two."""
     for kind in KINDS:
-        for device in tree[kind.name][:2] if kind.make and kind.name != "counter" else ():
+        for device in tree[kind.name][:2] if kind.make and kind.count and kind.name != "counter" else ():
             device["initialized"] = True
     tree["accelerometer"]["active"] = True
     for module in (sim.CTREPCMSim(3), sim.REVPHSim(4), sim.PowerDistributionSim(5)):

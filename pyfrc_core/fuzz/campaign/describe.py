@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from itertools import groupby
 from types import MappingProxyType
 
+from ...hal.rows import row_of
 from ...runtime.clock import PACKET_US
 from ...runtime.scripts.joysticks import CONTROL
 from ...runtime.scripts.network_targets import NETWORK, parse_entry_target
@@ -24,18 +25,6 @@ _MODES = {
     "disabled autonomous": "disabled before autonomous",
     "disabled test": "disabled before test",
 }
-
-_NAMES = {
-    "alliance_station": "alliance station",
-    "event.game_specific_message": "game message",
-    "power.vin_voltage": "battery voltage",
-    "control.dsAttached": "driver station attached",
-    "control.eStop": "emergency stop",
-    "control.fmsAttached": "field attached",
-    MATCH_TIME: "seconds left",
-    REMAINING: "seconds left",
-}
-
 
 #: A story of more moments than this has only the last ones: that of a script that could not be shortened.
 _MOST_MOMENTS, _LAST_MOMENTS = 12, 6
@@ -136,7 +125,8 @@ def _described(target: str, value: Value, names: Mapping[str, str] = MappingProx
     if target.startswith(NETWORK):
         shown = list(value) if isinstance(value, tuple) else value
         return f"{parse_entry_target(target)[0]} set to {shown!r}"
-    return f"{_NAMES.get(target) or named(target, names)} {value!r}"
+    row = row_of(REMAINING if target == MATCH_TIME else target)
+    return f"{(row and row.field.called) or named(target, names)} {value!r}"
 
 
 def _number(value: Value) -> str:

@@ -7,9 +7,11 @@ import sys
 from collections.abc import Callable, Container, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from ...hal.paths import join
+from ...hal.rows import all_rows
 from ...runtime.clock import PACKET_US, to_us
 from ...runtime.scripts.targets import MODE, OPMODE, PLUGGED, RESTART
-from ...wpi import names, robots, station
+from ...wpi import robots, station
 from ...wpi.opmodes import Opmode
 from .dashboard_generator import DashboardFinder, DashboardGenerator
 from .drivers import choose_models
@@ -45,9 +47,6 @@ _HELD, _CHANNELS = 0.2, 10
 
 #: How often the drivers choose an opmode before a period, and how often one of WPILib's utility mode before teleop.
 _CHOSEN, _UTILITY = 0.9, 0.15
-
-#: What tells a team's robots from each other, and its maximum length.
-_DESCRIBED = {"roborio.comments": 64, "roborio.serial_number": 8}
 
 
 class InputGenerator:
@@ -96,7 +95,7 @@ class InputGenerator:
         self._controls: tuple[list[Input], dict[int, str]] | None = None
         self._sticks = JoystickGenerator(rng, asked_controls, constants)
         self._sensors = SensorGenerator(rng, self._hal_data, constants)
-        self._sensor_finder = SensorFinder(self._hal_data, constants)
+        self._sensor_finder = SensorFinder(constants)
         reads = None if network_reads is None else network_reads.found
         self._dashboard = DashboardGenerator(rng, reads, constants, published)
         self._dashboard_finder = DashboardFinder()
@@ -141,10 +140,11 @@ class InputGenerator:
         if now_us == 0:  # the robot has not been started
             for port, model in self._models.items():
                 found |= without(self.left_out, model.writes(port))
-            for target, longest in () if self._from_us else _DESCRIBED.items():
-                texts = [text for text in self._constants.texts if len(text) <= longest]
-                if self._constants.asks(names.ASKED_BY[target]) and texts and self._rng.random() < 0.5:
-                    found[target] = self._rng.choice(texts)
+            # What tells a team's robots from each other.
+            for row in () if self._from_us else all_rows():
+                texts = [text for text in self._constants.texts if len(text) <= row.field.kind.max_bytes]
+                if row.asked_by and texts and self._constants.asks(row.asked_by) and self._rng.random() < 0.5:
+                    found[join(row.kind.name, row.field.name)] = self._rng.choice(texts)
             if not self._from_us and self._constants.asks("DigitalInput"):
                 found |= self._held_switches()
             return found

@@ -18,8 +18,8 @@ _STEP_US = 3 * PACKET_US
 #: Seconds from one sensor's change to the next one's, on average, and at least.
 _PAUSE, _SHORTEST_PAUSE = 1.0, 0.1
 
-#: Devices that change a quarter as often as the others.
-_SELDOM = ("power", "fpga_button", "pdp", "opmode")
+#: How often devices change that seldom do, compared with the others.
+_SELDOM = 0.25
 
 #: How often an input that a counter counts switches many times, and not once or twice.
 _PULSED = 0.5
@@ -63,7 +63,7 @@ class SensorGenerator:
         for each in inputs:
             self._devices.setdefault(each.device, []).append(each)
         self._names = list(self._devices)
-        self._weights = [0.25 if name.startswith(_SELDOM) else 1.0 for name in self._names]
+        self._weights = [_SELDOM if each[0].seldom else 1.0 for each in self._devices.values()]
 
     def write(self, now_us: int, found: dict[str, Value]) -> None:
         """Add the writes of this time."""

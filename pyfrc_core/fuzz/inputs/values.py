@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
+from ...hal.fields import Quantity
 from ...runtime.scripts.targets import PLUGGED
 from ...season import CURRENT
 from ...wpi import station
@@ -25,42 +26,7 @@ Value: TypeAlias = bool | int | float | str | tuple[bool | int | float | str, ..
 
 #: The kind of an input's values. Units: volts, counts, degrees, degrees per second, turns (0 to 1), g, m/s², amperes,
 #: degrees Celsius. An "entry" is one of NetworkTables, whose values `network_values` draws.
-InputKind = Literal[
-    "axis",
-    "trigger",
-    "button",
-    "pov",
-    "switch",
-    "pulses",
-    "connected",
-    "volts",
-    "battery",
-    "count",
-    "rate",
-    "angle",
-    "half turns",
-    "heading",
-    "turning",
-    "turns",
-    "radians",
-    "radians per second",
-    "rotations",
-    "rpm",
-    "acceleration",
-    "m/s2",
-    "amperes",
-    "celsius",
-    "hertz",
-    "rail",
-    "range",
-    "whole",
-    "option",
-    "choice",
-    "command",
-    "flag",
-    "number",
-    "entry",
-]
+InputKind = Literal[Quantity, "axis", "trigger", "button", "pov", "choice", "command", "flag", "number", "entry"]
 
 
 @dataclass(frozen=True)
@@ -87,12 +53,14 @@ class Input:
     :param kind: the kind of its values
     :param device: what it belongs to: the inputs of one device change together
     :param options: the possible values, for kinds with a few values only
+    :param seldom: whether it changes less often than others
     """
 
     target: str
     kind: InputKind
     device: str = ""
     options: tuple[str, ...] = ()
+    seldom: bool = False
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,14 @@ from collections.abc import Callable
 from typing import Any
 
 
+def getter_name(value: str) -> str:
+    """Return the name of the functions that return a value, such as `Speed`."""
+    return f"get{value}"
+
+
 def getter(device: object, value: str | None) -> Callable[[], Any]:
     """Return the function that reads a value, such as `Speed`."""
-    read: Callable[[], Any] = getattr(device, f"get{value}")
+    read: Callable[[], Any] = getattr(device, getter_name(value or ""))
     return read
 
 

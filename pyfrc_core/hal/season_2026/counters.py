@@ -16,11 +16,10 @@ from weakref import WeakMethod, WeakSet, WeakValueDictionary
 import wpilib
 from wpilib.simulation import DIOSim
 
+from .device_table import COUNTERS
+
 #: The seconds without an edge after which a counter has stopped, until code sets another limit.
 _MAX_PERIOD = 0.5
-
-#: How many counters a roboRIO has.
-COUNTERS = 8
 
 _Mode = wpilib.Counter.Mode
 

@@ -1,125 +1,212 @@
-"""The devices of the roboRIO: a table that maps fields to values of WPILib's simulation (see `fields`)."""
+"""The devices of the roboRIO: a table that says what each value is, and how WPILib's simulation has it (see `fields`).
+
+It imports WPILib only when a device is made.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from operator import attrgetter
+from itertools import chain
 from typing import Any
 
-import hal
-import wpilib
-from wpilib import simulation as sim
-
+from ...season import CURRENT
 from ...wpi.encoder_channels import channels_of
-from ..containers import NOT_SET, LiveDict, Slot
-from ..fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind, group
-from ..kinds import BOOL, FLOAT, INT32, INT64, ValueKind, choice, number, text, whole
-from . import driver_station
-from .counters import COUNTERS, CounterSim
-from .digital import DigitalSim
+from .. import shared_rows as shared
+from ..containers import NOT_SET, LiveDict
+from ..fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind, Input, Measured, Output, Shown, later, named
+from ..kinds import BOOL, FLOAT, INT32, INT64, choice, number, text, whole
 
-RANGE = choice({"2G": 0, "4G": 1, "8G": 2}, hal.AccelerometerRange)
-LED_STATE = choice({"off": 0, "green": 1, "red": 2, "orange": 3}, wpilib.RadioLEDState)
+#: How many counters a roboRIO has.
+COUNTERS = 8
 
-_RGB = attrgetter("r", "g", "b")
+RANGE = choice({"2G": 0, "4G": 1, "8G": 2}, later("AccelerometerRange", "hal"))
+LED_STATE = choice({"off": 0, "green": 1, "red": 2, "orange": 3}, later("RadioLEDState", "wpilib"))
 _LSB = 1220703e-9  # volts per count of the 12-bit converter, as in the HAL
 
 
-def _relay_initialized(relay: sim.RelaySim) -> bool:
+def _relay_initialized(relay: Any) -> bool:
     return relay.getInitializedForward() or relay.getInitializedReverse()
 
 
-def _initialize_relay(relay: sim.RelaySim, value: bool) -> None:
+def _initialize_relay(relay: Any, value: bool) -> None:
     relay.setInitializedForward(value)
     relay.setInitializedReverse(value)
 
 
+def _drives_motor(pwm: LiveDict) -> bool:
+    """Return whether a motor is on. A servo's pulses are 600 to 2400 microseconds, without a deadband in the middle."""
+    return bool(pwm["value"]) and abs(600 + 1800 * pwm["position"] - pwm["raw_value"]) > 1
+
+
 def encoder_channels(index: int) -> dict[str, int | None]:
     """Return the digital channels of an encoder; None where they are not known."""
-    channels = channels_of(index) if sim.EncoderSim.createForIndex(index).getInitialized() else None
-    a, b = channels or (None, None)
+    is_made = named("EncoderSim.createForIndex")(index).getInitialized()
+    a, b = (channels_of(index) if is_made else None) or (None, None)
     return {"ASource_Channel": a, "BSource_Channel": b}
-
-
-def led_data(strip: sim.AddressableLEDSim) -> list[list[int]]:
-    """Return the colours as ``[red, green, blue]``, 0 to 255."""
-    return list(map(list, map(_RGB, strip.getData())))
-
-
-def _colours(value: Any) -> list[list[int]]:
-    colours = [[whole(0, 255).convert(part) for part in colour] for colour in value]
-    if any(len(colour) != 3 for colour in colours):
-        raise ValueError
-    return colours
-
-
-def _set_led_data(strip: sim.AddressableLEDSim, colours: list[list[int]]) -> None:
-    strip.setData([wpilib.AddressableLED.LEDData(*colour) for colour in colours])
 
 
 F = DeviceField  # a short name, for a compact table
 
-#: The devices. CONTRIBUTING.md ("Add a device") says what else each needs to be seen in the simulator and in fuzz.
-KINDS = (
+_CONTROL = DeviceKind(
+    "control",
+    (shared.ENABLED, Input("autonomous", "Autonomous", BOOL), Input("test", "Test", BOOL), *shared.ATTACHED),
+    shared.station_sim,
+    exists="",
+    stays=True,
+)
+_POWER = DeviceKind(
+    "power",
+    (
+        shared.battery("VInVoltage"),
+        Measured("vin_current", "VInCurrent", FLOAT, quantity="amperes", asked_by="InputCurrent"),
+        F("brownout_voltage", "BrownoutVoltage", FLOAT),
+        *chain.from_iterable(
+            shared.rail(
+                name.lower(),
+                *(f"User{each}{name}" for each in ("Voltage", "Current", "Active", "Faults")),
+                *(f"{each}{name}" for each in ("Voltage", "Current", "Enabled", "FaultCount")),
+            )
+            for name in ("6V", "5V", "3V3")
+        ),
+        HAS_SOURCE,
+    ),
+    shared.controller_sim,
+    exists="",
+    seldom=True,
+    panel="Power",
+)
+_ROBORIO = DeviceKind(
+    "roborio",
+    (
+        F("team_number", "TeamNumber", INT32, recorded=False),
+        F("serial_number", "SerialNumber", text(8), recorded=False, asked_by="SerialNumber", stays=True),
+        F("comments", "Comments", text(64), recorded=False, asked_by="Comments", stays=True),
+        Measured("cpu_temp", "CPUTemp", FLOAT, recorded=False, quantity="celsius", asked_by="CPUTemp"),
+        F("radio_led_state", "RadioLEDState", LED_STATE),
+    ),
+    shared.controller_sim,
+    exists="",
+)
+_BUTTON = DeviceKind(
+    "",
+    (
+        Measured(
+            "fpga_button",
+            "FPGAButton",
+            BOOL,
+            quantity="switch",
+            shown=Shown("switch", "User button", "The button on the roboRIO"),
+        ),
+    ),
+    shared.controller_sim,
+    exists="",
+    seldom=True,
+    panel=CURRENT.controller.name,
+)
+_ACCELEROMETER = DeviceKind(
+    "accelerometer",
+    (
+        F("active", "Active", BOOL),
+        F("range", "Range", RANGE),
+        *(
+            Measured(
+                axis,
+                axis.upper(),
+                FLOAT,
+                quantity="acceleration",
+                shown=Shown(
+                    "slider",
+                    f"Accelerometer {axis}",
+                    f"The accelerometer in the roboRIO, along {axis}",
+                    -8.0,
+                    8.0,
+                    2,
+                    "g",
+                ),
+            )
+            for axis in "xyz"
+        ),
+        HAS_SOURCE,
+    ),
+    later("BuiltInAccelerometerSim"),
+    exists="active",
+    panel=CURRENT.controller.name,
+)
+
+#: All devices, in the order in which recordings and traces have them.
+KINDS: tuple[DeviceKind, ...] = (
+    _CONTROL,
+    _POWER,
+    _ROBORIO,
+    shared.TIME,
+    shared.ALLIANCE,
+    _BUTTON,
+    shared.PROGRAM,
+    _ACCELEROMETER,
     DeviceKind(
         "pwm",
-        20,
-        sim.PWMSim,
         (
             INITIALIZED,
             F("type"),
-            F("raw_value", "PulseMicrosecond", INT32, unset=0),
-            F("value", "Speed", number(-1, 1), unset=NOT_SET),
+            F("raw_value", "PulseMicrosecond", INT32, unset=0, off=shared.NEUTRAL_US),
+            shared.motor("Speed"),
             F("position", "Position", number(0, 1), recorded=False, unset=NOT_SET),
             F("period_scale", "PeriodScale", INT32),
             F("zero_latch", "ZeroLatch", BOOL),
             F("elim_deadband", default=False),
         ),
+        later("PWMSim"),
+        20,
+        is_on=_drives_motor,
+        title="PWM",
+        panel="PWM",
+        labels="pwm",
     ),
     DeviceKind(
         "dio",
-        26,
-        DigitalSim,
         (
             INITIALIZED,
             HAS_SOURCE,
-            F("value", "Value", BOOL, unset=False),
+            shared.DIGITAL,
             F("is_input", "IsInput", BOOL),
             F("pulse_length", "PulseLength", FLOAT),
             F("filter_idx", "FilterIndex", INT32),
         ),
+        later("DigitalSim", f"{__package__}.digital"),
+        26,
+        title="DIO",
+        panel="Digital I/O",
+        labels="dio",
     ),
     DeviceKind(
         "encoder",
-        8,
-        sim.EncoderSim.createForIndex,
         (
             INITIALIZED,
             HAS_SOURCE,
-            F("count", "Count", INT32),
-            F("value", "Count", INT32, same_as="count", recorded=False),
-            F("period", "Period", FLOAT),
+            *shared.COUNT,
+            Measured("period", "Period", FLOAT, stopped="rate"),
             F("direction", "Direction", BOOL),
             F("max_period", "MaxPeriod", FLOAT),
             F("reverse_direction", "ReverseDirection", BOOL),
             F("samples_to_average", "SamplesToAverage", INT32),
-            F("distance_per_pulse", "DistancePerPulse", FLOAT),
+            F("distance_per_pulse", "DistancePerPulse", FLOAT, default=1.0),
             # WPILib derives both from period, count and distance per pulse, and vice versa.
-            F("rate", "Rate", FLOAT, recorded=False),
+            Measured("rate", "Rate", FLOAT, recorded=False, quantity="rate"),
             F("distance", "Distance", FLOAT, recorded=False),
             F("min_rate", default=0.0),
         ),
+        later("EncoderSim.createForIndex"),
+        8,
         config=encoder_channels,
+        wired_to="dio",
+        title="Encoder",
+        panel="Encoders and counters",
     ),
     DeviceKind(
         "analog_in",
-        8,
-        sim.AnalogInputSim,
         (
             INITIALIZED,
             HAS_SOURCE,
-            F("voltage", "Voltage", FLOAT),
-            F("avg_voltage", "Voltage", FLOAT, same_as="voltage", recorded=False),
+            *shared.ANALOG,
             # The HAL computes both counts from the voltage; because of the margin, truncation returns the count that
             # was set.
             *(
@@ -144,32 +231,57 @@ KINDS = (
             F("lsb_weight", default=1),
             F("offset", default=65535),
         ),
+        later("AnalogInputSim"),
+        8,
+        title="Analog input",
+        panel="Analog inputs",
+        labels="analog",
     ),
     DeviceKind(
         "analog_out",
+        (
+            INITIALIZED,
+            Output(
+                "voltage",
+                "Voltage",
+                FLOAT,
+                unset=NOT_SET,
+                shown=Shown("meter", "{}", "{}: the voltage that the robot puts out", 0.0, 5.0, 2, "V"),
+            ),
+        ),
+        later("AnalogOutputSim"),
         8,
-        sim.AnalogOutputSim,
-        (INITIALIZED, F("voltage", "Voltage", FLOAT, unset=NOT_SET)),
         real=2,
+        title="Analog output",
+        panel="Analog outputs",
     ),
     DeviceKind(
         "analog_gyro",
-        2,
-        sim.AnalogGyroSim,
         (
             INITIALIZED,
-            F("angle", "Angle", FLOAT),
-            F("rate", "Rate", FLOAT),
+            Measured(
+                "angle",
+                "Angle",
+                FLOAT,
+                quantity="angle",
+                heading=1.0,
+                shown=Shown(
+                    "slider", "Analog {}", "The gyro at analog input {}: degrees clockwise", -360.0, 360.0, 1, "°"
+                ),
+            ),
+            Measured("rate", "Rate", FLOAT, quantity="turning", turning=1.0),
             F("deadband", default=0.0),
             F("volts_per_degree", default=0.0),
             F("offset", default=0.0),
             F("center", default=0),
         ),
+        later("AnalogGyroSim"),
+        2,
+        wired_to="analog_in",
+        panel="Gyros",
     ),
     DeviceKind(
         "analog_trigger",
-        8,
-        sim.AnalogTriggerSim.createForIndex,
         (
             INITIALIZED,
             F("trig_lower", "TriggerLowerBound", FLOAT),
@@ -178,65 +290,57 @@ KINDS = (
             F("trig_type"),
             F("trig_state", default=False),
         ),
+        later("AnalogTriggerSim.createForIndex"),
+        8,
     ),
     DeviceKind(
         "relay",
-        4,
-        sim.RelaySim,
         (
-            F(
-                "initialized",
-                "InitializedForward",
+            F("initialized", "InitializedForward", BOOL, recorded=False, get=_relay_initialized, put=_initialize_relay),
+            Output(
+                "fwd",
+                "Forward",
                 BOOL,
-                recorded=False,
-                get=_relay_initialized,
-                put=_initialize_relay,
+                unset=False,
+                off=False,
+                shown=Shown("relay", "{}", "{}: its two directions", also=("rev",)),
             ),
-            F("fwd", "Forward", BOOL, unset=False),
-            F("rev", "Reverse", BOOL, unset=False),
+            Output("rev", "Reverse", BOOL, unset=False, off=False),
         ),
+        later("RelaySim"),
+        4,
+        title="Relay",
+        panel="Relays",
+        labels="relay",
     ),
-    DeviceKind(
-        "d0_pwm",
-        26,
-        sim.DigitalPWMSim.createForIndex,
-        (INITIALIZED, F("duty_cycle", "DutyCycle", FLOAT, unset=NOT_SET), F("pin", "Pin", INT32)),
-        real=6,
-    ),
-    DeviceKind(
-        "duty_cycle",
-        8,
-        sim.DutyCycleSim.createForIndex,
-        (INITIALIZED, F("frequency", "Frequency", INT32), F("output", "Output", FLOAT)),
-    ),
+    DeviceKind("d0_pwm", shared.PWM_ON_DIO, later("DigitalPWMSim.createForIndex"), 26, real=6, panel="PWM"),
+    DeviceKind("duty_cycle", shared.DUTY_CYCLE, later("DutyCycleSim.createForIndex"), 8, panel="Digital I/O"),
     DeviceKind(
         "addressable_led",
-        1,
-        sim.AddressableLEDSim.createForIndex,
         (
             INITIALIZED,
             F("output_port", "OutputPort", INT32),
             F("length", "Length", whole(0, 5460)),
             F("running", "Running", BOOL, get=lambda strip: bool(strip.getRunning())),
-            F(
-                "data",
-                "Data",
-                ValueKind("a list of [red, green, blue], each 0 to 255", _colours, []),
-                get=led_data,
-                put=_set_led_data,
-            ),
+            shared.LED_DATA,
         ),
+        later("AddressableLEDSim.createForIndex"),
+        1,
+        panel=CURRENT.controller.name,
     ),
-    DeviceKind("mxp", 16, None, (F("initialized", default=False),)),
-    DeviceKind("filter", 3, None, (F("enabled", default=False), F("period", default=0))),
+    DeviceKind("mxp", (F("initialized", default=False),), count=16),
+    DeviceKind("filter", (F("enabled", default=False), F("period", default=0)), count=3),
     DeviceKind(
         "counter",
-        COUNTERS,
-        CounterSim,
         (
             INITIALIZED,
             HAS_SOURCE,
-            F("count", "Count", INT32),
+            Measured(
+                "count",
+                "Count",
+                INT32,
+                shown=Shown("number", "Counter {}", "{}: its counts. Click the number to change it", decimals=0),
+            ),
             F("direction", "Direction", BOOL),
             F("period", default=0.0),
             F("max_period", default=0.0),
@@ -249,95 +353,11 @@ KINDS = (
             *(F(f"{way}_source_{part}") for way in ("up", "down") for part in ("channel", "trigger")),
             *(F(f"{way}_{edge}_edge", default=False) for way in ("up", "down") for edge in ("rising", "falling")),
         ),
+        later("CounterSim", f"{__package__}.counters"),
+        COUNTERS,
+        title="Counter",
+        panel="Encoders and counters",
     ),
+    *shared.DRIVER_STATION,
+    *shared.MODULES,
 )
-
-ACCELEROMETER = (
-    F("active", "Active", BOOL),
-    F("range", "Range", RANGE),
-    F("x", "X", FLOAT),
-    F("y", "Y", FLOAT),
-    F("z", "Z", FLOAT),
-    HAS_SOURCE,
-)
-POWER = (
-    F("vin_voltage", "VInVoltage", FLOAT),
-    F("vin_current", "VInCurrent", FLOAT),
-    F("brownout_voltage", "BrownoutVoltage", FLOAT),
-    *(
-        F(f"user_{what.lower()}_{rail.lower()}", f"User{what}{rail}", kind)
-        for rail in ("6V", "5V", "3V3")
-        for what, kind in (("Voltage", FLOAT), ("Current", FLOAT), ("Active", BOOL), ("Faults", INT32))
-    ),
-    HAS_SOURCE,
-)
-FPGA_BUTTON = F("fpga_button", "FPGAButton", BOOL)
-ROBORIO = (
-    F("team_number", "TeamNumber", INT32),
-    F("serial_number", "SerialNumber", text(8)),
-    F("comments", "Comments", text(64)),
-    F("cpu_temp", "CPUTemp", FLOAT),
-    F("radio_led_state", "RadioLEDState", LED_STATE),
-)
-
-
-def groups() -> dict[str, Callable[[], LiveDict]]:
-    """Return what there is only one of, by its key, each with the function that makes it."""
-    return {
-        "control": lambda: group("control", sim.DriverStationSim, driver_station.CONTROL),
-        "time": lambda: group("time", sim.DriverStationSim, driver_station.TIME),
-        "accelerometer": lambda: group("accelerometer", sim.BuiltInAccelerometerSim(), ACCELEROMETER),
-        "power": lambda: group("power", sim.RoboRioSim, POWER),
-        "roborio": lambda: group("roborio", sim.RoboRioSim, ROBORIO),
-    }
-
-
-def values() -> dict[str, Slot]:
-    """Return the values that have a key of their own."""
-    return {
-        "alliance_station": driver_station.ALLIANCE_STATION.slot(sim.DriverStationSim),
-        "fpga_button": FPGA_BUTTON.slot(sim.RoboRioSim),
-    }
-
-
-#: The buttons of the controller itself, by their keys.
-BUTTONS: tuple[str, ...] = ("fpga_button",)
-
-#: The kinds of `KINDS` that are gyros, with `angle` and `rate`.
-GYROS: tuple[str, ...] = ("analog_gyro",)
-
-
-def turn_analog_gyros(tree: LiveDict, degrees: float) -> None:
-    """Turn the gyros at channels of the controller clockwise."""
-    for gyro in tree["analog_gyro"]:
-        gyro["angle"] += degrees
-
-
-def set_analog_gyro_rates(tree: LiveDict, degrees: float) -> None:
-    """Set how fast they turn clockwise, in degrees per second."""
-    for gyro in tree["analog_gyro"]:
-        gyro["rate"] = degrees
-
-
-#: Whether the controller has an IMU, which turns with the robot.
-HAS_IMU = False
-
-
-def turn_imu(tree: LiveDict, degrees: float) -> None:
-    """Do nothing: there is none."""
-
-
-def set_imu_rate(tree: LiveDict, degrees: float) -> None:
-    """Do nothing: there is none."""
-
-
-#: The groups that exist when one of their values says so, with its key.
-MAY_EXIST: Mapping[str, str] = {"accelerometer": "active"}
-#: Which values of groups that always exist are recorded: the rest is constant, or derived. Physics and robots change
-#: the supply and the LED.
-RECORDED: Mapping[str, tuple[str, ...]] = {
-    "power": ("vin_voltage", "vin_current", "brownout_voltage"),
-    "roborio": ("radio_led_state",),
-    "time": ("remaining",),
-}
-RECORDED_VALUES = ("alliance_station", "fpga_button", "user_program_state")

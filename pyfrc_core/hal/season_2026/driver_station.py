@@ -16,34 +16,14 @@ from wpilib.simulation import DriverStationSim
 
 from ...wpi import station
 from ..containers import LiveDict, LiveList, Slot, stored
-from ..fields import HAS_SOURCE, DeviceField
 from ..joystick_lists import JoystickLists
-from ..kinds import BOOL, FLOAT, INT32, choice, text, whole
+from ..kinds import BOOL, INT32, choice, text, whole
 from ..paths import join
 
 AXES = POVS = 12  # the maximum of the HAL
 BUTTONS = 12  # the shortest list; a joystick with more buttons shows all
 
-STATION = choice(
-    {"unknown": 0, "red1": 1, "red2": 2, "red3": 3, "blue1": 4, "blue2": 5, "blue3": 6}, hal.AllianceStationID
-)
 MATCH_TYPE = choice({"none": 0, "practice": 1, "qualification": 2, "elimination": 3}, DriverStation.MatchType)
-
-CONTROL = (
-    DeviceField("enabled", "Enabled", BOOL),
-    DeviceField("autonomous", "Autonomous", BOOL),
-    DeviceField("test", "Test", BOOL),
-    DeviceField("eStop", "EStop", BOOL),
-    DeviceField("dsAttached", "DsAttached", BOOL),
-    DeviceField("fmsAttached", "FmsAttached", BOOL),
-    HAS_SOURCE,
-)
-ALLIANCE_STATION = DeviceField("alliance_station", "AllianceStationId", STATION)
-TIME = (
-    DeviceField("remaining", "MatchTime", FLOAT),
-    DeviceField("program_start", default=0.0),
-    HAS_SOURCE,
-)
 
 
 class EventData(LiveDict):

@@ -7,9 +7,14 @@ from collections.abc import Callable
 from typing import Any
 
 
+def getter_name(value: str) -> str:
+    """Return the name of the functions that return a value, such as `Speed`."""
+    return f"get_{_in_words(value)}"
+
+
 def getter(device: object, value: str | None) -> Callable[[], Any]:
     """Return the function that reads a value, such as `Speed`."""
-    read: Callable[[], Any] = getattr(device, f"get_{_in_words(value)}")
+    read: Callable[[], Any] = getattr(device, getter_name(value or ""))
     return read
 
 
@@ -25,4 +30,4 @@ def registrar(device: object, value: str | None) -> Callable[..., object] | None
 
 def _in_words(value: str | None) -> str:
     """Return a name as WPILib 2027 writes it: ``compressor_on`` for `CompressorOn`, which the seasons share."""
-    return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", value or "").lower()
+    return re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", value or "").lower()

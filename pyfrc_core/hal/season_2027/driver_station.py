@@ -16,59 +16,40 @@ from wpilib.simulation import DriverStationSim
 
 from ...wpi.season_2027 import station
 from ..containers import LiveDict, LiveList, Slot, stored
-from ..fields import HAS_SOURCE, DeviceField
 from ..joystick_lists import JoystickLists
-from ..kinds import BOOL, FLOAT, choice, text, whole
+from ..kinds import BOOL, choice, text, whole
 from ..paths import join
 
 AXES, POVS = 12, 8  # the maximum of the HAL
 BUTTONS = station.BUTTONS  # the shortest list; a joystick with more buttons shows all
 
-STATION = choice(
-    {"unknown": 0, "red1": 1, "red2": 2, "red3": 3, "blue1": 4, "blue2": 5, "blue3": 6}, hal.AllianceStationID
-)
 MATCH_TYPE = choice({"none": 0, "practice": 1, "qualification": 2, "elimination": 3}, wpilib.MatchType)
 
 
-def _mode(mode: hal.RobotMode) -> Callable[[type[DriverStationSim]], bool]:
-    return lambda sim: bool(sim.get_robot_mode() == mode)
+def _mode(mode: hal.RobotMode) -> tuple[Callable[[Any], bool], Callable[[Any, bool], None]]:
+    """Return the functions that read and write whether this mode is chosen."""
 
-
-def _set_mode(mode: hal.RobotMode) -> Callable[[type[DriverStationSim], bool], None]:
     def put(sim: type[DriverStationSim], on: bool) -> None:
         if on:
             station.send_mode(mode)
         elif sim.get_robot_mode() == mode:
             station.send_mode(hal.RobotMode.TELEOPERATED)
 
-    return put
+    return lambda sim: bool(sim.get_robot_mode() == mode), put
 
 
-CONTROL = (
-    DeviceField("enabled", "enabled", BOOL),
-    # Three flags in 2026; each is shown from the one mode.
-    *(
-        DeviceField(name, "robot_mode", BOOL, get=_mode(mode), put=_set_mode(mode))
-        for name, mode in (("autonomous", hal.RobotMode.AUTONOMOUS), ("test", hal.RobotMode.UTILITY))
-    ),
-    DeviceField(
-        "opmode",
-        "opmode",
-        text(255),
-        get=lambda sim: station.opmode_name(),
-        put=lambda sim, name: station.select_opmode_named(name),
-    ),
-    DeviceField("eStop", "e_stop", BOOL),
-    DeviceField("dsAttached", "ds_attached", BOOL),
-    DeviceField("fmsAttached", "fms_attached", BOOL),
-    HAS_SOURCE,
-)
-ALLIANCE_STATION = DeviceField("alliance_station", "alliance_station_id", STATION)
-TIME = (
-    DeviceField("remaining", "match_time", FLOAT),
-    DeviceField("program_start", default=0.0),
-    HAS_SOURCE,
-)
+is_autonomous, set_autonomous = _mode(hal.RobotMode.AUTONOMOUS)
+is_test, set_test = _mode(hal.RobotMode.UTILITY)
+
+
+def opmode_name(sim: object) -> str:
+    """Return the name of the chosen opmode."""
+    return station.opmode_name()
+
+
+def select_opmode(sim: object, name: str) -> None:
+    """Choose an opmode."""
+    station.select_opmode_named(name)
 
 
 class EventData(LiveDict):

@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 from ...errors import PyfrcError, RobotCodeError
-from ...hal import HalData, device_table
+from ...hal import HalData, rows
 from ...processes.crash_report import CrashLog
 from ...project import Project
 from ...runtime.checks.failures import as_robot_code_error, leave_out_libraries
@@ -179,7 +179,7 @@ def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice], can: Can
         counts = abs(encoder["distance_per_pulse"]) == 1.0
         channels = None if a is None or b is None else (a, b)
         found.encoders.append(Encoder(name_of("encoder", index), index, channels, counts))
-    for gyro in device_table.GYROS:
+    for gyro in dict.fromkeys(row.kind.name for row in rows.gyros(numbered=True)):
         found.gyros += [Gyro(name_of(gyro, channel), channel) for channel in _made(hal_data, gyro)]
     found.motors += can.motors
     for device in hal_data["CAN"]:

@@ -8,22 +8,16 @@ joysticks are released, and sensors begin again with their first values.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import starmap
 from typing import Any
 
+from ...hal.rows import stays
 from ...wpi import network
 from .network_targets import NETWORK, parse_entry_target
 from .script import InputScript, Step
-from .targets import MATCH_TIME, RESTART
-
-#: What is written again after a restart.
-_STAYS = re.compile(
-    r"mode|match_time|time\..*|joysticks\[\d\]\.(?!axes|buttons|povs).*|control\..*|event\..*|alliance_station|nt:.*"
-    r"|roborio\.(?:comments|serial_number)"
-)
+from .targets import MATCH_TIME, MODE, RESTART
 
 
 def boots_of(script: InputScript) -> list[InputScript]:
@@ -48,7 +42,7 @@ def what_stays(steps: Iterable[Step], now_us: int) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for step in steps:
         for target, value in step.writes.items():
-            if _STAYS.fullmatch(target):
+            if target in (MODE, MATCH_TIME) or target.startswith(NETWORK) or stays(target):
                 found.pop(target, None)  # the last write comes last
                 left = step.at_us + round(value * 1e6) - now_us if target == MATCH_TIME else None
                 found[target] = value if left is None else max(0, left) / 1e6

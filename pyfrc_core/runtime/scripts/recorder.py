@@ -10,6 +10,7 @@ from typing import Any
 
 from ...compat.unrepeatable import is_real_time
 from ...hal.change_reader import MISSING, Change, same
+from ...hal.rows import beside, row_of
 from ...wpi import network, station
 from ..robot import RobotRun
 from .network_targets import NETWORK, numbers_of, struct_target
@@ -159,9 +160,9 @@ class Recorder:
                 continue
             if target.startswith("CAN[") and is_real_time(target):  # a thread of its library may have written it
                 continue
-            if value == math.inf and target.startswith("encoder") and target.endswith(".period"):
-                # JSON has no infinity; the HAL keeps a rate as its period.
-                target, value = target.replace(".period", ".rate"), 0.0
+            if value == math.inf and (row := row_of(target)) is not None and row.field.stopped:
+                # JSON has no infinity; the HAL keeps an encoder's rate as its period.
+                target, value = beside(target, row.field.stopped), 0.0
             if target.startswith(NETWORK) or target in self._named_targets:
                 yield target, value
             elif self._hal_data.can_write(target):

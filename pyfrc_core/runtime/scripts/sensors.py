@@ -11,18 +11,13 @@ from typing import Any
 
 from ...compat.unrepeatable import in_real_time
 from ...hal.paths import parse_path
+from ...hal.rows import is_measured
 from .network_targets import NETWORK
 
 HOLD = "hold:"
 #: An encoder's period when it stands: JSON has no word for it.
 INFINITE = "inf"
 
-_MEASURED = re.compile(
-    r"(?:dio|counter)\[\d+\]\.value|(?:encoder|counter)\[\d+\]\.(?:count|period)|analog_in\[\d+\]\.voltage"
-    r"|analog_gyro\[\d+\]\.(?:angle|rate)|duty_cycle\[\d+\]\.(?:output|frequency)|accelerometer\.[xyz]"
-    r"|onboard_imu\.(?:yaw|(?:angle|gyro_rate|accel)_[xyz])|p(?:cm|h)_compressor\[\d+\]\.pressure_switch"
-    r"|pdp\[\d+\]\.(?:voltage|temperature|current)|power\.vin_(?:voltage|current)|fpga_button"
-)
 #: The names of what SimDevices measure, and of settings and outputs with similar names.
 _OF_DEVICES = re.compile(
     r"position|velocity|angle|angular|rotation|yaw|pitch|roll|rate|accel|range|distance|pressed|connected|valid"
@@ -43,17 +38,12 @@ def camera_of(name: str) -> str | None:
 
 def is_sensor(path: str) -> bool:
     """Return whether a path in `hal_data` is of a value that a device measures."""
-    if _MEASURED.fullmatch(path):
+    if is_measured(path):
         return True
     if not path.startswith("CAN[") or in_real_time(path):
         return False
     name = str(parse_path(path)[-1])
     return bool(_OF_DEVICES.search(name)) and not _SETTINGS.search(name)
-
-
-def is_input(path: str, values: Mapping[str, object]) -> bool:
-    """Return whether a sensor's channel is an input: a digital one can be an output, too."""
-    return not path.startswith("dio[") or bool(values.get(path.replace(".value", ".is_input"), True))
 
 
 def released(values: Mapping[str, object]) -> dict[str, object]:

@@ -20,6 +20,7 @@ from typing import Any
 
 from ...errors import UsageError
 from ...hal import HalData, LiveDict, format_path, parse_path
+from ...hal.rows import made_by_robot, row_of
 from ...wpi import station
 from ..clock import to_us
 from .held import Held
@@ -34,14 +35,6 @@ OPMODE = "control.opmode"
 #: The path of the seconds left: written, they stand still.
 REMAINING = "time.remaining"
 
-#: Rooms of `hal_data` that hold what robots make, by names or numbers that they choose.
-_COMES_WITH_THE_ROBOT = {"CAN", "robot", "custom", "pcm", "ph", "compressor", "pcm_compressor", "ph_compressor", "pdp"}
-
-#: Paths in `hal_data` that always lead to the same dict or list: what they lead to is kept for the next write.
-_KEPT = re.compile(
-    r"joysticks\[\d+\]\.(?:axes|buttons|povs)\[\d+\]$"
-    r"|(?:dio|analog_in|encoder|analog_gyro|duty_cycle)\[\d+\]\.\w+$|(?:power|accelerometer)\.\w+$|fpga_button$"
-)
 _BUTTON = re.compile(r"joysticks\[[0-5]\]\.buttons\[(\d+)\]")
 #: A joystick that is plugged in or unplugged: its port.
 PLUGGED = re.compile(r"joysticks\[([0-5])\]\.plugged")
@@ -90,7 +83,7 @@ class Targets:
         self._entries = NetworkEntries()
         #: What a log measured.
         self.held = Held(hal_data, self._entries)
-        #: Where `hal_data` has what was written, of `_KEPT`: most writes of fuzz go to these.
+        #: Where `hal_data` has what was written, if that always leads to the same dict or list: most writes do.
         self._places: dict[str, tuple[Any, Any]] = {}
         self._countdown = Countdown()
 
@@ -133,7 +126,8 @@ class Targets:
                 self._countdown.stop()
             place, key = self._hal_data.locate(target)
             place[key] = value
-            if _KEPT.match(target):
+            row = row_of(target)
+            if row is not None and not row.kind.by_number and target != REMAINING:
                 self._places[target] = place, key
 
     def check(self, target: str) -> None:
@@ -142,11 +136,10 @@ class Targets:
         :raises PyfrcError: when there never is
         """
         if self._is_path(target):
-            root = parse_path(target)[0]
             button = _BUTTON.fullmatch(target)
             if button is not None and int(button[1]) <= station.MAX_BUTTONS:
                 return  # the script may write how many buttons the joystick has
-            if root not in _COMES_WITH_THE_ROBOT:
+            if not made_by_robot(target):
                 self._hal_data.read(target)
 
     def check_made(self, target: str) -> None:

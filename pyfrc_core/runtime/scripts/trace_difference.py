@@ -10,15 +10,14 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
+from ...hal.rows import row_of
 from ...wording import from_here
 from ..robot_time import to_us
 from .script import ScriptError
 from .trace_lines import repeatable_part
 
-#: Outputs that robot code sets, and what it asks a motor controller for.
-_OUTPUT = re.compile(
-    r"(pwm|relay|solenoid|pcm|ph|digital_pwm|d0_pwm|addressable_led|analog_out)\[|CAN\[.*(Applied Output|Setpoint|Duty)"
-)
+#: What robot code asks a motor controller on the CAN bus for.
+_OUTPUT = re.compile(r"CAN\[.*(Applied Output|Setpoint|Duty)")
 
 
 @dataclass(frozen=True)
@@ -62,9 +61,11 @@ def first_difference(recorded: Path, replayed: Path, run_us: int | None = None) 
     return None
 
 
-def rank(path: str) -> tuple[bool, bool, str]:
+def rank(path: str) -> tuple[bool, str]:
     """Return what puts the outputs that robot code sets before the sensors that follow from them."""
-    return path.endswith(".raw_value"), _OUTPUT.match(path) is None, path
+    row = row_of(path)
+    is_output = _OUTPUT.match(path) is not None if row is None else row.field.role == "output"
+    return not is_output, path
 
 
 def _changes(trace: Path) -> Iterator[dict[str, Any]]:

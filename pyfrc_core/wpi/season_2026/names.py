@@ -52,25 +52,6 @@ WRITTEN_BY_WPILIB = ("/FMSInfo/", "/LiveWindow/")
 #: The file of a library that reads entries on behalf of robot code: magicbot's tunables.
 TUNABLES_FILE = "magic_tunable.py"
 
-#: The functions with which robot code asks for what is rarely asked for, by the path in `hal_data` of what they return.
-ASKED_BY = {
-    "roborio.cpu_temp": "getCPUTemp",
-    "roborio.comments": "getComments",
-    "roborio.serial_number": "getSerialNumber",
-    "power.vin_current": "getInputCurrent",
-    "pdp.temperature": "getTemperature",
-    **{
-        f"power.user_{value}_{rail.lower()}": function + rail
-        for rail in ("3V3", "5V", "6V")
-        for function, value in (
-            ("getVoltage", "voltage"),
-            ("getCurrent", "current"),
-            ("getEnabled", "active"),
-            ("getFaultCount", "faults"),
-        )
-    },
-}
-
 #: Words that are written for a mode's name: those of other seasons, and abbreviations.
 SYNONYMS = (
     (re.compile("^auto(n|nomus|nomos)?(?=init|periodic|exit)"), "autonomous"),

@@ -53,23 +53,6 @@ WRITTEN_BY_WPILIB = ("/DriverStation/", "/Robot/", "/Telemetry/")
 #: The file of a library that reads entries on behalf of robot code: magicbot's tunables.
 TUNABLES_FILE = "magic_tunable.py"
 
-#: The functions with which robot code asks for what is rarely asked for, by the path in `hal_data` of what they return.
-ASKED_BY = {
-    "roborio.cpu_temp": "get_cpu_temp",
-    "roborio.comments": "get_comments",
-    "roborio.serial_number": "get_serial_number",
-    "pdp.temperature": "get_temperature",
-    **{
-        f"power.user_{value}_3v3": f"{function}_3v3"
-        for function, value in (
-            ("get_voltage", "voltage"),
-            ("get_current", "current"),
-            ("get_enabled", "active"),
-            ("get_fault_count", "faults"),
-        )
-    },
-}
-
 #: Words that are written for a mode's name: those of other seasons, and abbreviations.
 SYNONYMS = (
     (re.compile("^auto(n|nomus|nomos)?(?=init|periodic|exit)"), "autonomous"),

@@ -1,7 +1,8 @@
 """The rows of the device panels, made from a snapshot's values.
 
-A device gets its rows from a function in `panels_of`. Only a new `RowKind` needs a change elsewhere: a class in
-`ITEMS` of `tk.device_items`, which draws it, and for an input the mouse in `tk.device_view`.
+How a device is shown is in its row of the device table (`hal.fields.Shown`); SimDevices, which have no rows, are shown
+by functions here. Only a new `RowKind` needs a change elsewhere: a class in `ITEMS` of `tk.device_items`, which draws
+it, and for an input the mouse in `tk.device_view`.
 
 The values contain only devices that the robot has made, so only these have rows. `DeviceRows` makes the rows again when
 a device comes or goes; otherwise only the values at their paths change.
@@ -16,17 +17,16 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ....hal import device_table
+from ....hal.fields import DeviceField, DeviceKind, RowKind
 from ....hal.paths import parse_path
+from ....hal.rows import decides
 from ....season import CURRENT
 
 if TYPE_CHECKING:
     from ....config.sim import SimConfig
-
-#: How a row is shown. Outputs: ``meter`` (a bar from its range's middle, or from 0), ``lamp``, ``lamps``, ``relay``,
-#: ``bars``, ``leds``, ``text``. Inputs: ``switch``, ``slider`` and ``number``, which can be set.
-RowKind = Literal["meter", "lamp", "lamps", "relay", "bars", "leds", "text", "switch", "slider", "number"]
 
 #: The kinds of inputs, which the user can set.
 SETTABLE = frozenset({"switch", "slider", "number"})
@@ -34,7 +34,26 @@ SETTABLE = frozenset({"switch", "slider", "number"})
 #: Names of values that are angles in degrees.
 _ANGLE = re.compile("angle|yaw", re.IGNORECASE)
 
-_INPUT = "an input, click to change it"
+#: What shows a value that cannot be set, in place of what sets it.
+_UNSETTABLE: Mapping[RowKind, RowKind] = {"switch": "lamp", "slider": "meter", "number": "text"}
+
+_GYROS, _SIM_DEVICES, _OTHERS, _CUSTOM = "Gyros", "CAN and SimDevices", "Other values", "Custom"
+#: The panels in their order on the screen; further ones of the device table come last.
+_PANELS = (
+    "PWM",
+    "Digital I/O",
+    "Analog inputs",
+    "Analog outputs",
+    "Relays",
+    "Pneumatics",
+    "Encoders and counters",
+    _GYROS,
+    _SIM_DEVICES,
+    "Power",
+    CURRENT.controller.name,
+    _OTHERS,
+    _CUSTOM,
+)
 
 Values = Mapping[str, Any]
 
@@ -85,7 +104,7 @@ class DeviceRows:
         is_known = values.keys() == self._paths
         if not is_known:
             self._paths = frozenset(values)
-            self._decisive = [path for path in values if path.endswith(".is_input") or changes_rows(path)]
+            self._decisive = [path for path in values if decides(path) or changes_rows(path)]
         shape = [values[path] for path in self._decisive]
         if is_known and shape == self._shape:
             return False
@@ -97,24 +116,12 @@ class DeviceRows:
 def panels_of(values: Values, config: SimConfig) -> Iterator[Panel]:
     """Yield the panels that have rows, in their order on the screen."""
     tree = _tree(values)
-    makers = {
-        "PWM": _pwm,
-        "Digital I/O": _dio,
-        "Analog inputs": _analog_in,
-        "Analog outputs": _analog_out,
-        "Relays": _relays,
-        "Pneumatics": _pneumatics,
-        "Encoders and counters": _encoders,
-        "Gyros": _gyros,
-        "CAN and SimDevices": _sim_devices,
-        "Power": _power,
-        CURRENT.controller.name: _controller,
-        "Other values": _robot,
-        "Custom": _custom,
-    }
-    for title, make in makers.items():
-        if rows := tuple(make(tree, config)):
-            yield Panel(title, rows)
+    panels: dict[str, list[Row]] = {title: [] for title in _PANELS}
+    for kind in device_table.KINDS:
+        panels.setdefault(kind.panel or _OTHERS, []).extend(_rows_of(kind, tree, config))
+    for title, make in ((_GYROS, _gyros), (_SIM_DEVICES, _sim_devices), (_OTHERS, _robot), (_CUSTOM, _custom)):
+        panels[title] += make(tree, config)
+    yield from (Panel(title, tuple(rows)) for title, rows in panels.items() if rows)
 
 
 def _tree(values: Values) -> dict[Any, Any]:
@@ -132,113 +139,59 @@ def _tree(values: Values) -> dict[Any, Any]:
     return tree
 
 
-def _named(channel: int | str, labels: Mapping[int, str]) -> str:
-    label = labels.get(channel, "") if isinstance(channel, int) else ""
-    return f"{channel}  {label}" if label else f"{channel}"
+def _rows_of(kind: DeviceKind, tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    """Yield the rows of the devices of one kind."""
+    shown = [field for field in kind.fields if field.shown is not None]
+    branch = tree.get(kind.name, {}) if kind.name else tree
+    devices = sorted(branch.items()) if kind.count is not None or kind.by_number else [("", branch)]
+    labels: Mapping[Any, str] = getattr(config, kind.labels) if kind.labels else {}
+    for number, fields in devices if shown else ():
+        for field in shown:
+            yield from _row_of(kind, field, number, fields, labels)
 
 
-def _titled(what: str, channel: int, labels: Mapping[int, str]) -> str:
-    """Return the name with the whole label, for which the panel may have no space."""
-    return f"{what} {channel}, {labels[channel]}" if channel in labels else f"{what} {channel}"
+def _row_of(
+    kind: DeviceKind, field: DeviceField, number: Any, fields: Mapping[Any, Any], labels: Mapping[Any, str]
+) -> Iterator[Row]:
+    """Yield the row of one value of a device, if it has it.
 
-
-def _channels(tree: dict[Any, Any], key: str) -> Iterator[tuple[int, dict[Any, Any]]]:
-    yield from sorted(tree.get(key, {}).items())
-
-
-def _pwm(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
-    for channel, fields in _channels(tree, "pwm"):
-        if "value" in fields:
-            what = f"{_titled('PWM', channel, config.pwm)}: what the robot sends to the motor, from -1 to 1"
-            yield Row("meter", (fields["value"][0],), _named(channel, config.pwm), -1.0, 1.0, 2, "", what)
-    for channel, fields in _channels(tree, "d0_pwm"):
-        if "duty_cycle" in fields:
-            yield Row("meter", (fields["duty_cycle"][0],), f"{channel}  (DIO as PWM)", tooltip="Its duty cycle, 0 to 1")
-
-
-def _dio(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
-    for channel, fields in _channels(tree, "dio"):
-        if "value" not in fields:
-            continue
-        is_input = "is_input" in fields and fields["is_input"][1]
-        kind: RowKind = "switch" if is_input else "lamp"
-        what = f"{_titled('DIO', channel, config.dio)}: {_INPUT if is_input else 'an output of the robot'}"
-        yield Row(kind, (fields["value"][0],), _named(channel, config.dio), tooltip=what)
-    for channel, fields in _channels(tree, "duty_cycle"):
-        if "output" in fields:
-            what = "The duty cycle that the robot measures"
-            yield Row("slider", (fields["output"][0],), f"Duty cycle {channel}", tooltip=what)
-
-
-def _analog_in(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
-    for channel, fields in _channels(tree, "analog_in"):
-        if "voltage" in fields:
-            what = f"{_titled('Analog input', channel, config.analog)}: the voltage that the robot measures"
-            highest = CURRENT.controller.analog_volts
-            yield Row("slider", (fields["voltage"][0],), _named(channel, config.analog), 0.0, highest, 2, "V", what)
-
-
-def _analog_out(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
-    for channel, fields in _channels(tree, "analog_out"):
-        if "voltage" in fields:
-            what = f"Analog output {channel}: the voltage that the robot puts out"
-            yield Row("meter", (fields["voltage"][0],), f"{channel}", 0.0, 5.0, 2, "V", what)
-
-
-def _relays(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
-    for channel, fields in _channels(tree, "relay"):
-        if {"fwd", "rev"} <= fields.keys():
-            paths = fields["fwd"][0], fields["rev"][0]
-            what = f"{_titled('Relay', channel, config.relay)}: its two directions"
-            yield Row("relay", paths, _named(channel, config.relay), tooltip=what)
-
-
-def _pneumatics(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
-    for key, name in (("pcm", "PCM"), ("ph", "PH")):
-        for module, solenoids in _channels(tree, key):
-            paths = tuple(fields["value"][0] for _, fields in sorted(solenoids.items()) if "value" in fields)
-            labels = ", ".join(f"{channel} {label}" for channel, label in sorted(config.solenoid.items()))
-            what = f"The solenoids of {name} {module}, from 0" + (f": {labels}" if labels else "")
-            yield Row("lamps", paths, f"{name} {module}", tooltip=what)
-            compressor = tree.get(f"{key}_compressor", {}).get(module, {})
-            if "on" in compressor:
-                yield Row(
-                    "lamp", (compressor["on"][0],), "   Compressor", tooltip=f"Of {name} {module}: whether it runs"
-                )
-            if "pressure_switch" in compressor:
-                what = f"Of {name} {module}: whether the pressure is high enough"
-                yield Row("switch", (compressor["pressure_switch"][0],), "   Pressure switch", tooltip=what)
-
-
-def _encoders(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
-    for number, fields in _channels(tree, "encoder"):
-        if "count" in fields:
-            each = fields.get("distance_per_pulse", ("", 1.0))[1]
-            what = f"Encoder {number}: its counts, of {each:g} distance units each. Click the number to change it"
-            yield Row("number", (fields["count"][0],), f"Encoder {number}", decimals=0, tooltip=what)
-    for number, fields in _channels(tree, "counter"):
-        if "count" in fields:
-            what = f"Counter {number}: its counts. Click the number to change it"
-            yield Row("number", (fields["count"][0],), f"Counter {number}", decimals=0, tooltip=what)
+    :param fields: the path and value of each of the device's values; of a pneumatics module, those of each channel
+    :param labels: the team's labels by number, or of a module by channel
+    """
+    shown = field.shown
+    assert shown is not None
+    row_kind, label = shown.kind, labels.get(number, "")
+    if row_kind == "lamps":
+        paths = [values[field.name][0] for _, values in sorted(fields.items()) if field.name in values]
+        named = ", ".join(f"{channel} {each}" for channel, each in sorted(labels.items()))
+        label, tooltip = "", shown.tooltip + (f": {named}" if named else "").replace("{", "{{").replace("}", "}}")
+    else:
+        paths = [fields[name][0] for name in (field.name, *shown.also) if name in fields]
+        tooltip = shown.tooltip
+    if len(paths) <= len(shown.also):
+        return
+    if field.only_if and not fields.get(field.only_if, ("", True))[1]:
+        row_kind, tooltip = _UNSETTABLE[row_kind], "{}: an output of the robot"
+    values = {each.name: fields[each.name][1] if each.name in fields else each.default for each in kind.fields}
+    # The panel may have no space for the whole label.
+    name = f"{kind.title} {number}".strip() + (f", {label}" if label else "")
+    yield Row(
+        row_kind,
+        tuple(paths),
+        shown.label.format(f"{number}  {label}" if label else number),
+        shown.low,
+        shown.high,
+        shown.decimals,
+        shown.unit,
+        tooltip.format(name, **values),
+    )
 
 
 def _is_gyro(device: object) -> bool:
     return str(device).startswith(("Gyro:", "CANGyro:")) or "navx" in str(device).lower()
 
 
-#: The units of the values of the controller's IMU, by their names without the axis.
-_IMU_UNITS = {"yaw": "rad", "angle_": "rad", "gyro_rate_": "rad/s", "accel_": "m/s²"}
-
-
 def _gyros(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
-    for channel, fields in _channels(tree, "analog_gyro"):
-        if "angle" in fields:
-            what = f"The gyro at analog input {channel}: degrees clockwise"
-            yield Row("slider", (fields["angle"][0],), f"Analog {channel}", -360.0, 360.0, 1, "°", what)
-    for name, (path, _) in tree.get("onboard_imu", {}).items():
-        if unit := _IMU_UNITS.get(name.rstrip("xyz")):
-            what = f"The IMU in the {CURRENT.controller.name}"
-            yield Row("number", (path,), name.replace("_", " ").capitalize(), unit=unit, tooltip=what)
     for device, fields in tree.get("CAN", {}).items():
         if _is_gyro(device):
             name = device_name(str(device))
@@ -273,33 +226,6 @@ def _device_rows(device: str, fields: Mapping[Any, Any], title: str, setting: Se
             yield Row("number", (path,), text, decimals=decimals, unit=unit_of(str(name)), tooltip=tooltip)
         else:
             yield Row("text", (path,), text, tooltip=tooltip)
-
-
-def _power(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
-    power = tree.get("power", {})
-    if "vin_voltage" in power:
-        what = f"The voltage that the {CURRENT.controller.name} gets from the battery"
-        yield Row("slider", (power["vin_voltage"][0],), "Battery", 0.0, 14.0, 2, "V", what)
-    for module, fields in _channels(tree, "pdp"):
-        if "voltage" in fields:
-            what = f"Power distribution {module}: its voltage"
-            yield Row("slider", (fields["voltage"][0],), f"PDP {module}", 0.0, 14.0, 2, "V", what)
-        if "current" in fields:
-            what = f"Power distribution {module}: the current of each channel, up to 40 A"
-            yield Row("bars", (fields["current"][0],), "   Currents", 0.0, 40.0, 1, "A", what)
-
-
-def _controller(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
-    if "fpga_button" in tree:
-        yield Row("switch", (tree["fpga_button"][0],), "User button", tooltip="The button on the roboRIO")
-    accelerometer = tree.get("accelerometer", {})
-    for axis in "xyz":
-        if axis in accelerometer:
-            what = f"The accelerometer in the roboRIO, along {axis}"
-            yield Row("slider", (accelerometer[axis][0],), f"Accelerometer {axis}", -8.0, 8.0, 2, "g", what)
-    for number, fields in _channels(tree, "addressable_led"):
-        if "data" in fields:
-            yield Row("leds", (fields["data"][0],), f"LEDs {number}", tooltip="The colours of the LED strip")
 
 
 def _robot(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..models.devices import Row, RowKind
+from ....hal.fields import RowKind
+from ..models.devices import Row
 from ..models.wording import number_text, shown_number
 from . import theme as colors
 from .theme import Theme, fitting

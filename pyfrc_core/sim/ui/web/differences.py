@@ -16,9 +16,10 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from ....compat.unrepeatable import in_real_time, real_time_device
+from ....hal.rows import is_input
 from ....runtime.scripts import kit_names
 from ....runtime.scripts.network_targets import NETWORK_INPUTS
-from ....runtime.scripts.sensors import camera_of, is_input, is_sensor
+from ....runtime.scripts.sensors import camera_of, is_sensor
 from ....runtime.scripts.trace_difference import rank
 from ...engine.messages import MODE, POSE, TYPE, VALUE
 from ...engine.past_run import EXACT, Comparison

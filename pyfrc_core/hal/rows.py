@@ -1,0 +1,119 @@
+"""What a value of `hal_data` is, by its path: its row in the device table. Asking needs no WPILib."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cache, lru_cache
+from typing import NamedTuple
+
+from . import accessors, device_table
+from .fields import DeviceField, DeviceKind
+from .kinds import WrongPath
+from .paths import join, parse_path
+
+
+class Row(NamedTuple):
+    """One value in the device table, of all devices of its kind."""
+
+    kind: DeviceKind
+    field: DeviceField
+
+    @property
+    def stays(self) -> bool:
+        """Whether a restart of the robot program leaves it."""
+        return self.kind.stays if self.field.stays is None else self.field.stays
+
+    @property
+    def asked_by(self) -> str:
+        """The function with which robot code asks for it, if it is varied only for code that does; else empty."""
+        return self.field.asked_by and accessors.getter_name(self.field.asked_by)
+
+
+@cache
+def _rows() -> dict[tuple[str, ...], Row]:
+    """Return all rows, by the names in their paths, without numbers."""
+    return {
+        tuple(filter(None, (kind.name, field.name))): Row(kind, field)
+        for kind in device_table.KINDS
+        for field in kind.fields
+    }
+
+
+def all_rows() -> Iterator[Row]:
+    """Return all rows."""
+    return iter(_rows().values())
+
+
+def rows_of(kind: DeviceKind) -> Iterator[Row]:
+    """Return the rows of one kind of device."""
+    return (Row(kind, field) for field in kind.fields)
+
+
+@cache
+def gyros(numbered: bool) -> tuple[Row, ...]:
+    """Return the values that turn with the robot: of gyros at channels of the controller, or of its own ones."""
+    turning = (row for row in all_rows() if row.field.heading or row.field.turning)
+    return tuple(row for row in turning if (row.kind.count is not None) == numbered)
+
+
+@lru_cache(maxsize=4096)
+def row_of(path: str) -> Row | None:
+    """Return the row of a value; None for a value that robot code makes up, and for what is no path."""
+    try:
+        names = tuple(segment for segment in parse_path(path) if isinstance(segment, str))
+    except WrongPath:
+        return None
+    return _rows().get(names)
+
+
+@cache
+def _kinds() -> dict[str, DeviceKind]:
+    return {kind.name: kind for kind in device_table.KINDS if kind.name}
+
+
+def kind_of(path: str) -> DeviceKind | None:
+    """Return the kind of device that a value is of; None for a value that robot code makes up, and for no path."""
+    try:
+        return _kinds().get(str(parse_path(path)[0]))
+    except WrongPath:
+        return None
+
+
+def made_by_robot(path: str) -> bool:
+    """Return whether the value comes with what robot code makes, by a name or number that it chooses."""
+    kind = kind_of(path)
+    return kind.by_number if kind is not None else str(parse_path(path)[0]) in ("CAN", "robot", "custom")
+
+
+def stays(path: str) -> bool:
+    """Return whether a restart of the robot program leaves what was written to a path."""
+    if (row := row_of(path)) is not None:
+        return row.stays
+    kind = kind_of(path)
+    return kind is not None and kind.stays
+
+
+def is_measured(path: str) -> bool:
+    """Return whether a value is what a sensor measures; SimDevices have no rows."""
+    row = row_of(path)
+    return row is not None and row.field.role == "measured"
+
+
+def is_input(path: str, values: Mapping[str, object]) -> bool:
+    """Return whether a measured value's channel is an input: a digital one can be an output, too.
+
+    :param values: the values by path
+    """
+    row = row_of(path)
+    return row is None or not row.field.only_if or bool(values.get(beside(path, row.field.only_if), True))
+
+
+def decides(path: str) -> bool:
+    """Return whether a value says of another one of its device whether it is measured, or an output."""
+    row = row_of(path)
+    return row is not None and any(field.only_if == row.field.name for field in row.kind.fields)
+
+
+def beside(path: str, key: str) -> str:
+    """Return the path of another value of the same device."""
+    return join(path.rpartition(".")[0], key)
