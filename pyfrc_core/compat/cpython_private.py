@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import _thread
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from threading import Thread
 from types import FrameType
 from typing import Any
@@ -19,6 +19,14 @@ from .private_name import PrivateName
 get_frame: Callable[[int], FrameType] = sys._getframe
 #: Return the innermost frame of each thread, by its `ident`.
 current_frames: Callable[[], dict[int, FrameType]] = sys._current_frames
+
+
+def outwards(frame: FrameType | None) -> Iterator[FrameType]:
+    """Return a frame and those that have called it, the innermost first."""
+    while frame is not None:
+        yield frame
+        frame = frame.f_back
+
 
 #: Return a new lock of Python's own. `threading.Lock` is replaced for robot code, this is not.
 allocate_lock = _thread.allocate_lock

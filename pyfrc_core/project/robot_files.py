@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from types import FrameType, TracebackType
 
-from ..compat.cpython_private import current_frames
+from ..compat.cpython_private import current_frames, outwards
 
 # A virtual environment inside the project contains libraries.
 _NOT_OURS = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
@@ -72,12 +72,11 @@ class RobotFiles:
 
     def line_of_thread(self, ident: int) -> str | None:
         """Return the user's line that a running thread is at, such as ``robot.py:12``, if it is in the user's code."""
-        frame = current_frames().get(ident)
-        while frame is not None:
-            if (line := self.line_of_frame(frame)) is not None:
-                return line
-            frame = frame.f_back
-        return None
+        return self.line_of_call(current_frames().get(ident))
+
+    def line_of_call(self, frame: FrameType | None) -> str | None:
+        """Return the user's line, such as ``robot.py:12``, that has called what runs in a frame; None if none has."""
+        return next(filter(None, map(self.line_of_frame, outwards(frame))), None)
 
     def line_of_frame(self, frame: FrameType) -> str | None:
         """Return the line that a frame is at, such as ``robot.py:12``, if it is in the user's code."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from types import FrameType
 
+from ..compat.cpython_private import outwards
 from ..wpi import names
 
 _PHYSICS = "physics.py"
@@ -11,9 +12,5 @@ _PHYSICS = "physics.py"
 
 def is_of_simulation(frame: FrameType | None) -> bool:
     """Return whether simulation code has called what runs in this frame."""
-    while frame is not None:
-        code = frame.f_code
-        if code.co_name in names.OF_SIMULATION or code.co_filename.endswith(_PHYSICS):
-            return True
-        frame = frame.f_back
-    return False
+    codes = (call.f_code for call in outwards(frame))
+    return any(code.co_name in names.OF_SIMULATION or code.co_filename.endswith(_PHYSICS) for code in codes)

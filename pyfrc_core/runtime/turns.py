@@ -15,10 +15,9 @@ import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from types import FrameType
 from typing import IO, Any
 
-from ..compat.cpython_private import get_frame
+from ..compat.cpython_private import get_frame, outwards
 from ..file_lock import lock
 from ..project.robot_files import is_pyfrc
 from ..temporary import temporary_directory
@@ -136,12 +135,10 @@ def _is_for_writing(file: object, mode: str | None, flags: int) -> bool:
 
 def _is_ours() -> bool:
     """Return whether pyfrc itself, or Python's import, changes the file."""
-    frame: FrameType | None = get_frame(2)
-    while frame is not None:
-        file = frame.f_code.co_filename
+    for call in outwards(get_frame(2)):
+        file = call.f_code.co_filename
         if file.startswith("<frozen importlib"):
             return True
         if not file.startswith((_STANDARD_LIBRARY, "<frozen ")) or "site-packages" in file:
             return is_pyfrc(file)
-        frame = frame.f_back
     return True

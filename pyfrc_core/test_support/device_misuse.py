@@ -78,22 +78,14 @@ class _Misuse:
         return __init__
 
     def _on_creation(self, key: tuple[Any, ...]) -> None:
-        line = self._line()
+        line = self._files.line_of_call(get_frame(1)) or ""
         before = self._created.setdefault(key, line)
         if before != line:
             remedy = "Each needs an ID of its own, and one object in the program."
             self._warn(f"CAN ID {key[0]} is used already, since {before}, by a device of the same kind. {remedy}")
 
-    def _line(self) -> str:
-        frame = get_frame(1)
-        while frame is not None:
-            if (line := self._files.line_of_frame(frame)) is not None:
-                return line
-            frame = frame.f_back  # type: ignore[assignment]
-        return ""
-
     def _warn(self, text: str) -> None:
-        line = self._line()
+        line = self._files.line_of_call(get_frame(1)) or ""
         if line and line not in self._warned:
             self._warned.add(line)
             file, _, number = line.rpartition(":")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from types import CodeType, FrameType
 from typing import NamedTuple
 
+from ...compat.cpython_private import outwards
 from ...errors import text_of
 from ...explain.places import frames_of
 from ...invariants.watch import BrokenInvariantError
@@ -113,9 +114,7 @@ def failure_of(error: BaseException, files: RobotFiles) -> FuzzFailure:
 
 def user_frame(frame: FrameType | None, files: RobotFiles) -> FrameType | None:
     """Return the innermost frame of the robot's own code, from `frame` outwards."""
-    while frame is not None and not files.is_robot_code(frame.f_code.co_filename):
-        frame = frame.f_back
-    return frame
+    return next((call for call in outwards(frame) if files.is_robot_code(call.f_code.co_filename)), None)
 
 
 def place_of(frame: FrameType | None, files: RobotFiles) -> tuple[str, str]:

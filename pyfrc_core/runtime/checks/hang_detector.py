@@ -19,7 +19,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from ...compat.c_calls import raise_in_thread
-from ...compat.cpython_private import allocate_lock, current_frames, start_bare_thread
+from ...compat.cpython_private import allocate_lock, current_frames, outwards, start_bare_thread
 from ...processes.exit import EXIT_HANGS, exit_now, prepare_sudden_exit
 from ...processes.standstill import Standstill, StandstillNotice
 from ..exceptions import TestFroze
@@ -247,13 +247,11 @@ class HangDetector:
             ident = self.outside
         imports = False
         innermost = frame = current_frames().get(ident)
-        stood.calls = [each for each in _stack(frame) if not stood.calls or each in stood.calls]
-        frame = stood.calls[0] if stood.calls else frame
-        while frame is not None and self._files is not None:
-            if (line := self._files.line_of_frame(frame)) is not None:
+        stood.calls = [each for each in outwards(frame) if not stood.calls or each in stood.calls]
+        for call in outwards(stood.calls[0] if stood.calls else frame) if self._files is not None else ():
+            if (line := self._files.line_of_frame(call)) is not None:
                 return ident, line, imports
-            imports = imports or frame.f_code.co_filename.startswith(_IMPORT)
-            frame = frame.f_back
+            imports = imports or call.f_code.co_filename.startswith(_IMPORT)
         known = f"{innermost.f_code.co_filename}:{innermost.f_lineno}" if innermost is not None else "unknown"
         return ident, known, imports
 
@@ -319,12 +317,6 @@ class _Standing:
         self.computed = self.waited = 0.0
         #: The calls that have not returned since, innermost first.
         self.calls: list[FrameType] = []
-
-
-def _stack(frame: FrameType | None) -> Iterator[FrameType]:
-    while frame is not None:
-        yield frame
-        frame = frame.f_back
 
 
 def _sum(first: float | None, second: float | None) -> float | None:

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from types import CodeType, FrameType
 from typing import TYPE_CHECKING
 
-from ...compat.cpython_private import current_frames, get_frame
+from ...compat.cpython_private import current_frames, get_frame, outwards
 from ...config.settings import Settings
 from ...project.robot_files import RobotFiles, is_pyfrc
 from ...wpi import names, robots, station
@@ -124,8 +124,8 @@ class LoopLimit:
     def _in_periodic_function(self, frame: FrameType | None) -> bool:
         """Whether this stack is that of a function which a library's loop calls again and again."""
         in_robot_code = False
-        while frame is not None:
-            code = frame.f_code
+        for call in outwards(frame):
+            code = call.f_code
             if code.co_name == _LOOP_FUNCTION and is_pyfrc(code.co_filename):
                 return True
             if code.co_name == names.INITIALIZATION:
@@ -134,7 +134,6 @@ class LoopLimit:
                 if code.co_name == names.MAIN:
                     return False  # the user's own loop
                 in_robot_code = True
-            frame = frame.f_back
         return in_robot_code and robots.is_magic(self._run.robot)
 
     # -- the end of the limit ------------------------------------------------------------------------------------
@@ -164,14 +163,13 @@ class LoopLimit:
         if own_loop is not None and own_loop.ident is not None:
             frame = current_frames().get(own_loop.ident)
         place = begins_at = function = ""
-        while frame is not None:
-            code = frame.f_code
+        for call in outwards(frame):
+            code = call.f_code
             if code.co_name in _CALLERS and is_pyfrc(code.co_filename):
                 break
             if self._files.is_robot_code(code.co_filename) and code.co_name != names.MAIN:
                 file = self._files.relative(code.co_filename)
-                place = place or f"{file}:{frame.f_lineno}"
+                place = place or f"{file}:{call.f_lineno}"
                 begins_at = begins_at or f"{file}:{code.co_firstlineno}"
                 function = _name_of(code)
-            frame = frame.f_back
         return LoopWaitsError(place, begins_at, function or "the robot's loop", seconds)

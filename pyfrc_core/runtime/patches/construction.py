@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
-from ...compat.cpython_private import get_frame
+from ...compat.cpython_private import get_frame, outwards
 from ...errors import RobotCodeError
 from ...project.robot_files import RobotFiles
 from ...wpi import robots
@@ -49,16 +48,13 @@ def refused(files: RobotFiles) -> Iterator[None]:
 
         def __init__(self: Any, *args: Any, **kwargs: Any) -> None:
             __tracebackhide__ = True
-            line: str | None = None
-            frame: FrameType | None = get_frame(1)
-            while frame is not None:  # the outermost line: the class has only been called there
-                line, frame = files.line_of_frame(frame) or line, frame.f_back
-            if line is None:
+            lines = list(filter(None, map(files.line_of_frame, outwards(get_frame(1)))))
+            if not lines:
                 original(self, *args, **kwargs)
                 return
             raise RobotCodeError(
                 f"a robot is made while the program is imported: {type(self).__name__}()",
-                where=line,
+                where=lines[-1],  # the outermost: the class has only been called there
                 remedy="Delete this call: the robot program is its class, and pyfrc and WPILib make the robot.",
             )
 

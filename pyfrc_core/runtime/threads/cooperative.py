@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...compat.cpython_private import current_frames, get_frame, is_initialized
+from ...compat.cpython_private import current_frames, get_frame, is_initialized, outwards
 from ..clock import to_us
 from .robot_threads import real_thread_join
 
@@ -123,18 +123,12 @@ def _runner_of_event_loop(caller: FrameType | None) -> FrameType | None:
     """Return what runs the event loop that calls, or what calls instead: one loop has one time for all that it runs."""
     if caller is None or not caller.f_code.co_filename.startswith(_ASYNCIO):
         return caller
-    outermost, frame = caller, caller.f_back
-    while frame is not None:
-        if frame.f_code.co_filename.startswith(_ASYNCIO):
-            outermost = frame
-        frame = frame.f_back
+    *_, outermost = (call for call in outwards(caller) if call.f_code.co_filename.startswith(_ASYNCIO))
     return outermost.f_back
 
 
 def _past_library(caller: FrameType | None) -> FrameType | None:
-    while caller is not None and caller.f_code.co_filename.startswith(_BETWEEN):
-        caller = caller.f_back
-    return caller
+    return next((call for call in outwards(caller) if not call.f_code.co_filename.startswith(_BETWEEN)), None)
 
 
 def is_event_loop_of_robot_code(caller: FrameType) -> bool:
@@ -152,13 +146,11 @@ def begin_waiting_threads() -> None:
 
 def _note_start(thread: threading.Thread) -> None:
     """Note which line of the project, if any, has a thread started outside a run: a fork would lack the thread."""
-    frame: FrameType | None = get_frame(2)
-    while frame is not None:
+    for call in outwards(get_frame(2)):
         # A robot.py that is run as the program has everything on its stack, pytest's plugins too.
-        if (line := scope.line_of(frame)) is not None and frame.f_globals.get("__name__") != "__main__":
+        if (line := scope.line_of(call)) is not None and call.f_globals.get("__name__") != "__main__":
             vars(thread)["_pyfrc_started_at"] = line
             return
-        frame = frame.f_back
 
 
 def threads_of_the_project() -> list[tuple[threading.Thread, str]]:
@@ -188,10 +180,8 @@ def _start_really(thread: threading.Thread) -> None:
 
 def line_of_thread(ident: int | None) -> str | None:
     """Return the project's line that a thread is at, as ``robot.py:12``."""
-    frame = None if ident is None else current_frames().get(ident)
-    while frame is not None and (line := scope.line_of(frame)) is None:
-        frame = frame.f_back
-    return None if frame is None else line
+    calls = outwards(None if ident is None else current_frames().get(ident))
+    return next(filter(None, map(scope.line_of, calls)), None)
 
 
 def record_of(thread: threading.Thread) -> RobotThread | None:
