@@ -20,7 +20,7 @@ from wpilib.simulation import (
 from wpimath.system.plant import DCMotor, LinearSystemId
 
 from pyfrc_core.compat import unrepeatable
-from pyfrc_core.runtime.patch_table import patched
+from pyfrc_core.patch_table import patched
 from pyfrc_core.runtime.patches import noise
 
 NEO = DCMotor.NEO(1)

@@ -8,7 +8,7 @@ from collections.abc import Generator
 import pytest
 from conftest import MakeProject, RobotProject, sampled
 
-from pyfrc_core.runtime.patch_table import PatchTable
+from pyfrc_core.patch_table import PatchTable
 from pyfrc_core.runtime.patches import udp_ports
 
 # As photonlibpy's time server does: on a fixed port, in a thread of the library.

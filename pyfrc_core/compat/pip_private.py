@@ -13,6 +13,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from ..patch_table import PatchTable
 from .private_name import PrivateName
 
 #: The function that returns the values of markers.
@@ -41,7 +42,7 @@ def main() -> None:
     """Run pip with the rest of this process's arguments; the first one has the values of markers."""
     environment: dict[str, str] = json.loads(sys.argv[1])
     owner, name = MARKERS.place
-    setattr(owner, name, lambda: dict(environment))
+    PatchTable().patch(owner, name, lambda: dict(environment))
     marker = owner.Marker(f"platform_machine == {environment['platform_machine']!r}")
     if not marker.evaluate():
         raise SystemExit(f"ERROR: {MARKERS.missing()}")

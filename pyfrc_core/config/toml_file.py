@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from ..encoding import find_wrong_encoding
 from ..errors import SettingsError
+from ..patch_table import PatchTable
 from .findings import Path, dotted, shortened
 
 _NAME = r"""(?:[\w-]+|"(?:[^"\\]|\\.)*"|'[^']*')"""
@@ -190,8 +191,7 @@ def _read(file: File) -> str:
 
 def _accept_byte_order_marks() -> None:
     """Have this process accept a byte-order mark in TOML: pytest and coverage read the same pyproject.toml."""
-    if tomllib.loads is not _loads_after_mark:
-        tomllib.loads = _loads_after_mark
+    PatchTable().patch(tomllib, "loads", _loads_after_mark)
 
 
 def _loads_after_mark(text: str, /, **options: Any) -> dict[str, Any]:

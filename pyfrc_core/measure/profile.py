@@ -81,7 +81,7 @@ class _CallProfile:
 
 def begin(settings: dict[str, Any]) -> Callable[[], None]:
     """Start measuring in this process; return a function that saves the result. A fork continues to measure."""
-    from ..runtime.patch_table import PatchTable
+    from ..patch_table import PatchTable
     from ..runtime.robot import RobotRun
     from ..runtime.threads.robot_threads import RobotThread, RobotThreads
     from .stopwatch import Stopwatch

@@ -12,8 +12,8 @@ from functools import partial
 from types import FunctionType
 from typing import Any
 
+from ..patch_table import PatchTable
 from ..project.robot_files import RobotFiles, is_pyfrc
-from ..runtime.patch_table import PatchTable
 from ..runtime.patches.notifier import PeriodicThread
 from ..runtime.threads.robot_threads import RobotThreads
 from ..runtime.time.timed_loop import Periodic, TimedLoop

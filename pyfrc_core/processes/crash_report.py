@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from itertools import takewhile
 
 from ..compat.cpython_private import get_frame
+from ..patch_table import Patch, PatchTable, patched
 from ..project.robot_files import RobotFiles, is_pyfrc
 from .crashes import crash_of
 from .exit import EXIT_HANGS, exit_now, prepare_sudden_exit
@@ -122,7 +123,7 @@ class CrashLog:
                 prepare_sudden_exit()
             exit_now(status)
 
-        os._exit = exit_with_report  # type: ignore[assignment]
+        PatchTable().patch(os, "_exit", exit_with_report)
 
 
 @contextlib.contextmanager
@@ -151,11 +152,10 @@ def reported_exit(files: RobotFiles) -> Iterator[None]:
     if faults:
         with suppress(OSError, ValueError, AttributeError):  # standard error is no file
             faulthandler.enable(all_threads=False)
-    os._exit = exit_with_line  # type: ignore[assignment]
     try:
-        yield
+        with patched([Patch(os, "_exit", exit_with_line)]):
+            yield
     finally:
-        os._exit = _os_exit
         if faults:
             faulthandler.disable()
 

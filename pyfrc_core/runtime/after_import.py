@@ -10,6 +10,8 @@ from importlib.util import find_spec
 from types import ModuleType
 from typing import Any
 
+from ..patch_table import PatchTable
+
 
 def after_import(name: str, function: Callable[[ModuleType], object]) -> None:
     """Call a function with a module, now or after its import. A later call for that module replaces the function."""
@@ -37,13 +39,14 @@ class _AfterImport(MetaPathFinder):
         spec = find_spec(fullname)  # by the other finders, now that the name is removed here
         if spec is not None and spec.loader is not None:
             loader: Any = spec.loader
-            execute = loader.exec_module
+            table = PatchTable()
 
             def exec_module(module: ModuleType) -> None:
-                execute(module)
+                table.undo()
+                loader.exec_module(module)
                 function(module)
 
-            loader.exec_module = exec_module
+            table.patch(loader, "exec_module", exec_module)
         return spec
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..compat.cpython_private import get_frame
 from ..errors import RobotCodeError
+from ..patch_table import PatchTable
 from ..wpi import names
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ def refuse_keyboard_input(files: RobotFiles) -> None:
     Calling it again only changes the files.
     """
     _files[:] = [files]
-    builtins.input = _input
+    PatchTable().patch(builtins, "input", _input)
 
 
 def _input(prompt: object = "", /) -> str:

@@ -13,8 +13,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ..compat.unrepeatable import real_time_libraries
+from ..patch_table import PatchTable
 from ..wpi import station
-from .patch_table import PatchTable
 from .robot_time import PACKET_US
 from .time.real_time_loops import RealTimeLoops
 

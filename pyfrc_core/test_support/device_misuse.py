@@ -11,8 +11,8 @@ from typing import Any
 
 from ..compat.cpython_private import get_frame
 from ..fuzz.oracle.motor_calls import watch_motor_calls
+from ..patch_table import Patch, patched
 from ..project.robot_files import RobotFiles
-from ..runtime.patch_table import Patch, patched
 from ..wpi import devices
 
 

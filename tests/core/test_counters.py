@@ -12,7 +12,7 @@ from wpilib.simulation import DIOSim
 from pyfrc_core.hal import HalData, counters
 from pyfrc_core.hal.reset import forget_inputs
 from pyfrc_core.hal.season_2026.counters import counted_channels
-from pyfrc_core.runtime.patch_table import patched
+from pyfrc_core.patch_table import patched
 from pyfrc_core.runtime.patches.season_2026.counters import patches
 
 #: The first of some channels that no other test uses.

@@ -16,7 +16,7 @@ from wpilib import simulation as sim
 from pyfrc_core.hal import HalData
 from pyfrc_core.hal.change_reader import MISSING, ChangeReader, Changes
 from pyfrc_core.hal.season_2026.device_table import KINDS
-from pyfrc_core.runtime.patch_table import patched
+from pyfrc_core.patch_table import patched
 from pyfrc_core.runtime.patches.hal_resets import patches
 
 

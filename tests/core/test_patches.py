@@ -16,9 +16,9 @@ import pytest
 import wpilib
 import wpilib.simulation
 
+from pyfrc_core.patch_table import Patch, PatchTable
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork
 from pyfrc_core.project.robot_files import RobotFiles
-from pyfrc_core.runtime.patch_table import Patch, PatchTable
 from pyfrc_core.runtime.patches.active_run import active_run
 from pyfrc_core.runtime.patches.install import Patches, _Instant, patches
 from pyfrc_core.runtime.robot import RobotRun

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import starmap
 
-from ...runtime.patch_table import Patch, patched
+from ...patch_table import Patch, patched
 from ...wpi import joysticks
 
 

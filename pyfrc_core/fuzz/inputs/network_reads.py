@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from itertools import starmap
 
 from ...compat.cpython_private import get_frame
+from ...patch_table import Patch, patched
 from ...project.robot_files import RobotFiles
-from ...runtime.patch_table import Patch, patched
 from ...runtime.simulation_code import is_of_simulation
 from ...wpi import names, network_reads
 from .network_values import STRUCTS, NetworkRead

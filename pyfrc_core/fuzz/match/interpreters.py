@@ -16,6 +16,7 @@ def known_project(project: Project) -> Project:
 
 def prepare_interpreter(project: Project) -> InitialState:
     """Import what each match needs; return the state in which each is to begin."""
+    from ...patch_table import PatchTable
     from ...runtime.as_good_as_new.state import ProcessState
     from ...runtime.patches.install import patches
     from ...wpi import network
@@ -25,6 +26,6 @@ def prepare_interpreter(project: Project) -> InitialState:
     known_project(project)
     patches.install(project.files)
     prepare_search()
-    owner, name = network.NETWORK_LOG.place
-    setattr(owner, name, lambda instance: None)  # it would start a thread, and no one reads what matches log
+    # It would start a thread, and no one reads what matches log.
+    PatchTable().patch(*network.NETWORK_LOG.place, lambda instance: None)
     return ProcessState(project.files, forget=[imported_robot.forget])

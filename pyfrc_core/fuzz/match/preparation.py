@@ -9,8 +9,8 @@ import gc
 from contextlib import suppress
 
 from ...errors import PyfrcError
+from ...patch_table import PatchTable
 from ...project import Project
-from ...runtime.patch_table import PatchTable
 from ...wpi import network
 from ..inputs.finders import prepare_search
 from .imported_robot import imported_devices, robot_constants

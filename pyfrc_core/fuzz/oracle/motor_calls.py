@@ -9,7 +9,7 @@ from itertools import starmap
 from typing import Any
 
 from ...hal import HalData
-from ...runtime.patch_table import Patch, patched
+from ...patch_table import Patch, patched
 from ...wpi import motor_controllers
 
 

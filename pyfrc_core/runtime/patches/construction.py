@@ -9,9 +9,9 @@ from typing import Any
 
 from ...compat.cpython_private import get_frame, outwards
 from ...errors import RobotCodeError
+from ...patch_table import Patch, patched
 from ...project.robot_files import RobotFiles
 from ...wpi import robots
-from ..patch_table import Patch, patched
 
 
 @contextmanager

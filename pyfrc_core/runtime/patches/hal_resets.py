@@ -12,7 +12,7 @@ import hal.simulation
 import wpilib.simulation
 
 from ...hal.created_devices import prepare_reset
-from ..patch_table import Patch
+from ...patch_table import Patch
 from .active_run import active_run
 
 #: The driver station is below; SimDevices have no callbacks.

@@ -17,11 +17,11 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from ...compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
+from ...patch_table import Patch, PatchTable
 from ...wpi import timing
 from ..after_import import after_import
 from ..clock import KICKOFF as KICKOFF
 from ..clock import to_us
-from ..patch_table import Patch, PatchTable
 from ..threads import cooperative, event_loops, locks
 from ..threads.fork_obstacles import library_threads
 from ..threads.replacements import as_original

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..patch_table import Patch
+from ...patch_table import Patch
 
 
 def noting(device_class: type[Any], note: Callable[..., object]) -> Patch:

@@ -12,7 +12,7 @@ from typing import Any
 import wpilib.simulation
 
 from ...compat.unrepeatable import report_noise, report_noisy_mechanism
-from ..patch_table import Patch
+from ...patch_table import Patch
 
 _simulation: Any = wpilib.simulation
 _MECHANISMS = (

@@ -16,8 +16,8 @@ import itertools
 import weakref
 from typing import Any
 
+from ...patch_table import Patch
 from ...wpi import robots
-from ..patch_table import Patch
 
 
 class _Number(weakref.ref[Any]):

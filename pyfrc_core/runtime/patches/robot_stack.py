@@ -11,8 +11,8 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from ...compat.cpython_private import get_frame
+from ...patch_table import Patch
 from ...wpi import reports
-from ..patch_table import Patch
 
 if TYPE_CHECKING:
     from ...project.robot_files import RobotFiles

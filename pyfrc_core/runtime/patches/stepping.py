@@ -9,9 +9,9 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from ...patch_table import Patch
 from ..clock import to_us
 from ..exceptions import TestEnded
-from ..patch_table import Patch
 from ..threads import cooperative
 from .active_run import active_run
 

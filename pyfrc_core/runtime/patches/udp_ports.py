@@ -15,7 +15,7 @@ import socket
 import weakref
 from typing import Any
 
-from ..patch_table import Patch
+from ...patch_table import Patch
 
 # By family and requested port. A `WeakSet` could change while a second thread goes through it.
 _bound: dict[tuple[int, int], weakref.ref[socket.socket]] = {}

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any
 
 from ...compat.cpython_private import get_frame
 from ...errors import PyfrcError
+from ...patch_table import PatchTable
 from ...wpi import network_writes
-from ..patch_table import PatchTable
 from ..robot_time import PACKET_US
 from ..simulation_code import is_of_simulation
 from .network_entries import NetworkEntries

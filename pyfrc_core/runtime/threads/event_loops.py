@@ -11,7 +11,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from ...compat.cpython_private import get_frame
-from ..patch_table import Patch
+from ...patch_table import Patch
 from ..robot_time import to_us
 from . import cooperative
 

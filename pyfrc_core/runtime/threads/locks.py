@@ -12,8 +12,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ...compat.cpython_private import ALLOCATE_LOCK, PYTHON_RLOCK, PYTHON_SIMPLE_QUEUE, LockType, RLockType, get_frame
+from ...patch_table import Patch
 from ..clock import to_us
-from ..patch_table import Patch
 from .cooperative import join_thread, on_behalf_of_robot_code, scope, start_thread
 from .replacements import BuiltinClassReplacement, replaces
 from .robot_threads import real_allocate_lock

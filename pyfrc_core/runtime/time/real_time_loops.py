@@ -12,7 +12,7 @@ import sys
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from ..patch_table import Patch
+from ...patch_table import Patch
 
 #: The names of phoenix6's control requests for which the motor's controller reads a sensor.
 _CLOSED = re.compile(r"Position|Velocity|MotionMagic|Differential(?!.*Follower)")

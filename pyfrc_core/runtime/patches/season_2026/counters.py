@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 import wpilib
 
 from ....hal.season_2026.counters import EdgeCounter, Source, take_counter
-from ...patch_table import Patch
+from ....patch_table import Patch
 
 _Mode = wpilib.Counter.Mode
 

@@ -14,8 +14,8 @@ import hal.simulation
 import wpilib
 import wpilib.simulation
 
+from ....patch_table import Patch
 from ...clock import to_us
-from ...patch_table import Patch
 from ...threads import cooperative
 from ..active_run import active_run
 from ..stepping import delivering

@@ -9,8 +9,8 @@ from typing import Any
 import hal
 import wpilib
 
+from ....patch_table import Patch
 from ...clock import to_us
-from ...patch_table import Patch
 from ...threads.robot_threads import RobotThread, RobotThreads
 from ..active_run import active_run
 from ..notifier import PeriodicThread

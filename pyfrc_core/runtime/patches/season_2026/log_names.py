@@ -9,8 +9,8 @@ import wpilib
 import wpiutil
 from wpiutil.log import DataLog
 
+from ....patch_table import Patch
 from ....wpi.season_2026.logs import RealWriter
-from ...patch_table import Patch
 from ..active_run import active_run
 from ..data_logs import DataLogs, StandsFor, started_at_import
 

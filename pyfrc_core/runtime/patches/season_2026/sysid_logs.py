@@ -13,7 +13,7 @@ import wpilib
 from wpilib.sysid import SysIdRoutineLog
 from wpiutil.log import DataLog, DoubleLogEntry, StringLogEntry
 
-from ...patch_table import Patch
+from ....patch_table import Patch
 
 
 class _Entries:

@@ -11,9 +11,9 @@ import hal.simulation
 import wpilib
 import wpilib.simulation
 
+from ....patch_table import Patch
 from ....wpi import encoder_channels, robots
 from ...clock import to_us
-from ...patch_table import Patch
 from .. import hal_resets, noise
 from ..active_run import active_run
 from ..made_devices import noting

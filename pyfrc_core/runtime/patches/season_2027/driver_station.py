@@ -14,8 +14,8 @@ import hal.simulation
 import wpilib
 import wpilib.simulation
 
+from ....patch_table import Patch
 from ....wpi.season_2027.connection import MatchInfo
-from ...patch_table import Patch
 from ..active_run import active_run
 from ..stepping import delivering
 

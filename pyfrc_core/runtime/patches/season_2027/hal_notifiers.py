@@ -13,9 +13,9 @@ import hal
 import wpilib
 import wpiutil.sync
 
+from ....patch_table import Patch
 from ....wpi.season_2027 import timing
 from ...clock import to_us
-from ...patch_table import Patch
 from ...threads.robot_threads import RobotThread, RobotThreads
 from ..active_run import active_run
 from ..notifier import PeriodicThread

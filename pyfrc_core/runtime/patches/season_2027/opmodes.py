@@ -15,8 +15,8 @@ from typing import Any
 
 import wpilib
 
+from ....patch_table import Patch
 from ....wpi.season_2027 import station, timing
-from ...patch_table import Patch
 from ...time.timed_loop import Periodic, TimedLoop
 from ..active_run import active_run
 

@@ -13,10 +13,10 @@ import wpilib.simulation
 
 from ....compat.private_name import PrivateName
 from ....hal.season_2027 import onboard_imu
+from ....patch_table import Patch
 from ....wpi import encoder_channels
 from ....wpi.season_2027 import robots, timing
 from ...clock import to_us
-from ...patch_table import Patch
 from .. import hal_resets, noise
 from ..active_run import active_run
 from ..made_devices import noting

@@ -1,4 +1,4 @@
-"""Tables of replaced names of classes and modules: every monkeypatch of pyfrc is in one, and is undone by it.
+"""Tables of replaced names of classes and modules: every monkeypatch of pyfrc is in one.
 
 `unittest.mock.patch` does the same for one name. It would import much that a robot does not need.
 """
