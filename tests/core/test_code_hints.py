@@ -12,12 +12,12 @@ import pytest
 import wpilib
 
 from pyfrc_core.repeated_lines import RepeatedLines, shortened
+from pyfrc_core.runtime.checks.code_checks import find_misspelled_settings
 from pyfrc_core.runtime.checks.enum_values import find_early_reads, find_wrong_comparisons
 from pyfrc_core.runtime.checks.kinds import Kinds
 from pyfrc_core.runtime.checks.lost_commands import find_lost_commands
 from pyfrc_core.runtime.checks.never_used import find_never_used
 from pyfrc_core.runtime.checks.no_effect import find_lines_without_effect
-from pyfrc_core.runtime.checks.setting_names import find_misspelled_settings
 from pyfrc_core.runtime.checks.sources import Source
 from pyfrc_core.runtime.checks.wrong_moments import find_wrong_moments
 from pyfrc_core.runtime.checks.wrong_tests import find_wrong_tests

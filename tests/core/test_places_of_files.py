@@ -10,7 +10,7 @@ from pyfrc_core.doctor.examine import DoctorOptions, _project
 from pyfrc_core.errors import ProjectError, UsageError
 from pyfrc_core.physics.create.files import create_physics
 from pyfrc_core.project import Project, find_project
-from pyfrc_core.runtime.checks.misplaced_physics import find_misplaced_physics
+from pyfrc_core.runtime.checks.code_checks import find_misplaced_physics
 
 ROBOT = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
 PHYSICS = "class PhysicsEngine:\n    pass\n"

@@ -30,10 +30,9 @@ from ...temporary import temporary_directory
 from ..guidance.goals import RobotLine
 from ..guidance.seed_schedule import match_seconds
 from ..match.imported_robot import robot_lines
-from ..match.interpreters import known_project, prepare_interpreter
 from ..match.journal import read_journal
 from ..match.play import play
-from ..match.preparation import Preparation
+from ..match.preparation import Preparation, known_project, prepare_interpreter
 from ..match.restarts import MEANWHILE
 from ..match.work import (
     ROBOT_SEED,

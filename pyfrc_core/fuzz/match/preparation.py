@@ -1,15 +1,17 @@
-"""Prepare matches in the process from which theirs are forked.
+"""Prepare matches in the process from which theirs are forked, or in an interpreter that plays one after the other.
 
-What each match would make in the same way, or read from the disk, is made here once; a fork finds it.
+What each match would make in the same way, or read from the disk, is made here once.
 """
 
 from __future__ import annotations
 
 import gc
 from contextlib import suppress
+from functools import lru_cache
 
 from ...errors import PyfrcError
 from ...patch_table import PatchTable
+from ...processes.interpreter import InitialState
 from ...project import Project
 from ...wpi import network
 from ..inputs.finders import prepare_search
@@ -45,3 +47,23 @@ def _read_settings(project: Project) -> None:
     """
     with suppress(PyfrcError):
         _ = project.game_specific_messages
+
+
+@lru_cache(maxsize=1)
+def known_project(project: Project) -> Project:
+    """Return the project with the same files that this process knows already, and whose settings it has read."""
+    return project
+
+
+def prepare_interpreter(project: Project) -> InitialState:
+    """Import what each match needs; return the state in which each is to begin."""
+    from ...runtime.as_good_as_new.state import ProcessState
+    from ...runtime.patches.install import patches
+    from . import imported_robot, play  # noqa: F401
+
+    known_project(project)
+    patches.install(project.files)
+    prepare_search()
+    # It would start a thread, and no one reads what matches log.
+    PatchTable().patch(*network.NETWORK_LOG.place, lambda instance: None)
+    return ProcessState(project.files, forget=[imported_robot.forget])
