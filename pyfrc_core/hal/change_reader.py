@@ -38,7 +38,7 @@ class Changes(NamedTuple):
     gone: list[str]
 
 
-class Source(Protocol):
+class ValueReader(Protocol):
     """What is read: see `TreeReader`."""
 
     def read(self) -> tuple[list[str], list[Any]]:
@@ -48,7 +48,7 @@ class Source(Protocol):
 class ChangeReader:
     """Finds what has changed since its last look."""
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: ValueReader) -> None:
         self._source = source
         self._paths: list[str] = []
         self._values: list[Any] = []

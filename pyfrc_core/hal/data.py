@@ -13,7 +13,7 @@ from .containers import LiveDict, LiveList, Slot, plain, stored
 from .kinds import UnknownKey, WrongPath, WrongType
 from .modules import Modules
 from .paths import Segment, format_path, join, parse_path
-from .robot_devices import Device, RobotDevices
+from .robot_devices import RobotDevices, TreeDevice
 from .sim_devices import RobotDict, SimDevices
 from .tree_reader import TreeReader
 
@@ -174,7 +174,7 @@ class HalData(LiveDict):
         """Return the devices that exist in the HAL, such as ``pwm[3]``."""
         return self._robot_devices.existing()
 
-    def devices(self) -> list[Device]:
+    def devices(self) -> list[TreeDevice]:
         """Return the devices that exist without the robot, and those that it has made; no SimDevices."""
         self.created()
         return [*self._robot_devices.always(), *self._robot_devices.made()]

@@ -15,7 +15,7 @@ from .paths import join
 from .sim_devices import SimDevices
 
 
-class Device(NamedTuple):
+class TreeDevice(NamedTuple):
     """A device in a tree.
 
     :param number: None, if there is only one
@@ -43,17 +43,17 @@ class RobotDevices:
         self._can: SimDevices = tree["CAN"]
         self._modules = modules
         self._by_number = [kind for kind in device_table.KINDS if kind.by_number]
-        self._always: list[Device] = []
+        self._always: list[TreeDevice] = []
         #: Other devices of the controller, and a slot for each that says whether it exists.
-        self._own: list[Device] = []
+        self._own: list[TreeDevice] = []
         self._slots: list[Slot] = []
         for kind in device_table.KINDS:
             if not kind.exists and kind.build is None:
-                self._always.append(Device(kind, None, tree[kind.name] if kind.name else tree))
+                self._always.append(TreeDevice(kind, None, tree[kind.name] if kind.name else tree))
             for number, slot in enumerate(kind.initialized()):
                 numbered = kind.count is not None
                 place = tree[kind.name][number] if numbered else tree[kind.name]
-                self._own.append(Device(kind, number if numbered else None, place))
+                self._own.append(TreeDevice(kind, number if numbered else None, place))
                 self._slots.append(slot)
         self._names = [device.path for device in self._own]
         module_slots = list(modules.initialized())
@@ -65,15 +65,15 @@ class RobotDevices:
         """Return, for each that is no SimDevice, whether it exists; the same list object as long as nothing changes."""
         return self._devices.created()
 
-    def always(self) -> list[Device]:
+    def always(self) -> list[TreeDevice]:
         """Return the devices that exist without the robot."""
         return self._always
 
-    def made(self) -> Iterator[Device]:
+    def made(self) -> Iterator[TreeDevice]:
         """Return the devices that the robot has made, as of the last call of `created`; no SimDevices."""
         yield from (device for device, exists in zip(self._own, self.created(), strict=False) if exists)
         for kind in self._by_number:
-            yield from (Device(kind, number, place) for number, place in self._modules.made(kind.name))
+            yield from (TreeDevice(kind, number, place) for number, place in self._modules.made(kind.name))
 
     def any_exist(self) -> bool:
         """Return whether any device exists, or any thread of WPILib that waits for an alarm."""

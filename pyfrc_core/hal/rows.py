@@ -12,7 +12,7 @@ from .kinds import WrongPath
 from .paths import join, parse_path
 
 
-class Row(NamedTuple):
+class TableRow(NamedTuple):
     """One value in the device table, of all devices of its kind."""
 
     kind: DeviceKind
@@ -30,34 +30,34 @@ class Row(NamedTuple):
 
 
 @cache
-def _rows() -> dict[tuple[str, ...], Row]:
+def _rows() -> dict[tuple[str, ...], TableRow]:
     """Return all rows, by the names in their paths, without numbers."""
     return {
-        tuple(filter(None, (kind.name, field.name))): Row(kind, field)
+        tuple(filter(None, (kind.name, field.name))): TableRow(kind, field)
         for kind in device_table.KINDS
         for field in kind.fields
     }
 
 
-def all_rows() -> Iterator[Row]:
+def all_rows() -> Iterator[TableRow]:
     """Return all rows."""
     return iter(_rows().values())
 
 
-def rows_of(kind: DeviceKind) -> Iterator[Row]:
+def rows_of(kind: DeviceKind) -> Iterator[TableRow]:
     """Return the rows of one kind of device."""
-    return (Row(kind, field) for field in kind.fields)
+    return (TableRow(kind, field) for field in kind.fields)
 
 
 @cache
-def gyros(numbered: bool) -> tuple[Row, ...]:
+def gyros(numbered: bool) -> tuple[TableRow, ...]:
     """Return the values that turn with the robot: of gyros at channels of the controller, or of its own ones."""
     turning = (row for row in all_rows() if row.field.heading or row.field.turning)
     return tuple(row for row in turning if (row.kind.count is not None) == numbered)
 
 
 @lru_cache(maxsize=4096)
-def row_of(path: str) -> Row | None:
+def row_of(path: str) -> TableRow | None:
     """Return the row of a value; None for a value that robot code makes up, and for what is no path."""
     try:
         names = tuple(segment for segment in parse_path(path) if isinstance(segment, str))

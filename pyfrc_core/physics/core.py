@@ -284,7 +284,7 @@ class PhysicsInterface:
 
         :param numbered: whether those at channels of the controller; else its own ones
         """
-        for kind, field in rows.gyros(numbered):
+        for kind, field in rows.gyros(numbered) if self._hal_data is not None else ():
             for gyro in self._hal_data[kind.name] if numbered else [self._hal_data[kind.name]]:
                 yield gyro, field
 

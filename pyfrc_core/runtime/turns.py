@@ -46,7 +46,7 @@ _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
 @contextlib.contextmanager
 def taking_turns() -> Iterator[None]:
-    """Have the runs take turns that processes started meanwhile begin with `take`."""
+    """Have the runs take turns that processes started meanwhile begin with `acquire`."""
     if _VARIABLE in os.environ:  # a part of a command that does so already
         yield
         return
@@ -58,22 +58,22 @@ def taking_turns() -> Iterator[None]:
             del os.environ[_VARIABLE]
 
 
-def agreed() -> str | None:
-    """Return by what processes of this command agree: for `take` in one that was started before `taking_turns`."""
+def lock_directory() -> str | None:
+    """Return where processes of this command have their lock: for one that was started before `taking_turns`."""
     return os.environ.get(_VARIABLE)
 
 
-def take(agreed: str | None = None) -> None:
-    """Wait until this process may run the robot, which it may until `give_back`, or until it ends."""
+def acquire(directory: str | None = None) -> None:
+    """Wait until this process may run the robot, which it may until `release`, or until it ends."""
     global _turn
     # Removed: a command that robot code or a test starts does not wait for this one.
-    directory = os.environ.pop(_VARIABLE, agreed)
+    directory = os.environ.pop(_VARIABLE, directory)
     if directory is not None:
         _turn = _turn or _Turn(Path(directory))
         _turn.begin()
 
 
-def give_back() -> None:
+def release() -> None:
     """End the turn of this process, if it has one: its run is over."""
     if _turn is not None:
         _turn.end()

@@ -8,7 +8,7 @@ from wpilib.simulation import DIOSim
 
 pytest.importorskip("pyfrc_core.hal.season_2026.counters")
 
-from pyfrc_core.hal.season_2026.counters import EdgeCounter, Source
+from pyfrc_core.hal.season_2026.counters import EdgeCounter, EdgeInput
 
 
 def pulse(channel: int) -> None:
@@ -16,7 +16,7 @@ def pulse(channel: int) -> None:
     DIOSim(channel).setValue(True)
 
 
-def channel_of(source: Source | None) -> int | None:
+def channel_of(source: EdgeInput | None) -> int | None:
     return None if source is None else source.channel
 
 

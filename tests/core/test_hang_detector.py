@@ -58,7 +58,7 @@ class World:
         self.detector._watched = 33, times  # type: ignore[assignment]
         self.interruption = self.detector._interruption
         monkeypatch.setattr(self.interruption, "interrupt", self._interrupt)
-        monkeypatch.setattr(self.detector, "_tell", self.told.append)
+        monkeypatch.setattr(self.detector, "_report", self.told.append)
 
     def _wait(self, seconds: float) -> None:
         assert seconds == 0.25

@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from pyfrc_core.runtime.as_good_as_new.part import Part
-from pyfrc_core.runtime.as_good_as_new.process import Directory, Environment, Logging, Randomness, Signals, Streams
+from pyfrc_core.runtime.pristine.part import StatePart
+from pyfrc_core.runtime.pristine.process import Directory, Environment, Logging, Randomness, Signals, Streams
 
 NEW = "PYFRC_TEST_NEW"
 
@@ -68,7 +68,7 @@ def _streams() -> None:
     ],
 )
 def test_a_change_is_named_until_it_is_put_back(
-    part: Callable[[], Part], change: Callable[[], object], named: list[str], tmp_path: Path
+    part: Callable[[], StatePart], change: Callable[[], object], named: list[str], tmp_path: Path
 ) -> None:
     before = dict(os.environ), Path.cwd(), signal.getsignal(signal.SIGUSR2), sys.stdout, random.getstate()
     made = part()

@@ -12,8 +12,8 @@ from itertools import chain
 
 from ...hal import HalData, counters, format_path, tree
 from ...hal.paths import join
-from ...hal.robot_devices import Device
-from ...hal.rows import Row, rows_of
+from ...hal.robot_devices import TreeDevice
+from ...hal.rows import TableRow, rows_of
 from ...runtime.scripts.targets import OPMODE
 from ...season import CURRENT
 from ...wpi import devices, joysticks, station
@@ -108,14 +108,14 @@ def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN) -> Iter
         yield from _of_sim_device(name)
 
 
-def _wires(device: Device) -> Iterator[str]:
+def _wires(device: TreeDevice) -> Iterator[str]:
     """Return the channels that an encoder or a gyro uses; they are not sensors of their own."""
     if wired_to := device.kind.wired_to:
         wires = device.place["config"].values() if device.kind.config else [device.number]
         yield from (join(wired_to, wire) for wire in wires)
 
 
-def _of_row(row: Row, device: Device, is_counted: bool, constants: RobotConstants) -> Iterator[Input]:
+def _of_row(row: TableRow, device: TreeDevice, is_counted: bool, constants: RobotConstants) -> Iterator[Input]:
     """Return what a sensor measures of one row: nothing, one value, or a list of values.
 
     :param is_counted: whether a counter counts its edges

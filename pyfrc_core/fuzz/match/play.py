@@ -27,7 +27,7 @@ from ...runtime.scripts.player import Player
 from ...runtime.scripts.script import InputScript, ScriptError, Step
 from ...runtime.scripts.targets import RESTART, Targets
 from ...runtime.seeds import seed_generators
-from ...runtime.turns import take
+from ...runtime.turns import acquire
 from ...wpi import network
 from ..guidance.seed_schedule import SeedSchedule, match_seconds
 from ..guidance.states import RobotStates
@@ -62,7 +62,7 @@ def play(project: Project, log: CrashLog, task: Task) -> MatchResult:
 
     :param log: where to write a crash report when the robot's code cannot be stopped
     """
-    take()
+    acquire()
     if isinstance(task, ReplayTask):
         if len(boots_of(task.script)) > 1:
             replayed: MatchResult = play_parts(project, partial(_replay, task=task), task.quietly)

@@ -57,8 +57,8 @@ def known_project(project: Project) -> Project:
 
 def prepare_interpreter(project: Project) -> InitialState:
     """Import what each match needs; return the state in which each is to begin."""
-    from ...runtime.as_good_as_new.state import ProcessState
     from ...runtime.patches.install import patches
+    from ...runtime.pristine.state import ProcessState
     from . import imported_robot, play  # noqa: F401
 
     known_project(project)

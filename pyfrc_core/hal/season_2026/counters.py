@@ -24,7 +24,7 @@ _MAX_PERIOD = 0.5
 _Mode = wpilib.Counter.Mode
 
 
-class Source:
+class EdgeInput:
     """A digital input that a counter reads.
 
     :param on_edge: a method to call at each edge with whether the input has become true
@@ -82,8 +82,8 @@ class EdgeCounter:
         self.high_pulses = True
         self.max_period = _MAX_PERIOD
         self.distance_per_pulse = 1.0
-        self.up: Source | None = None
-        self.down: Source | None = None
+        self.up: EdgeInput | None = None
+        self.down: EdgeInput | None = None
         self._edge: float | None = None
         self._period = math.inf
 
@@ -93,13 +93,13 @@ class EdgeCounter:
         :param name: ``up`` or ``down``
         :param source: a channel, or a `DigitalSource`; an analog trigger, and None, counts nothing
         """
-        before: Source | None = getattr(self, name)
+        before: EdgeInput | None = getattr(self, name)
         if before is not None:
             before.close()
         channel = source if isinstance(source, int) else None
         if isinstance(source, wpilib.DigitalInput):
             channel = source.getChannel()
-        found = None if channel is None else Source(channel, self._on_up if name == "up" else self._on_down)
+        found = None if channel is None else EdgeInput(channel, self._on_up if name == "up" else self._on_down)
         setattr(self, name, found)
 
     @property

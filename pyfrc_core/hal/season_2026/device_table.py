@@ -24,7 +24,7 @@ _LSB = 1220703e-9  # volts per count of the 12-bit converter, as in the HAL
 
 
 def _relay_initialized(relay: Any) -> bool:
-    return relay.getInitializedForward() or relay.getInitializedReverse()
+    return bool(relay.getInitializedForward() or relay.getInitializedReverse())
 
 
 def _initialize_relay(relay: Any, value: bool) -> None:

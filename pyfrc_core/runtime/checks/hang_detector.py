@@ -165,7 +165,7 @@ class HangDetector:
 
     def _watch(self) -> None:
         me = ThreadTimes()
-        seen, stood = self._progress(), _Standing()
+        seen, stood = self._progress(), _Stall()
         while not self._interruption.over:
             self._have_c_code_watch()
             ident, times = self._whose_turn()
@@ -176,8 +176,8 @@ class HangDetector:
             progress = self._progress()
             if progress != seen or progress is None:
                 if stood.seconds:
-                    self._tell(None)
-                seen, stood = progress, _Standing()
+                    self._report(None)
+                seen, stood = progress, _Stall()
                 continue
             elapsed, used = _wall() - wall, max(0.0, times.cpu() - cpu)
             stood.seconds += min(elapsed, 2 * self._look_seconds)
@@ -193,7 +193,7 @@ class HangDetector:
                 # The system adds the time of a starved thread when that is over: then it is more than this look.
                 stood.waited += min(elapsed - used, 2 * self._look_seconds)
             run = active_run.run
-            self._tell(Standstill(stood.seconds, place, None if run is None else run.clock.now))
+            self._report(Standstill(stood.seconds, place, None if run is None else run.clock.now))
             if self.judges and self._is_too_long(stood):
                 self._judge(stood, ident, place)
 
@@ -202,11 +202,11 @@ class HangDetector:
             return self._blocked_seconds
         return self._hang_seconds * (self.outside_factor if self._running is None and self._everything else 1.0)
 
-    def _is_too_long(self, stood: _Standing) -> bool:
+    def _is_too_long(self, stood: _Stall) -> bool:
         part = 1.0 if self.raised is None else _UNWINDING
         return stood.computed >= part * self._limit(True) or stood.waited >= part * self._limit(False)
 
-    def _judge(self, stood: _Standing, ident: int, place: str) -> None:
+    def _judge(self, stood: _Stall, ident: int, place: str) -> None:
         if self.raised is not None:
             self._give_up(str(self.raised))
         self.raised = TestFroze(self._explain(stood, ident, place))
@@ -237,7 +237,7 @@ class HangDetector:
         running = self._running  # asked once: the code may stop running meanwhile
         return self._watched if running is None else running.threads.whose_turn()
 
-    def _place(self, ident: int, stood: _Standing) -> tuple[int, str, bool]:
+    def _place(self, ident: int, stood: _Stall) -> tuple[int, str, bool]:
         """Return the thread that stands, the user's line, and whether that imports a library.
 
         Of the functions that have not returned since the code stands, it is the innermost one: what an endless loop
@@ -248,14 +248,15 @@ class HangDetector:
         imports = False
         innermost = frame = current_frames().get(ident)
         stood.calls = [each for each in outwards(frame) if not stood.calls or each in stood.calls]
-        for call in outwards(stood.calls[0] if stood.calls else frame) if self._files is not None else ():
-            if (line := self._files.line_of_frame(call)) is not None:
+        line_of = self._files.line_of_frame if self._files is not None else lambda call: None
+        for call in outwards(stood.calls[0] if stood.calls else frame):
+            if (line := line_of(call)) is not None:
                 return ident, line, imports
             imports = imports or call.f_code.co_filename.startswith(_IMPORT)
         known = f"{innermost.f_code.co_filename}:{innermost.f_lineno}" if innermost is not None else "unknown"
         return ident, known, imports
 
-    def _tell(self, standstill: Standstill | None) -> None:
+    def _report(self, standstill: Standstill | None) -> None:
         """Write where the code stands, for those who wait for it."""
         if self._log is not None:
             self._log.set_standstill(standstill)
@@ -273,7 +274,7 @@ class HangDetector:
             seconds = max(_DUMP_LEAST, _DUMP_PART * self._hang_seconds)
             faulthandler.dump_traceback_later(seconds, repeat=True, file=file)
 
-    def _explain(self, stood: _Standing, ident: int, place: str) -> str:
+    def _explain(self, stood: _Stall, ident: int, place: str) -> str:
         computes = stood.computed >= self._limit(True)
         seconds = f"{self._limit(computes):g} s"
         run, who = active_run.run, "the test"
@@ -307,7 +308,7 @@ class HangDetector:
         exit_now(EXIT_HANGS)
 
 
-class _Standing:
+class _Stall:
     """For how long code has stood, in seconds."""
 
     def __init__(self) -> None:

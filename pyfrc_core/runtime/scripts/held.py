@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from ...hal import HalData
 
 
-class Held:
+class HeldValues:
     """The values that are held in one run.
 
     :param entries: writes those of NetworkTables

@@ -23,7 +23,7 @@ from ...hal import HalData, LiveDict, format_path, parse_path
 from ...hal.rows import made_by_robot, row_of
 from ...wpi import station
 from ..clock import to_us
-from .held import Held
+from .held import HeldValues
 from .network_entries import NetworkEntries
 from .network_targets import NETWORK
 from .sensors import HOLD
@@ -82,7 +82,7 @@ class Targets:
         self._when_network_written = when_network_written
         self._entries = NetworkEntries()
         #: What a log measured.
-        self.held = Held(hal_data, self._entries)
+        self.held = HeldValues(hal_data, self._entries)
         #: Where `hal_data` has what was written, if that always leads to the same dict or list: most writes do.
         self._places: dict[str, tuple[Any, Any]] = {}
         self._countdown = Countdown()

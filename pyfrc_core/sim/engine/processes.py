@@ -118,7 +118,7 @@ class RobotProcesses:
             self._ended = threading.Event()
             if self._host is None or self._host.poll() is not None:
                 self._begin_host()
-            self._tell_host(Launch(self._number, pickle.dumps(job), self._crash_log(self._number)))
+            self._send_to_host(Launch(self._number, pickle.dumps(job), self._crash_log(self._number)))
             return self._number
 
     def send(self, command: object) -> None:
@@ -134,7 +134,7 @@ class RobotProcesses:
         with self._lock:
             self._robot, self._for_robot = None, []
             if self._forks:
-                self._tell_host(Kill())
+                self._send_to_host(Kill())
             elif self._host is not None:
                 self._end_host()
 
@@ -153,7 +153,7 @@ class RobotProcesses:
         with self._lock:
             self._preloaded = modules
             if self._forks:
-                self._tell_host(Preload(modules))
+                self._send_to_host(Preload(modules))
             elif self._spare is not None and self._spare.connection is not None:
                 with suppress(OSError):  # it has ended
                     self._spare.connection.send(Preload(modules))
@@ -226,7 +226,7 @@ class RobotProcesses:
         kill_group(host)
         host.wait()
 
-    def _tell_host(self, message: object) -> None:
+    def _send_to_host(self, message: object) -> None:
         if self._host_connection is None:
             self._for_host.append(message)
             return
@@ -248,7 +248,7 @@ class RobotProcesses:
                 if who == self._host_name and self._host is not None:
                     self._host_connection = connection
                     for message in self._for_host:
-                        self._tell_host(message)
+                        self._send_to_host(message)
                     self._for_host.clear()
                     if self._forks:
                         self._host_reader = _thread(self._hear_host, "pyfrc sim: host", connection)

@@ -48,8 +48,8 @@ def start_interpreters(project: Project, options: TestOptions) -> Interpreters:
 def _prepare(main_file: Path) -> InitialState:
     """Import what each test needs; return the state in which each is to begin."""
     from ...project import Project
-    from ...runtime.as_good_as_new.state import ProcessState
     from ...runtime.patches.install import patches
+    from ...runtime.pristine.state import ProcessState
     from .. import pytest_plugin  # noqa: F401
     from . import messages, spawned  # noqa: F401
 

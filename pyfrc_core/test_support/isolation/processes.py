@@ -18,7 +18,7 @@ from ...processes.interpreter import SpawnedWorker
 from ...processes.reuse import Interpreters
 from ...processes.standstill import StandstillNotice
 from ...processes.worker import ForkedWorker, Send, Worker
-from ...runtime.turns import agreed, take
+from ...runtime.turns import acquire, lock_directory
 from ..pytest_plugin import PyFrcPlugin
 from .messages import ReportSender
 from .uncaptured import UncapturedOutput
@@ -91,7 +91,7 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin, interpreters: Interpret
         item.nodeid,
         replace(plugin.project),
         plugin.options,
-        agreed(),
+        lock_directory(),
         plugin.published,
         all(
             getattr(each, "__name__", "") == AUTOLOADED for each, _ in item.config.pluginmanager.list_plugin_distinfo()
@@ -128,7 +128,7 @@ def _run_in_fork(
     send: Send,
     log: CrashLog,
 ) -> None:
-    take()
+    acquire()
     capture_into(item.config, files)
     if output is not None:
         output.connect_this_process()

@@ -35,7 +35,7 @@ class TestJob:
 
     :param args: pytest's arguments
     :param directory: where pytest was called
-    :param turns: see `turns.agreed`
+    :param turns: see `turns.lock_directory`
     :param project: without what the other process has read of it
     :param published: see `PyFrcPlugin`
     :param no_plugins: whether no plugin is installed but pyfrc's own
@@ -69,11 +69,11 @@ class OnlyOneTest:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
-        from ...runtime.turns import take
+        from ...runtime.turns import acquire
         from .messages import ReportSender
 
         self._send((OUTPUT, _capture_into_files(session.config, self._job.turns)))
-        take(self._job.turns)
+        acquire(self._job.turns)
         self._plugin.crash_log = self._log
         self._log.enable_fault_handler()  # pytest has one of its own
         for item in session.items:

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 
 import wpilib
 
-from ....hal.season_2026.counters import EdgeCounter, Source, take_counter
+from ....hal.season_2026.counters import EdgeCounter, EdgeInput, take_counter
 from ....patch_table import Patch
 
 _Mode = wpilib.Counter.Mode
@@ -104,7 +104,7 @@ def _first(args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
     return args[0] if args else next(iter(kwargs.values()))
 
 
-def _set_edges(source: Source | None, rising: bool, falling: bool) -> None:
+def _set_edges(source: EdgeInput | None, rising: bool, falling: bool) -> None:
     if source is not None:
         source.rising, source.falling = rising, falling
 

@@ -11,7 +11,7 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 from ...project.robot_files import RobotFiles
-from .part import Part
+from .part import StatePart
 
 #: Where the classes are of which code makes something by hand that is to stand for a module.
 _PLAIN = ("builtins", "types", "unittest.mock")
@@ -25,7 +25,7 @@ _IMPORTED_ANEW = ("pathplannerlib",)
 _MADE_ONCE = ("xrp",)
 
 
-class ProjectModules(Part):
+class ProjectModules(StatePart):
     """What is imported, and from where."""
 
     def __init__(self, files: RobotFiles) -> None:

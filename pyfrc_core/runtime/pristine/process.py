@@ -13,10 +13,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from .part import Part
+from .part import StatePart
 
 
-class Directory(Part):
+class Directory(StatePart):
     """The current directory."""
 
     def __init__(self) -> None:
@@ -30,7 +30,7 @@ class Directory(Part):
             yield f"the current directory {Path.cwd()}"
 
 
-class Environment(Part):
+class Environment(StatePart):
     """The environment variables."""
 
     def __init__(self) -> None:
@@ -55,7 +55,7 @@ class Environment(Part):
 _SIGNALS = [number for number in signal.Signals if number in signal.valid_signals()]
 
 
-class Signals(Part):
+class Signals(StatePart):
     """The handlers of signals."""
 
     def __init__(self) -> None:
@@ -74,7 +74,7 @@ class Signals(Part):
         return [number for number, handler in self._before.items() if signal.getsignal(number) != handler]
 
 
-class Streams(Part):
+class Streams(StatePart):
     """The standard streams, and the functions that Python calls at certain events."""
 
     _NAMES = (
@@ -110,7 +110,7 @@ class Streams(Part):
                 yield f"{owner.__name__}.{name}"
 
 
-class Logging(Part):
+class Logging(StatePart):
     """The handlers and levels of `logging`."""
 
     def __init__(self) -> None:
@@ -142,7 +142,7 @@ def _state_of(logger: logging.Logger) -> tuple[tuple[Any, ...], tuple[Any, ...],
     return tuple(logger.handlers), tuple(logger.filters), logger.level, logger.propagate, logger.disabled
 
 
-class Randomness(Part):
+class Randomness(StatePart):
     """The state of Python's random generator. Each run seeds numpy's (`seeds`)."""
 
     def __init__(self) -> None:

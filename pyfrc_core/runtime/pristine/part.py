@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 
 
-class Part(ABC):
+class StatePart(ABC):
     """One kind of thing, as it is when this is created."""
 
     def restore(self) -> None:  # noqa: B027 - some can only be looked at

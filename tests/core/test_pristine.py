@@ -25,8 +25,8 @@ PATIENCE = 60
 
 def prepare(root: Path) -> InitialState:
     """Return the state of an interpreter for the robots of a project."""
-    from pyfrc_core.runtime.as_good_as_new.state import ProcessState
     from pyfrc_core.runtime.patches.install import patches
+    from pyfrc_core.runtime.pristine.state import ProcessState
 
     files = RobotFiles(root)
     patches.install(files)
@@ -48,7 +48,7 @@ def do(code: str, root: Path, send: Send, log: CrashLog) -> None:
 
 def notice(code: str, root: Path, send: Send, log: CrashLog) -> None:
     """Run code, and send what is noticed of it."""
-    from pyfrc_core.runtime.as_good_as_new.state import ProcessState
+    from pyfrc_core.runtime.pristine.state import ProcessState
 
     state = prepare(root)
     assert isinstance(state, ProcessState)

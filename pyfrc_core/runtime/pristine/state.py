@@ -10,15 +10,15 @@ from contextlib import suppress
 from ...compat.unrepeatable import forget_all_noise
 from ...processes.exit import before_sudden_exit
 from ...project.robot_files import RobotFiles
+from .. import turns
 from ..exceptions import TestEnded, TestFroze
 from ..patches import data_logs
 from ..patches.active_run import active_run
 from ..patches.object_hashes import restart_numbers
 from ..threads import cooperative
-from ..turns import give_back
 from .left_behind import Commands, Devices, ProjectObjects, Tables, Threads
 from .modules import ProjectModules
-from .part import Part
+from .part import StatePart
 from .process import Directory, Environment, Logging, Randomness, Signals, Streams
 from .replaced_names import ReplacedNames
 
@@ -32,7 +32,7 @@ _LAST_ERROR = ("last_exc", "last_type", "last_value", "last_traceback")
 _MOST_RUNS = 500
 
 
-class LastRun(Part):
+class LastRun(StatePart):
     """The run, which is ended and closed."""
 
     def __init__(self) -> None:
@@ -49,7 +49,7 @@ class LastRun(Part):
         cooperative.scope.waiting_to_begin.clear()
         forget_all_noise()
         restart_numbers()
-        give_back()
+        turns.release()
         for name in _LAST_ERROR:
             vars(sys).pop(name, None)
 
@@ -71,7 +71,7 @@ class ProcessState:
         self._forget = list(forget)
         modules = ProjectModules(files)
         #: In the order in which they are put back.
-        self._parts: list[Part] = [
+        self._parts: list[StatePart] = [
             LastRun(),
             Tables(),  # before the scheduler, which a dashboard may show
             Commands(),

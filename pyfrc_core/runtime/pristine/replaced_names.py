@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any
 
 from .modules import ProjectModules
-from .part import Part
+from .part import StatePart
 
 _ABSENT: Any = object()
 
@@ -19,7 +19,7 @@ _ABSENT: Any = object()
 _PRIVATE = re.compile(r"(^|\.)_|^(pyfrc_core|pygments|pluggy)\b")
 
 
-class ReplacedNames(Part):
+class ReplacedNames(StatePart):
     """The attributes of modules and their classes that can be called."""
 
     def __init__(self, modules: ProjectModules) -> None:

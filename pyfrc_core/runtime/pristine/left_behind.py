@@ -12,10 +12,10 @@ from ...hal import existing_devices
 from ...hal.reset import forget_inputs, forget_what_stays
 from ...wpi import commands, dashboards, network, sim_devices
 from .modules import ProjectModules
-from .part import Part
+from .part import StatePart
 
 
-class Commands(Part):
+class Commands(StatePart):
     """The command scheduler: the next run gets a new one."""
 
     def restore(self) -> None:
@@ -26,7 +26,7 @@ class Commands(Part):
         commands.forget_all()  # to ask for it has made the next scheduler
 
 
-class Tables(Part):
+class Tables(StatePart):
     """The entries of the robot's tables."""
 
     def __init__(self) -> None:
@@ -43,7 +43,7 @@ class Tables(Part):
                 yield f"the entry {name} of NetworkTables"
 
 
-class Threads(Part):
+class Threads(StatePart):
     """The threads that Python knows."""
 
     def __init__(self) -> None:
@@ -55,7 +55,7 @@ class Threads(Part):
                 yield f"the thread {thread.name!r}"
 
 
-class ProjectObjects(Part):
+class ProjectObjects(StatePart):
     """The instances of classes of the project: all are gone after a run, unless something still holds them."""
 
     def __init__(self, modules: ProjectModules) -> None:
@@ -84,7 +84,7 @@ class ProjectObjects(Part):
         return [each for each in found if not issubclass(type(each), Enum)]
 
 
-class Devices(Part):
+class Devices(StatePart):
     """The devices: each ends with the object that has made it."""
 
     def __init__(self) -> None:
