@@ -27,34 +27,13 @@ from .paths import join
 #: ``output``, what robot code sets. Empty: a setting, or another form of such a value.
 Role = Literal["", "input", "measured", "output"]
 
+_Switched = Literal["switch", "pulses", "connected", "option"]
+_Electric = Literal["volts", "battery", "rail", "amperes"]
+_Angle = Literal["angle", "half turns", "heading", "turns", "radians", "rotations"]
+_Speed = Literal["rate", "turning", "radians per second", "rpm"]
+_Moved = Literal["acceleration", "m/s2", "range"]
 #: What a sensor measures, with the range and the unit of the real thing: see `fuzz.inputs.values.SPANS`.
-Quantity = Literal[
-    "switch",
-    "pulses",
-    "connected",
-    "volts",
-    "battery",
-    "count",
-    "rate",
-    "angle",
-    "half turns",
-    "heading",
-    "turning",
-    "turns",
-    "radians",
-    "radians per second",
-    "rotations",
-    "rpm",
-    "acceleration",
-    "m/s2",
-    "amperes",
-    "celsius",
-    "hertz",
-    "rail",
-    "range",
-    "whole",
-    "option",
-]
+Quantity = Literal[_Switched, _Electric, _Angle, _Speed, _Moved, "count", "celsius", "hertz", "whole"]
 
 #: How the simulator shows a value. Outputs: ``meter`` (a bar from its range's middle, or from 0), ``lamp``, ``lamps``,
 #: ``relay``, ``bars``, ``leds``, ``text``. Inputs: ``switch``, ``slider`` and ``number``, which can be set.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 from operator import attrgetter
 from typing import Any
@@ -75,21 +76,22 @@ def battery(name: str) -> DeviceField:
     return Measured("vin_voltage", name, FLOAT, quantity="battery", called="battery voltage", shown=shown)
 
 
-def rail(name: str, *values: str) -> tuple[DeviceField, ...]:
-    """Return the values of a supply of the controller's, such as ``3v3``, which are varied for code that asks for them.
+_OF_A_RAIL: tuple[tuple[str, str, ValueKind, Quantity], ...] = (
+    ("Voltage", "Voltage", FLOAT, "rail"),
+    ("Current", "Current", FLOAT, "amperes"),
+    ("Active", "Enabled", BOOL, "switch"),
+    ("Faults", "FaultCount", INT32, "whole"),
+)
 
-    :param values: WPILib's names for its voltage, current, state and faults, and for its functions' names
+
+def rail(rail: str) -> Iterator[DeviceField]:
+    """Return the values of a supply of the controller's, which are varied for code that asks for them.
+
+    :param rail: the end of WPILib's names, such as ``3V3``
     """
-    kinds: tuple[tuple[str, ValueKind, Quantity], ...] = (
-        ("voltage", FLOAT, "rail"),
-        ("current", FLOAT, "amperes"),
-        ("active", BOOL, "switch"),
-        ("faults", INT32, "whole"),
-    )
-    return tuple(
-        Measured(f"user_{what}_{name}", hal, kind, recorded=False, quantity=quantity, asked_by=asked_by)
-        for (what, kind, quantity), hal, asked_by in zip(kinds, values[:4], values[4:], strict=True)
-    )
+    for what, asked, kind, quantity in _OF_A_RAIL:
+        name, hal = f"user_{what}_{rail.strip('_')}".lower(), f"User{what}{rail}"
+        yield Measured(name, hal, kind, recorded=False, quantity=quantity, asked_by=asked + rail)
 
 
 #: The pulse that stops a PWM motor controller, in microseconds: within the deadband of all of them. Not 0, as on the

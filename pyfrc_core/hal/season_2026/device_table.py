@@ -59,14 +59,7 @@ _POWER = DeviceKind(
         shared.battery("VInVoltage"),
         Measured("vin_current", "VInCurrent", FLOAT, quantity="amperes", asked_by="InputCurrent"),
         F("brownout_voltage", "BrownoutVoltage", FLOAT),
-        *chain.from_iterable(
-            shared.rail(
-                name.lower(),
-                *(f"User{each}{name}" for each in ("Voltage", "Current", "Active", "Faults")),
-                *(f"{each}{name}" for each in ("Voltage", "Current", "Enabled", "FaultCount")),
-            )
-            for name in ("6V", "5V", "3V3")
-        ),
+        *chain.from_iterable(map(shared.rail, ("6V", "5V", "3V3"))),
         HAS_SOURCE,
     ),
     shared.controller_sim,

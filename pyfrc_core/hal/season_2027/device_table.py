@@ -52,11 +52,7 @@ _POWER = DeviceKind(
         shared.battery("vin_voltage"),
         F("brownout_voltage", "brownout_voltage", FLOAT),
         F("brownout_recovery_voltage", "brownout_recovery_voltage", FLOAT, recorded=False),
-        *shared.rail(
-            "3v3",
-            *(f"user_{each}_3v3" for each in ("voltage", "current", "active", "faults")),
-            *(f"{each}_3v3" for each in ("voltage", "current", "enabled", "fault_count")),
-        ),
+        *shared.rail("_3v3"),
         HAS_SOURCE,
     ),
     shared.controller_sim,
