@@ -284,8 +284,10 @@ class PhysicsInterface:
 
         :param numbered: whether those at channels of the controller; else its own ones
         """
-        for kind, field in rows.gyros(numbered) if self._hal_data is not None else ():
-            for gyro in self._hal_data[kind.name] if numbered else [self._hal_data[kind.name]]:
+        if (tree := self._hal_data) is None:
+            return
+        for kind, field in rows.gyros(numbered):
+            for gyro in tree[kind.name] if numbered else [tree[kind.name]]:
                 yield gyro, field
 
     def _turn_gyros(self, degrees: float, numbered: bool) -> None:
