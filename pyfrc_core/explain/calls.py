@@ -7,6 +7,7 @@ import builtins
 import inspect
 import re
 from types import FrameType, ModuleType
+from typing import Any
 
 from ..errors import nearest, text_of
 from ..project.robot_files import RobotFiles
@@ -73,7 +74,7 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return _called_value(*where, files)
     if found := _NO_NUMBER.match(text):
         return _no_number(found, *where)
-    if isinstance(error, KeyError) and frames_of(error)[-1] is where[0]:
+    if isinstance(error, (KeyError, IndexError)) and frames_of(error)[-1] is where[0]:
         return _key(error, *where)
     if text == "TypeError: 'float' object cannot be interpreted as an integer":
         return _whole_number(*where)
@@ -197,10 +198,17 @@ def _no_number(found: re.Match[str], frame: FrameType, line: int) -> Explanation
     return None
 
 
-def _key(error: KeyError, frame: FrameType, line: int) -> Explanation | None:
-    """Explain a key that a dict of the user's does not have."""
+def _key(error: KeyError | IndexError, frame: FrameType, line: int) -> Explanation | None:
+    """Explain a key that a dict of the user's does not have, or an index that a list does not have."""
     for each in ast.walk(statement_at(frame, line)):
-        held = value_of(each.value, frame) if isinstance(each, ast.Subscript) else None
+        held: Any = value_of(each.value, frame) if isinstance(each, ast.Subscript) else None
+        at = value_of(each.slice, frame) if isinstance(each, ast.Subscript) else UNKNOWN
+        if isinstance(each, ast.Subscript) and type(held) in (list, tuple) and type(at) is int and at >= len(held):
+            written, count = ast.unparse(each.value), len(held)
+            text = f"{ast.unparse(each)}: {written} has {counted(count, 'value')}, and indexes begin with 0"
+            return Explanation(
+                text, f"The last one is {written}[{count - 1}]" if held else f"Has anything filled {written}?"
+            )
         if isinstance(each, ast.Subscript) and type(held) is dict and error.args[0] not in held:
             written, hint = ast.unparse(each.value), nearest(str(error.args[0]), list(map(str, held)))
             got = f", from {ast.unparse(each)}" * (not isinstance(each.slice, ast.Constant))
@@ -283,7 +291,7 @@ def _count(found: re.Match[str], frame: FrameType, line: int, files: RobotFiles)
             got = f"with {found['keyword']}="
         elif found["missing"]:
             got = f"without {found['missing']}"
-        if call.args and ast.unparse(call.args[0]) == "self" == ast.unparse(call.func).partition(".")[0]:
+        if call.args and ast.unparse(call.args[0]) == "self" and name.startswith(("self.", "super().")):
             rest = ", ".join(map(ast.unparse, call.args[1:]))
             return Explanation(f"{name}() gets self twice: before the dot, and in ()", f"Write {name}({rest}){at}")
         takes = f"It takes: {name}({', '.join(parameters)}){at}"

@@ -48,6 +48,12 @@ def no_command(bound: ast.expr, defined: dict[str, Definition]) -> tuple[str, st
     if isinstance(bound, ast.Lambda):
         return f"the function {written}, and no command", run_once
     called = isinstance(bound, ast.Call)
+    if (
+        isinstance(bound, ast.Call)
+        and isinstance(bound.func, ast.Attribute)
+        and bound.func.attr in ("schedule", "cancel")
+    ):
+        return f"None, from {written}, which runs here, once", f"Write {ast.unparse(bound.func.value)} without it."
     place, definition = defined.get(last_name(bound.func if isinstance(bound, ast.Call) else bound), ("", None))
     if isinstance(definition, ast.FunctionDef):
         returns = any(isinstance(each, ast.Return) and each.value is not None for each in ast.walk(definition))

@@ -113,6 +113,7 @@ GONE = {
     "TestController.set_disabled": "control.set_operator_control(enabled=False)",
     "TestController.enable": "control.set_operator_control(enabled=True) or control.set_autonomous(enabled=True)",
     "TestController.disable": "control.set_operator_control(enabled=False)",
+    **dict.fromkeys(("RobotBase.enable", "RobotBase.disable"), "control.set_operator_control(enabled=True)"),
     "FakeTime.sleep": "fake_time.increment_time_by(seconds), or control.step_timing(...) for a robot that runs",
 }
 

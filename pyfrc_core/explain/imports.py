@@ -83,6 +83,9 @@ def _missing(module: str, root: Path) -> Explanation:
         return Explanation(f"{last} is a class of {parent}, and no module", f"Write: from {parent} import {last}")
     if parent and beside:
         return Explanation(text, f"In {parent}: {nearest(last, beside)}")
+    if (elsewhere := next(root.glob(f"*/{module}.py"), None)) is not None and elsewhere.parent.name != "tests":
+        name = f"{elsewhere.parent.name}.{module}"
+        return Explanation(text, f"It is in {elsewhere.parent.name}/: write from {name} import ..., or import {name}")
     if _in_requirements({top, PACKAGES.get(top, top)}, root / "requirements.txt"):
         return Explanation(text, "Install what requirements.txt names: python -m pip install -r requirements.txt")
     if top in PACKAGES:

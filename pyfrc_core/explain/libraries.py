@@ -188,7 +188,7 @@ ROWS = (
         "A state may have the parameters self, tm, state_tm and initial_call.",
     ),
     KnownError(
-        r"ValueError: timed_state functions must specify a duration",
+        r"(ValueError: timed_state functions must specify|TypeError: timed_state\(\) missing .*'duration')",
         "a timed_state without a duration",
         "Write @timed_state(duration=2), in seconds.",
     ),
@@ -256,6 +256,11 @@ ROWS = (
         r"TypeError: can only concatenate str",
         "",
         'Write the value into the text, as in: f"speed: {{value}}"',
+    ),
+    KnownError(
+        r"TypeError: descriptor '__init__' of 'super' object needs an argument",
+        "super is a function, and is not called here",
+        "Write super().__init__()",
     ),
     KnownError(
         r"TypeError: can't multiply sequence by non-int",
@@ -335,7 +340,11 @@ def _explained(row: KnownError, found: re.Match[str], error: BaseException, file
         words["place"] = f"{files.relative(place['file'])}:{place['line']}"
     line = line_of_class(cls, files, row.at.format_map(words)) if cls is not None and here is None else ""
     remedy = in_2027(row.remedy).format_map(words)
-    if before and before == here:
+    outer = next(iter(_first_stack(str(error), files)), ("", 0))
+    if before and outer[0] and not files.is_robot_code(outer[0]):
+        words["since"] = f": {files.relative(outer[0])}:{outer[1]} in the test has made it before the run does"
+        remedy = "Remove that line: control.run_test(...) calls robotInit and the other methods itself."
+    elif before and before == here:
         again = _made_by(error, files) or Explanation(words["since"], _MADE_AGAIN, line)
         words["since"], remedy, line = again.text, again.remedy, again.place
     elif first is not None and is_in_opmode(*first) and (now := users_frame(error, files)) is not None:

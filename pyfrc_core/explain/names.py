@@ -149,7 +149,7 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
     is_library = any(base.partition(".")[0] in (*_KNOWN, "pyfrc_core") for base in bases)
     if is_library and (instead := earlier_name(name, owner)):
         what = module if is_module else owner.__name__
-        any_more = "" if owner.__module__.startswith("pyfrc_core") else " any more"
+        any_more = " any more" if is_module or owner.__module__.partition(".")[0] in _KNOWN else ""
         return Explanation(f"{what} has no {name}{any_more}", f"Instead: {instead}.")
     if is_module and module in _KNOWN and find_spec(f"{module}.{name}") is not None:
         return Explanation(remedy=f"Is this line missing at the top: import {module}.{name}")

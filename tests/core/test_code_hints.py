@@ -208,6 +208,11 @@ def test_a_command_that_is_not_returned(line: str, written: str) -> None:
             "self.run(a) never ends by itself, so what follows it never begins / Write self.run(a).withTimeout(2)",
         ),
         ("return self.go().andThen(self.go())", "self.go() never ends by itself"),
+        ("a.onTrue(commands2.cmd.none().schedule())", "onTrue() got None, from commands2.cmd.none().schedule(), which"),
+        (
+            "a.onTrue(commands2.InstantCommand(self.stop()))",
+            "self.stop() runs here, once, and InstantCommand() gets None",
+        ),
         ("a.onTrue(lambda: self.stop())", "onTrue() got the function lambda: self.stop(), and no command"),
     ],
 )
@@ -294,6 +299,24 @@ def test_an_angle_in_degrees_where_radians_belong(line: str, right: str) -> None
     assert [f"Write {right}" in each for each in hints(text)] == [True] * bool(right)
 
 
+def test_a_method_that_is_assigned_and_asked_like_its_value() -> None:
+    text = """
+    class Robot:
+        def robotInit(self):
+            self.beam = wpilib.DigitalInput(3)
+        def go(self):
+            broken = self.beam.get
+            if broken: self.stop()
+    """
+    (found,) = hints(text)
+    assert found.startswith("6: broken is the function self.beam.get, and always counts as true / Write broken = self.")
+
+
+def test_a_mode_outside_of_the_robots_class() -> None:
+    (found,) = hints("class Robot: pass\ndef teleopPeriodic(self): pass\n")
+    assert found.startswith("2: WPILib never calls teleopPeriodic: it is outside of the robot's class")
+
+
 def test_a_value_that_nothing_uses() -> None:
     text = "import wpimath\ndef go(speed, gyro):\n    wpimath.applyDeadband(speed, 0.1)\n    gyro.getAngle()\n"
     (found,) = hints(text)
@@ -301,6 +324,13 @@ def test_a_value_that_nothing_uses() -> None:
 
 
 def test_a_test_with_a_robot_of_its_own_and_late_inputs() -> None:
+    direct = (
+        "def test_it(robot):\n    robot.robotInit()\ndef test_set(hal_data):\n    hal_data['pwm'][0]['value'] = 1\n"
+    )
+    assert [each[:46] for each in hints(direct, is_test=True)] == [
+        "4: hal_data['pwm'][0]['value'] = 1 sets an out",
+        "2: the test calls robot.robotInit() itself, an",
+    ]
     test = """
     import unittest
     class MyRobot(wpilib.TimedRobot): pass

@@ -286,6 +286,17 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ("speed += 1", "speed has no value yet", "Write self.speed += 1, and self.speed = 0 in robotInit"),
         ("self.speed = 1\nspeed += 1", "speed has no value yet", "Write self.speed += 1."),
         ("def go(a, *, speed): pass\ngo(1)", "go() was called without 'speed'", "It takes: go(a, speed=...)"),
+        ("a = [1, 2]\na[2]", "a[2]: a has 2 values, and indexes begin with 0", "The last one is a[1]"),
+        ("max = 0.5\nmax(1, 2)", "max is 0.5 here, and no longer Python's function max()", "another name"),
+        ("speed = 0.5,\nwpilib.PWMSparkMax(1).set(speed)", "set() got speed, which is (0.5,)", "a comma too much"),
+        (
+            "class Arm:\n    def up(self, speed): pass\n    def go(self): self.up(self, 1)\nArm().go()",
+            "self.up() gets self twice",
+            "Write self.up(1)",
+        ),
+        ("class A:\n    def __init__(self): super.__init__()\nA()", "super is a function", "Write super().__init__()"),
+        ("wpilib.applyDeadband(1, 2)", "has no attribute 'applyDeadband'", "from wpimath import applyDeadband"),
+        ("inchesToMeters(3)", "'inchesToMeters' is not defined", "from wpimath.units import inchesToMeters"),
         # A name that another class has
         (
             "self.pad = wpilib.Joystick(0)\nself.pad.getLeftY()",

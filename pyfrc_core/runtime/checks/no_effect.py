@@ -35,12 +35,24 @@ def find_lines_without_effect(kinds: Kinds) -> Iterator[CodeWarning]:
     assigned = {name for source in sources for name in _assigned(source.tree)}
     methods = {name for source in sources for name in _methods(source.tree)} - assigned
     for source in sources:
+        last = {id(each.body[-1]): each for each in ast.walk(source.tree) if isinstance(each, ast.FunctionDef)}
+        asked = {  # by name, methods of a library that are assigned without being called
+            name: each.value
+            for each in ast.walk(source.tree)
+            if isinstance(each, ast.Assign) and isinstance(each.targets[0], ast.Name)
+            if isinstance(each.value, ast.Attribute) and kinds.only_returns(ast.Call(each.value, [], []), source)
+            for name in [each.targets[0].id]
+        }
         for node in _nodes(source.tree):
             if isinstance(node, ast.Expr):
-                yield from _of_expression(node.value, kinds, source)
+                yield from _of_expression(node.value, kinds, source, last.get(id(node)))
             elif isinstance(node, ast.Assign):
                 yield from _of_assignment(node, kinds, source)
             elif isinstance(node, (ast.If, ast.While, ast.IfExp, ast.Assert)):
+                test = asked.get(node.test.id) if isinstance(node.test, ast.Name) else None
+                if test is not None and isinstance(node.test, ast.Name):
+                    text = f"{node.test.id} is the function {ast.unparse(test)}, and always counts as true"
+                    yield CodeWarning(source.at(node.test), text, f"Write {node.test.id} = {ast.unparse(test)}()")
                 for each in _conditions(node.test):
                     name = last_name(each)
                     written = ast.unparse(each)
@@ -76,7 +88,9 @@ def _nodes(node: ast.AST) -> Iterator[ast.AST]:
         yield from _nodes(child)
 
 
-def _of_expression(value: ast.expr, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
+def _of_expression(
+    value: ast.expr, kinds: Kinds, source: Source, around: ast.FunctionDef | None
+) -> Iterator[CodeWarning]:
     """Yield what is wrong with an expression that is a statement of its own."""
     written = ast.unparse(value)
     if isinstance(value, ast.Compare):
@@ -92,6 +106,12 @@ def _of_expression(value: ast.expr, kinds: Kinds, source: Source) -> Iterator[Co
         text = f"{written} is computed, and nothing is done with it"
         yield CodeWarning(source.at(value), text, f"To set it, write: {ast.unparse(value.left)} = {written}")
     elif isinstance(value, ast.Call) and kinds.only_returns(value, source):
+        if around is not None and not any(isinstance(each, ast.Return) for each in ast.walk(around)):
+            if around.name not in names.OF_MODES | names.OF_A_COMMAND:
+                text = f"{around.name}() computes {written}, and returns nothing"
+                yield CodeWarning(source.at(value), text, f"Write return {written}")
+            if around.name not in names.OF_MODES:
+                return
         text = f"{written} returns a value, and nothing is done with it"
         name = ast.unparse(value.args[0]) if value.args and isinstance(value.args[0], (ast.Name, ast.Attribute)) else ""
         keeps = name and isinstance(kinds.called(value, source), BuiltinFunctionType) and "." not in name

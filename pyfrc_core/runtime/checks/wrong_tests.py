@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 
 from ...explain.places import last_name
+from ...wpi import names
 from .code_warning import CodeWarning
 from .kinds import Kinds, object_of
 from .sources import Source
@@ -24,6 +25,10 @@ def find_wrong_tests(kinds: Kinds) -> Iterator[CodeWarning]:
                 remedy = f"Write class {node.name}: without it, assert for self.assertEqual, and robot as a parameter"
                 yield CodeWarning(source.at(node), text, remedy)
             elif isinstance(node, ast.Call):
+                if ast.unparse(node.func) == f"robot.{names.INITIALIZATION}":
+                    text = f"the test calls {ast.unparse(node)} itself, and a run does that again"
+                    remedy = f"Write control.set_operator_control(enabled=True) and {_RUNS}, which calls it"
+                    yield CodeWarning(source.at(node), text, remedy)
                 made = object_of(node.func, source)
                 if isinstance(made, type) and any(each.__name__ == "RobotBase" for each in made.__mro__):
                     text = f"{ast.unparse(node)} makes a robot that nothing runs: no driver station, physics or time"
