@@ -225,7 +225,9 @@ def _wrong(value: str, written: str, kinds: list[str], paths: dict[str, str]) ->
         return f"{written}, which is {value}", f"Is there a comma too much, as in {written} = 0.5,? It makes a tuple."
     classes = [kind for kind in kinds if kind[:1].isupper() and "[" not in kind]
     if re.fullmatch(r"-?\d+(\.\d+)?", value) and classes and len(classes) + len(functions) == len(kinds):
-        return f"{written}, a number, and no {classes[0]}", _object_for(classes[0], written)
+        return f"{written}, a number, and no {classes[0]}", _object_for(
+            class_of(paths.get(classes[0], "")), classes[0], written
+        )
     if classes and value[:1] == "(":
         return f"{written}, and no {classes[0]}", f"Write {classes[0]}(...)"
     return None
@@ -249,18 +251,16 @@ def _value_for(text: str, kinds: list[str]) -> str:
     return f"It must be: {' or '.join(each.rpartition('.')[2] for each in kinds)}."
 
 
-def _object_for(kind: str, written: str) -> str:
-    """Return what to write for an argument that is a number, and must be an object of a class of WPILib's."""
-    home = home_of(kind)
-    cls = getattr(sys.modules.get(home), kind, object)
+def _object_for(cls: type[Any] | None, kind: str, written: str) -> str:
+    """Return what to write for an argument that is a number, and must be an object of a class."""
     if hasattr(cls, "fromDegrees"):
-        return f"Write {kind}.fromDegrees({written}), if it is in degrees: from {home} import {kind}"
-    if getattr(cls, "__module__", "").startswith("wpimath"):
-        return f"Write {kind}(...), from {home} import {kind}"
-    known = vars(sys.modules.get("wpilib", object))
-    derived = [name for name, each in known.items() if isinstance(each, type) and cls in each.__mro__[1:]]
-    example = "PWMSparkMax" if "PWMSparkMax" in derived else next(iter(derived), kind)
-    return f"Write wpilib.{example}({written}), or the name of an object that is made already."
+        return f"Write {kind}.fromDegrees({written}), if it is in degrees: from {home_of(kind)} import {kind}"
+    if kind == "MotorController":
+        return f"Write wpilib.PWMSparkMax({written}), or the name of a motor controller that is made already."
+    name = cls.__qualname__ if cls is not None else kind
+    outer = name.partition(".")[0]
+    home = home_of(outer)
+    return f"Write {name}(...), from {home} import {outer}" if home else f"Pass an object of {name}, and no number."
 
 
 def _pass_function(written: str) -> str:
@@ -303,7 +303,7 @@ def _parameters(text: str) -> list[str]:
         if each[1] == "self":
             continue
         short = re.sub(r"[\w.]+\.(\w+)", r"\1", _NUMBER.sub("number", kind))
-        default = re.sub(r"<([\w.]+): .*>", r"\1", default)
+        default = re.sub(r"<[^>]* at 0x\w+>", "...", re.sub(r"<([\w.]+): .*>", r"\1", default))
         parameters.append(f"{each[1]}: {short}" + (f" = {default}" if equals else ""))
     return parameters
 

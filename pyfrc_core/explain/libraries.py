@@ -112,6 +112,11 @@ ROWS = (
         "CAN ID {id} is used already, by another {kind}",
         "Each motor controller needs a CAN ID of its own, set with REV Hardware Client; create one object for each.",
     ),
+    KnownError(
+        r"RuntimeError: Joystick index is out of range, should be 0-5: port (?P<port>-?\d+)",
+        "there is no joystick {port}: they are 0 to 5",
+        "Write its number in the USB devices of the Driver Station; the first is 0.",
+    ),
     # -- magicbot
     KnownError(
         r"ValueError: Component (?P<name>\w+) \(.*\) must have a method named 'execute'",

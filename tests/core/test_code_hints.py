@@ -63,6 +63,7 @@ def hints(text: str, is_test: bool = False) -> list[str]:
         ("self.at_goal = True", "replaces the method at_goal", "Choose another name"),
         ("if self.pad.getPOV == 90: pass", "getPOV is a function", "self.pad.getPOV()"),
         ("(a and b).onTrue(c)", "and takes one of the triggers", "Write (a & b).onTrue(...)"),
+        ("if self.pad.getPOV(): pass", "self.pad.getPOV() is -1 if nothing is pressed", "Write self.pad.getPOV() == 0"),
         (
             "if wpilib.DriverStation.getAlliance() == 'red': pass",
             "Alliance is never equal to the text 'red'",

@@ -334,7 +334,7 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         (
             "wpilib.drive.DifferentialDrive(0, 1)",
             "got 0, a number, and no MotorController",
-            "Write wpilib.PWMSparkMax(0), or the name",
+            "Write wpilib.PWMSparkMax(0), or the name of a motor",
         ),
         (
             "s = wpilib.DoubleSolenoid(wpilib.PneumaticsModuleType.REVPH, 0, 1)\ns.set('forward')",

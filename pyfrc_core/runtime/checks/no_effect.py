@@ -17,6 +17,7 @@ from ...explain.calls import joined_by_bits
 from ...explain.commands import BINDINGS
 from ...explain.places import last_name
 from ...season import CURRENT
+from ...season.spelling import normalized
 from ...wpi import names
 from .code_warning import CodeWarning
 from .kinds import Kinds
@@ -53,6 +54,11 @@ def find_lines_without_effect(kinds: Kinds) -> Iterator[CodeWarning]:
                 if test is not None and isinstance(node.test, ast.Name):
                     text = f"{node.test.id} is the function {ast.unparse(test)}, and always counts as true"
                     yield CodeWarning(source.at(node.test), text, f"Write {node.test.id} = {ast.unparse(test)}()")
+                if isinstance(node.test, ast.Call) and normalized(last_name(node.test.func)) == "getpov":
+                    written, text = ast.unparse(node.test), "is -1 if nothing is pressed, which counts as true"
+                    yield CodeWarning(
+                        source.at(node.test), f"{written} {text}", f"Write {written} == 0 for up, 90 for right"
+                    )
                 for each in _conditions(node.test):
                     name = last_name(each)
                     written = ast.unparse(each)
