@@ -341,7 +341,8 @@ def meant(name: str, known: list[str]) -> str:
     if same and begins != words[:1] and _words(same[0], whole=True)[:1] != begins:
         same = [each for each in longer if _words(each, whole=True)[:1] == begins] or same
     close = same[:1] or get_close_matches(name, known, n=1, cutoff=0.75 if len(name) > 3 else 0.9) or longer
-    close = close or [each for each in known if len(each) > 3 and set(_words(each, whole=True)) < set(words)]
+    if name[:1].islower():  # reset, for resetEncoder
+        close = close or [each for each in known if len(each) > 3 and set(_words(each, whole=True)) < set(words)]
     return f"Did you mean {' or '.join(close[:_SHOWN])}?" if words and close else ""
 
 
