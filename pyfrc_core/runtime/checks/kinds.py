@@ -152,5 +152,8 @@ def object_of(expression: ast.expr | None, source: Source) -> object:
     """Return what a dotted name is in a file; None for anything else."""
     found: object = source.module if expression is not None else None
     for name in ast.unparse(expression).split(".") if expression is not None else ():
-        found = getattr(found, name, None)
+        try:
+            found = getattr(found, name, None)
+        except Exception:  # an attribute of the user's that is computed, and fails
+            return None
     return found
