@@ -15,6 +15,7 @@ from .verbosity import hint, verbosity
 
 if TYPE_CHECKING:
     from pyfrc_core.migrate.migration import Migration
+    from pyfrc_core.migrate.report import Remark
 
 
 @click.command("migrate")
@@ -62,19 +63,33 @@ def command(directory: Path | None, check: bool, diff: bool, comments: bool, unc
 def _print(done: Migration, written: bool) -> None:
     from pyfrc_core.wording import counted
 
-    count = len(done.after)
+    count, lines = len(done.after), done.report.counts()
     by_hand, to_check = done.report.by_hand(), done.report.to_check()
     hint(f"{'Rewrote' if written else 'Would rewrite'} {counted(count, 'file')} (Python files: {done.files}).")
     if to_check:
         hint(f"\nTo look at ({len(to_check)}; rewritten, or with another meaning in 2027):", bold=True)
         for remark in to_check:
-            hint(f"  {remark}")
+            hint(_text(remark))
     if by_hand:
         click.secho(f"\nTo do by hand ({len(by_hand)}; the lines are those before the rewriting):", bold=True)
         for remark in by_hand:
-            click.echo(f"  {remark}")
+            click.echo(_text(remark))
     elif count:
         hint("\nNothing is left to do by hand. Run the tests with 2027: pyfrc test")
+    if count or by_hand:
+        hint(
+            f"\nLines changed: {lines['changed']}, of which {lines['sure']} have no remark. "
+            f"Lines to do by hand: {lines['by_hand']}."
+        )
+
+
+def _text(remark: Remark) -> str:
+    """Return a remark with its places: one on the same line, more than one below."""
+    first, *others = str(remark).splitlines()
+    lines = [f"  {first}", *(f"      {each}" for each in others)]
+    if len(remark.places) > 1:
+        lines.append(f"      {len(remark.places)} lines: {', '.join(map(str, remark.places))}")
+    return "\n".join(lines)
 
 
 def _as_json(done: Migration) -> dict[str, object]:
@@ -82,6 +97,7 @@ def _as_json(done: Migration) -> dict[str, object]:
         "files": sorted(done.after),
         "by_hand": [asdict(each) for each in done.report.by_hand()],
         "to_check": [asdict(each) for each in done.report.to_check()],
+        "lines": done.report.counts(),
     }
 
 

@@ -14,6 +14,7 @@ from skips import missing_programs, require
 pytest.importorskip("libcst")
 
 from pyfrc_core.migrate.migration import migrate
+from pyfrc_core.migrate.report import Place
 
 ROBOT = """
     # The robot of team 1234.
@@ -152,7 +153,8 @@ def test_tools_get_the_report_as_json(project: RobotProject) -> None:
     report = json.loads(project.run("migrate", "--check", "--json").stdout)
     assert report["files"] == ["pyproject.toml", "robot.py", "subsystems/drive.py"]
     (remark,) = report["by_hand"]
-    assert (remark["file"], remark["line"]) == ("robot.py", project.line("robot.py", "Relay(1)"))
+    assert remark["places"] == [{"file": "robot.py", "line": project.line("robot.py", "Relay(1)")}]
+    assert report["lines"]["by_hand"] == 1
     assert remark["what"] == "wpilib.Relay is gone."
 
 
@@ -211,7 +213,7 @@ def test_links_out_of_the_project_are_named(project: RobotProject) -> None:
         (project.path / name).symlink_to(target)
     project.write({"robot.py": ROBOT.replace("wpilib.Relay(1)", "1")})
     report = migrate(project.path).report
-    assert [(each.file, each.line) for each in report.by_hand()] == [("lib", 0), ("subsystems/arm.py", 0)]
+    assert [each.places for each in report.by_hand()] == [(Place("lib", 0),), (Place("subsystems/arm.py", 0),)]
     assert str(report.by_hand()[0]) == (
         f"lib: This is a link to {beside.as_posix()}, which is not followed, so the code there stays as it is. "
         "Replace the link by what it leads to, and migrate."

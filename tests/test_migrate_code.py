@@ -33,6 +33,199 @@ def remarks(tmp_path: Path, code: str) -> list[Remark]:
 
 #: Code, and what it becomes.
 CODE = {
+    "a stand-in for the simulator": (
+        """
+        import wpilib
+        class Fake:
+            def getRate(self): return 0.0
+        class Slow(Fake):
+            def getRate(self): return super().getRate() / 2
+        def made(real):
+            return wpilib.Encoder(0, 1) if real else Slow()
+        print(made(True).getRate(), Fake().getRate())
+        """,
+        """
+        import wpilib
+        class Fake:
+            def get_rate(self): return 0.0
+        class Slow(Fake):
+            def get_rate(self): return super().get_rate() / 2
+        def made(real):
+            return wpilib.Encoder(0, 1) if real else Slow()
+        print(made(True).get_rate(), Fake().get_rate())
+        """,
+    ),
+    "a protocol": (
+        """
+        import typing
+        import wpilib
+        class HasRate(typing.Protocol):
+            def getRate(self) -> float: ...
+        def show(sensor: HasRate):
+            print(sensor.getRate())
+        show(wpilib.Encoder(0, 1))
+        """,
+        """
+        import typing
+        import wpilib
+        class HasRate(typing.Protocol):
+            def get_rate(self) -> float: ...
+        def show(sensor: HasRate):
+            print(sensor.get_rate())
+        show(wpilib.Encoder(0, 1))
+        """,
+    ),
+    "motors by setattr, in lambdas, by map and in dictionaries": (
+        """
+        import wpilib
+        class Drive:
+            def __init__(self, left=None, right=None):
+                self.sides = [left, right]
+                for name in ("front", "back"):
+                    setattr(self, name, wpilib.Talon(2))
+            @staticmethod
+            def run(each, speed):
+                each.set(speed)
+            def each(self, do):
+                for motor in self.sides:
+                    do(motor)
+            def stop(self):
+                self.front.set(0)
+                self.each(lambda motor: motor.set(0))
+                list(map(lambda motor: motor.set(1), self.sides))
+                Drive.run(self.back, 1)
+        drive = Drive(**{"left": wpilib.Talon(0), "right": wpilib.Talon(1)})
+        """,
+        """
+        import wpilib
+        import wpilib_drivers
+        class Drive:
+            def __init__(self, left=None, right=None):
+                self.sides = [left, right]
+                for name in ("front", "back"):
+                    setattr(self, name, wpilib_drivers.Talon(2))
+            @staticmethod
+            def run(each, speed):
+                each.set_throttle(speed)
+            def each(self, do):
+                for motor in self.sides:
+                    do(motor)
+            def stop(self):
+                self.front.set_throttle(0)
+                self.each(lambda motor: motor.set_throttle(0))
+                list(map(lambda motor: motor.set_throttle(1), self.sides))
+                Drive.run(self.back, 1)
+        drive = Drive(**{"left": wpilib_drivers.Talon(0), "right": wpilib_drivers.Talon(1)})
+        """,
+    ),
+    "what a mixin and an own base use of derived classes": (
+        """
+        import commands2
+        import wpilib
+        class Sided:
+            def isFinished(self): return self.encoder.getDistance() > 1
+        class Turn(Sided, commands2.Command):
+            def __init__(self):
+                self.encoder = wpilib.Encoder(0, 1)
+        """,
+        """
+        import commands2
+        import wpilib
+        class Sided:
+            def is_finished(self): return self.encoder.get_distance() > 1
+        class Turn(Sided, commands2.Command):
+            def __init__(self):
+                self.encoder = wpilib.Encoder(0, 1)
+        """,
+    ),
+    "comments and line breaks": (
+        """
+        import wpilib
+        from wpimath import applyDeadband
+        class Robot(wpilib.TimedRobot):
+            def robotInit(self):
+                # nothing yet
+                pass  # so far
+            def teleopPeriodic(self):
+                wpilib.SmartDashboard.putNumber(  # shown
+                    "a",
+                    1)
+                now = wpilib.RobotController.getFPGATime(  # in microseconds
+                )
+                turn = applyDeadband(wpilib.XboxController(0)
+                    .getLeftY(), 0.1)
+        """,
+        """
+        import wpilib
+        import telemetry
+        class Robot(wpilib.TimedRobot):
+            def __init__(self):
+                # nothing yet
+                super().__init__()  # so far
+            def teleop_periodic(self):
+                telemetry.log(  # shown
+                    "a",
+                    1)
+                # in microseconds
+                now = (wpilib.RobotController.get_monotonic_time() // 1000)
+                turn = (wpilib.XboxController(0)
+                    .get_left_y())
+        """,
+    ),
+    "methods that are not called where they are named": (
+        """
+        import wpilib
+        from wpilib import RobotController
+        now = wpilib.RobotController.getFPGATime
+        then, put = RobotController.getFPGATime, wpilib.SmartDashboard.putNumber
+        put("passed", now() - then())
+        """,
+        """
+        import wpilib
+        import telemetry
+        from wpilib import RobotController
+        now = (lambda: (wpilib.RobotController.get_monotonic_time() // 1000))
+        then, put = (lambda: (RobotController.get_monotonic_time() // 1000)), telemetry.log
+        put("passed", now() - then())
+        """,
+    ),
+    "the constructor of a base of the team's": (
+        """
+        import wpilib
+        class Base(wpilib.TimedRobot):
+            def robotInit(self):
+                self.encoder = wpilib.Encoder(0, 1)
+        class Robot(Base):
+            def robotInit(self):
+                super().robotInit()
+                self.timer = wpilib.Timer()
+        """,
+        """
+        import wpilib
+        class Base(wpilib.TimedRobot):
+            def __init__(self):
+                super().__init__()
+                self.encoder = wpilib.Encoder(0, 1)
+        class Robot(Base):
+            def __init__(self):
+                super().__init__()
+                self.timer = wpilib.Timer()
+        """,
+    ),
+    "names that tests replace": (
+        """
+        from unittest.mock import patch
+        import wpilib
+        with patch.object(wpilib.Encoder, "getRate"):
+            pass
+        """,
+        """
+        from unittest.mock import patch
+        import wpilib
+        with patch.object(wpilib.Encoder, "get_rate"):
+            pass
+        """,
+    ),
     "an old name of a base class": (
         """
         import commands2
@@ -1279,6 +1472,25 @@ BY_HAND = {
         "import wpilib\nclass R(wpilib.TimedRobot):\n    def simulation_periodic(self):  # here\n        pass\n",
         "overrides a method of WPILib 2027",
     ),
+    "a button of a gamepad that is not written there": (
+        "import wpilib\npad = wpilib.XboxController(0)\nfor each in range(1, 9):\n    pad.getRawButton(each)  # here\n",
+        "Write {1: 0, 2: 1, 3: 2, 4: 3, 5: 9, 6: 10, 7: 4, 8: 6, 9: 7, 10: 8}[each] for each",
+    ),
+    "a package outside the project": (
+        "from teamlib import TeamRobot\nclass Robot(TeamRobot):\n    def teleopPeriodic(self):  # here\n        pass\n",
+        "TeamRobot of teamlib is outside this project and not known, so these names stay: teleopPeriodic.",
+    ),
+    "a name that is looked up": (
+        "from operator import methodcaller\nrate = methodcaller('getRate')  # here\n",
+        "methodcaller names getRate.",
+    ),
+    "a motor of unknown type": ("def stop(motor):\n    motor.set(0)  # here\n", "or write set_throttle."),
+    "a constructor that calls before the rest of another": (
+        "import wpilib\nclass Base(wpilib.TimedRobot):\n    def __init__(self):\n        super().__init__()\n"
+        "    def robotInit(self):\n        pass\nclass Robot(Base):\n    def __init__(self):\n"
+        "        super().__init__()\n    def robotInit(self):  # here\n        pass\n",
+        "robotInit is called robot_init now, by the constructor of Base",
+    ),
     "a Sendable": (
         "import wpiutil\nclass A(wpiutil.Sendable):  # here\n    pass\n",
         "write log_to(self, table)",
@@ -1290,7 +1502,8 @@ BY_HAND = {
 def test_what_is_to_do_by_hand_is_said_at_its_line(tmp_path: Path, name: str) -> None:
     code, said = BY_HAND[name]
     here = next(number for number, line in enumerate(code.splitlines(), 1) if line.endswith("# here"))
-    assert [each for each in remarks(tmp_path, code) if each.line == here and said in str(each) and not each.done]
+    found = [each for each in remarks(tmp_path, code) if said in str(each) and not each.done]
+    assert here in [place.line for each in found for place in each.places]
 
 
 #: Code with one line that runs, but means something else, which ends in `# here`, and what is said there.
@@ -1324,7 +1537,8 @@ TO_CHECK = {
 def test_another_meaning_is_said_at_its_line(tmp_path: Path, name: str) -> None:
     code, said = TO_CHECK[name]
     here = next(number for number, line in enumerate(code.splitlines(), 1) if line.endswith("# here"))
-    assert [each.line for each in remarks(tmp_path, code) if said in str(each) and each.done] == [here]
+    found = [each for each in remarks(tmp_path, code) if said in str(each) and each.done]
+    assert [place.line for each in found for place in each.places] == [here]
 
 
 def test_ports_that_do_not_suffice_are_counted(tmp_path: Path) -> None:
@@ -1343,5 +1557,48 @@ def test_a_module_with_the_name_of_a_new_one_is_reported(tmp_path: Path) -> None
     """CTRE's generated projects have a telemetry.py."""
     (tmp_path / "telemetry.py").write_text("class Telemetry:\n    pass\n", "utf-8")
     (remark,) = remarks(tmp_path, "from telemetry import Telemetry\nlog = Telemetry()\n")
-    assert (remark.file, remark.done) == ("telemetry.py", False)
+    assert (remark.places[0].file, remark.done) == ("telemetry.py", False)
     assert "WPILib 2027 has a module telemetry, too" in str(remark)
+
+
+#: Code in which the type of an object is not known, and the same with the hint that the report asks for.
+HINTS = {
+    "a parameter": ("def go(sensor):\n    HERE\n", "sensor.getRate(); sensor.getDistance()", "sensor: wpilib.Encoder"),
+    "an attribute": (
+        "class A:\n    pass\ndef go(a: A):\n    HERE\n",
+        "a.sensor.getRate(); a.sensor.getDistance()",
+        "class A: sensor: wpilib.Encoder",
+    ),
+    "a variable": (
+        "import copy\nsensor = copy.copy(things())\ndef go():\n    HERE\n",
+        "sensor.getRate(); sensor.getDistance()",
+        "sensor: wpilib.Encoder",
+    ),
+    "a result": (
+        "def made():\n    return copy(things)\nfrom copy import copy\nsensor = made()\ndef go():\n    HERE\n",
+        "sensor.getRate(); sensor.getDistance()",
+        "sensor: wpilib.Encoder",
+    ),
+    "a class of a package": (
+        "from teamlib import Sensor\nsensor = Sensor()\ndef go():\n    HERE\n",
+        "sensor.getRate(); sensor.getDistance()",
+        "if TYPE_CHECKING: from wpilib import Encoder as Sensor\nelse: from teamlib import Sensor\n",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", HINTS)
+def test_a_type_hint_where_the_report_asks_for_it_makes_its_lines_go(tmp_path: Path, name: str) -> None:
+    frame, uses, hint = HINTS[name]
+    code = "import wpilib\nfrom typing import TYPE_CHECKING\n" + frame.replace("HERE", uses.replace("; ", "\n    "))
+    (remark,) = remarks(tmp_path, code)
+    assert len(remark.places) == 2
+    assert hint in str(remark).replace("into class A: ", "class A: ")
+    hints = {
+        "a parameter": ("go(sensor)", "go(sensor: wpilib.Encoder)"),
+        "an attribute": ("    pass", "    sensor: wpilib.Encoder"),
+        "a class of a package": ("from teamlib import Sensor\n", hint),
+    }
+    old, new = hints.get(name, ("sensor =", "sensor: wpilib.Encoder ="))
+    assert old in code
+    assert remarks(tmp_path, code.replace(old, new)) == []

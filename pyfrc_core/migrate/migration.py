@@ -14,6 +14,7 @@ from ..errors import UsageError
 from ..project import walk
 from ..project.git import git_output
 from ..season.season_2027 import SEASON_2027
+from .deep import with_deep_stack
 from .names.table import table
 from .project import Progress, Source, rewrite_all
 from .report import Report
@@ -101,9 +102,15 @@ def migrate(
             f"This is a link to {link.readlink().as_posix()}, which is not followed, so the code there stays as it is."
         )
         report.add(link.relative_to(root).as_posix(), 0, what, "Replace the link by what it leads to, and migrate.")
+    for file in walk.files_below(root, hidden=False):
+        if file.suffix == ".ipynb" and file.is_file() and b"wpilib" in file.read_bytes():
+            what = "This is a notebook, which is not rewritten."
+            report.add(file.relative_to(root).as_posix(), 0, what, "Change its names by hand.")
     home = "" if code is None or code == root else code.relative_to(root).as_posix() + "/"
-    rewritten = rewrite_all(
-        sources, names, report, home=home, first_time=first_time, progress=progress, comments=comments
+    rewritten = with_deep_stack(
+        lambda: rewrite_all(
+            sources, names, report, home=home, first_time=first_time, progress=progress, comments=comments
+        )
     )
     after = dict(rewritten.files)
     before = {each.name: each.text for each in sources if each.name in after}

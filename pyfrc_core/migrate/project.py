@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +21,9 @@ from .rewrite.hal_data import HalData
 from .rewrite.imports import NEW_MODULES
 from .rewrite.leds import led_lists, rewrite_list
 from .rewrite.leftovers import Leftovers
+from .rewrite.lookup import Lookup
 from .rewrite.ports import Ports
+from .rewrite.unknown import Unknown
 from .types.inference import Inference
 from .types.scopes import Module
 
@@ -73,24 +76,54 @@ def rewrite_all(
         progress("reading", position, len(sources))
         try:
             tree = cst.parse_module(source.text)
-            modules[source.name] = Module(source.path, _module_name(source.name.removeprefix(home)), tree)
-        except (cst.ParserSyntaxError, UnicodeDecodeError) as error:
-            line = getattr(error, "raw_line", 1)
-            report.add(source.name, line, "This is no valid Python, so the file stays as it is.", "Correct it first.")
+        except Exception as error:
+            wrong = why_invalid(source.text) or error
+            line = getattr(error, "raw_line", None) or getattr(wrong, "lineno", None) or 1
+            valid = "Python can read this, but LibCST cannot" if wrong is error else "This is no valid Python"
+            remedy = "Rewrite it by hand." if wrong is error else "Correct it first."
+            report.add(source.name, line, f"{valid}, so the file stays as it is.", remedy)
+            continue
+        modules[source.name] = Module(source.path, _module_name(source.name.removeprefix(home)), tree)
     _report_taken_names(modules, table, report)
-    inference = Inference(table, list(modules.values()))
-    project = _Project(modules, inference)
+    project = _Project(modules, Inference(table, list(modules.values())))
+    files = {
+        module: FileRewriter(
+            module, name, project.lookup, report, first_time=first_time, shared=module.name in project.shared
+        )
+        for name, module in modules.items()
+    }
     changed = {}
     for position, (name, module) in enumerate(modules.items()):
         progress("rewriting", position, len(modules))
-        shared = module.name in project.shared
-        file = FileRewriter(module, name, inference, table, report, first_time=first_time, shared=shared)
-        new = _rewrite(file, project, comments=comments).encode(module.tree.encoding)
-        if new != module.tree.bytes:
+        old = module.tree.bytes
+        try:
+            new = _rewrite(files[module], project, comments=comments).encode(module.tree.encoding)
+            invalid = new != old and why_invalid(new) is not None and why_invalid(old) is None
+            failed = "it would be no valid Python" if invalid else ""
+        except Exception as error:
+            failed = f"{type(error).__name__}: {error}"
+        if failed:
+            report.forget(name)
+            what = f"migrate cannot rewrite this file ({failed}), so it stays as it is."
+            report.add(name, 0, what, "Rewrite it by hand, and report this: it is a mistake of pyfrc.")
+        elif new != old:
             changed[name] = new
+            report.changed |= files[module].changed_places()
     project.ports.report(report)
+    project.unknown.report(report, files)
     progress("rewriting", len(modules), len(modules))
     return Rewritten(changed, project.gamepads)
+
+
+def why_invalid(code: bytes) -> Exception | None:
+    """Return the error that Python raises when it compiles the code of a file."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            compile(code, "file", "exec", dont_inherit=True)
+    except (SyntaxError, ValueError, OverflowError, MemoryError, RecursionError) as error:
+        return error
+    return None
 
 
 class _Project:
@@ -98,31 +131,26 @@ class _Project:
 
     def __init__(self, modules: Mapping[str, Module], inference: Inference) -> None:
         table = inference.table
+        self.lookup = Lookup(table, inference, modules.values())
+        self.unknown = Unknown(self.lookup, modules)
         self.gamepads = gamepads_by_port(modules.values(), inference, table)
-        self.camel_names = table.camel_names()
         self.led_lists = led_lists(inference, modules.values())
         self.ports = Ports(table)
         sites = [node for module in modules.values() for node, _ in module.sites]
         self.shared = {binding.path for module in modules.values() for binding in module.scope.bindings.get("*", ())}
-        readers = {each for each in table.corrections["dashboard_table"] if not each.startswith("put")}
+        readers = {each for each in table.corrections["dashboard_table"]["members"] if not each.startswith("put")}
         reads = {
             key_of(node)
             for node in sites
             if isinstance(node, cst.Call) and isinstance(node.func, cst.Attribute) and node.func.attr.value in readers
         }
         self.dashboard_reads = frozenset(each for each in reads if each is not None)
-        names = {each.node.name.value for module in modules.values() for each in module.classes}
-        names |= {each.name for module in modules.values() for each in module.functions}
-        for module in modules.values():
-            names |= {name for each in module.classes for name in each.assigned}
-            names |= {name for each in module.classes for name in each.scope.bindings}
-        self.own_names = frozenset(names)
 
 
 def _report_taken_names(modules: Mapping[str, Module], table: Table, report: Report) -> None:
     """Report the project's modules with the name of a new one of WPILib's: only one of the two can be imported."""
     taken = {each.partition(".")[0] for each in (*table.modules.values(), *NEW_MODULES)}
-    taken -= {each.partition(".")[0] for each in table.modules}
+    taken -= {"", *(each.partition(".")[0] for each in table.modules)}
     for name, module in modules.items():
         first = module.name.partition(".")[0]
         if first in taken:
@@ -134,7 +162,7 @@ def _report_taken_names(modules: Mapping[str, Module], table: Table, report: Rep
 def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
     calls = Calls(file, project.dashboard_reads, Arguments(file, project.led_lists, project.ports))
     hal_data = HalData(file, project.gamepads)
-    leftovers = Leftovers(file, project.own_names, project.camel_names)
+    leftovers = Leftovers(file)
     sites = file.module.sites
     for own in file.module.classes:
         for method, found in file.overrides(own):
@@ -142,6 +170,8 @@ def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
                 robot_init.rewrite(file, own, method)
             else:
                 file.gone_override(method, found)
+        project.unknown.methods(file, own)
+    file.rename_stand_ins()
     for node, scope in sites:
         if isinstance(node, cst.Expr):
             calls.statement(node, scope)
@@ -152,10 +182,10 @@ def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
             rewrite_list(file, node, scope)
     for node, scope in sites:
         if isinstance(node, cst.Call):
-            robot_init.super_call(file, node, scope)
             calls.other_pov(node, scope)
             calls.call(node, scope)
             leftovers.call(node, scope)
+            project.unknown.call(file, node, scope)
     for node, scope in sites:
         if isinstance(node, cst.Assign):
             calls.short_name(node, scope)
@@ -172,7 +202,7 @@ def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
         if isinstance(node, cst.Name):
             file.name(node, scope)
         elif isinstance(node, cst.Attribute):
-            leftovers.attribute(node, scope)
+            project.unknown.attribute(file, node, scope)
     for node, scope in sites:
         if isinstance(node, cst.ImportFrom):
             file.import_from(node, scope)

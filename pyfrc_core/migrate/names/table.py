@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -74,6 +74,7 @@ class Table:
         self._aliases: Mapping[str, str] = {**data["aliases"], **corrections["old_aliases"]}
         self._lines: Mapping[str, str] = {**data["names"], **{path: f"();{members}" for path, members in ours.items()}}
         self._names: dict[str, Name | None] = {}
+        self._members: dict[str, frozenset[str]] = {}
         self._camel: frozenset[str] | None = None
 
     def canonical(self, path: str) -> str:
@@ -104,6 +105,25 @@ class Table:
             if known is not None and name in known.members:
                 return each, known.members[name]
         return None
+
+    def member_names(self, path: str) -> frozenset[str]:
+        """Return the names of all members of a class and of its bases."""
+        if path not in self._members:
+            known = [self.name(each) for each in self.ancestors(path)]
+            self._members[path] = frozenset(name for each in known if each is not None for name in each.members)
+        return self._members[path]
+
+    def classes_with(self, names: Set[str]) -> list[str]:
+        """Return the classes that have members of all these names; of classes that are derived, the first base."""
+        every = [path for path in self._lines if (known := self.name(path)) is not None and known.is_class]
+        found = {each for each in every if names <= self.member_names(each)}
+        first = [each for each in found if found.isdisjoint(self.ancestors(each)[1:])]
+
+        def rank(path: str) -> tuple[bool, bool, bool, int, str]:
+            gone = self.new_path(path) is None
+            return gone, "simulation" in path, not path.startswith("wpi"), len(path), path
+
+        return sorted(first, key=rank)
 
     def new_path(self, path: str) -> str | None:
         """Return the new path of a module, class, function or constant; None if it is gone."""
@@ -139,7 +159,10 @@ class Table:
 
 def corrections() -> dict[str, Any]:
     """Return what was written by hand: `corrections.toml`."""
-    return tomllib.loads((HERE / "corrections.toml").read_text(encoding="utf-8"))
+    found = tomllib.loads((HERE / "corrections.toml").read_text(encoding="utf-8"))
+    for outer, pairs in found.pop("moved_together").items():
+        found["moved"] |= {f"{outer}.{name}": new for name, _, new in (pair.partition("=") for pair in pairs.split())}
+    return found
 
 
 @cache

@@ -11,9 +11,10 @@ from ..types.atoms import Many, Obj, Ref
 from ..types.scopes import Scope
 from ..types.values import values, written_number
 from .buses import Buses
-from .edits import changed, fill, in_parentheses
-from .file import FileRewriter, Found
-from .gamepads import Gamepad, gamepad_of
+from .edits import changed, fill
+from .file import FileRewriter
+from .gamepads import Gamepad, Numbers, gamepad_of
+from .lookup import Found
 from .ports import Ports
 
 _ENCODER = "wpilib.Encoder"
@@ -32,6 +33,7 @@ class Arguments:
         self._led_lists = led_lists
         self._ports = ports
         self._buses = Buses(rewriter)
+        self._numbers = Numbers(rewriter)
         self._corrections: Mapping[str, Any] = rewriter.table.corrections
 
     def changed_meaning(self, node: cst.Call, scope: Scope, paths: list[str]) -> None:
@@ -84,60 +86,21 @@ class Arguments:
                 self._file.edit(arg, changed(keyword=cst.Name(new)))
 
     def _button(self, node: cst.Call, scope: Scope, position: int) -> None:
-        if len(node.args) <= position or node.args[position].star:
-            return
-        arg = node.args[position]
-        value = arg.value
-        gamepad = self._gamepad(node, scope)
-        if isinstance(value, cst.Integer) and gamepad is not None:
-            self._number(arg, gamepad, "buttons")
-            return
-        if isinstance(value, cst.Integer):
-            number = cst.Integer(str(int(value.evaluated_value) - 1)) if value.evaluated_value else value
-            self._file.edit(arg, changed(value=number))
-            return
-        types = self._file.inference.infer(value, scope)
-        if types or (isinstance(value, cst.Attribute) and value.attr.value == "value"):
-            return  # a constant of an enumeration
-        old = written_number(self._file.inference, value, scope)
-        new = gamepad.number("buttons", old) if gamepad is not None and old is not None else None
-        if gamepad is not None and old is not None and new is not None and new != old - 1:
-            self._file.say(arg, f"Button {old} of {gamepad.name} is {new} now.", f"Write {new} for {old}.")
-            return
-        self._file.edit(
-            arg,
-            lambda updated: updated.with_changes(
-                value=cst.BinaryOperation(in_parentheses(updated.value), cst.Subtract(), cst.Integer("1"))
-            ),
-        )
-        self._file.say(
-            node, "Buttons count from 0 now: 1 is subtracted here.", "Better subtract it from the constant.", done=True
-        )
+        if len(node.args) > position and not node.args[position].star:
+            arg = node.args[position]
+            self._numbers.button(arg, arg.value, scope, self._gamepads(node, scope))
 
     def _axis(self, node: cst.Call, scope: Scope, position: int) -> None:
-        gamepad = self._gamepad(node, scope)
-        if gamepad is None or len(node.args) <= position:
-            return
-        value = node.args[position].value
-        is_constant = bool(self._file.inference.infer(value, scope))  # of an enumeration
-        if not is_constant and not (isinstance(value, cst.Attribute) and value.attr.value == "value"):
-            self._number(node.args[position], gamepad, "axes")
+        if len(node.args) > position and not node.args[position].star:
+            arg = node.args[position]
+            self._numbers.axis(arg, arg.value, scope, self._gamepads(node, scope))
 
-    def _gamepad(self, node: cst.Call, scope: Scope) -> Gamepad | None:
-        """Return the gamepad that a call is one of, or that it gets as its first argument."""
+    def _gamepads(self, node: cst.Call, scope: Scope) -> set[Gamepad | None]:
+        """Return the gamepads that a call is one of, or that it gets as its first argument; None for other devices."""
         asked = [node.func.value] if isinstance(node.func, cst.Attribute) else []
         asked += [arg.value for arg in node.args[:1]]
         types = [each for part in asked for each in self._file.inference.infer(part, scope)]
-        return gamepad_of(self._file.table, [each.path for each in types if isinstance(each, Obj)])
-
-    def _number(self, arg: cst.Arg, gamepad: Gamepad, kind: str) -> None:
-        new = gamepad.number(kind, arg.value.evaluated_value) if isinstance(arg.value, cst.Integer) else None
-        if new is not None:
-            self._file.edit(arg, changed(value=cst.Integer(str(new))))
-        else:
-            numbers = gamepad.axes if kind == "axes" else gamepad.buttons
-            now = ", ".join(f"{old} is {new}" for old, new in numbers.items() if str(new) != old)
-            self._file.say(arg, f"The {kind} of {gamepad.name} have other numbers.", f"{now}.")
+        return {gamepad_of(self._file.table, [each.path]) for each in types if isinstance(each, Obj)}
 
     def _direction(self, node: cst.Call, position: int) -> None:
         if len(node.args) <= position or not node.args:
@@ -197,7 +160,7 @@ class Arguments:
             and all(_GENERIC_HID in self._file.table.ancestors(each) for each in types)
         ):
             self._file.edit(
-                arg, lambda updated: updated.with_changes(value=fill("{self}.get_hid()", {"self": updated.value}, []))
+                arg, lambda updated: updated.with_changes(value=fill("{self}.get_hid()", {"self": updated.value}))
             )
 
     def _by_channel(self, node: cst.Call, scope: Scope, note: str) -> None:

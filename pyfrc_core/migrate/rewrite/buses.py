@@ -73,7 +73,7 @@ class Buses:
             self._say_first(node)
         else:
             text = self._text(f"<{_CTRE}>({{0}})", node, scope)
-            self._file.edit(given[0], lambda updated: updated.with_changes(value=fill(text, {"0": updated.value}, [])))
+            self._file.edit(given[0], lambda updated: updated.with_changes(value=fill(text, {"0": updated.value})))
 
     def _bus(self, node: cst.Call, scope: Scope) -> None:
         """Name the port where a phoenix6.CANBus is the controller's own."""

@@ -7,13 +7,16 @@ from typing import Any
 
 import libcst as cst
 
+from ...season.spelling import snake_case
 from ..types.atoms import Atom, Bound, Obj, OwnObj, Ref
 from ..types.scopes import Scope
 from .arguments import Arguments
 from .edits import changed, fill, renamed, replaced
-from .file import FileRewriter, Found
+from .file import FileRewriter
 from .gamepads import Sticks
+from .lookup import Found
 from .repeated_logs import RepeatedLogs
+from .robot_init import super_call
 
 _BOTH = "wpilib.interfaces.GenericHID.RumbleType.kBothRumble"
 _ADD_TO_TAB = "wpilib.shuffleboard.ShuffleboardContainer.add"
@@ -57,7 +60,8 @@ class Calls:
         template = next(
             (each for path in paths if (each := self._corrections["templates"].get(path)) is not None), None
         )
-        if template is not None and self._template(node, scope, template):
+        is_alias = isinstance(node.func, cst.Name) and found.owner  # rewritten where it is given its name
+        if template is not None and not is_alias and self._template(node, scope, template):
             for note in (each for path in paths if (each := self._corrections["notes"].get(path))):
                 self._file.say(node, f"{found.path} is rewritten.", note, done=True)
             return
@@ -83,7 +87,7 @@ class Calls:
 
     def _called(self, node: cst.Call, scope: Scope) -> Found | None:
         if isinstance(node.func, cst.Attribute):
-            found = self._file.look_up(node.func, scope)
+            found = self._file.lookup.attribute(node.func, scope)
             if found and not any(each.stays for each in found):
                 return found[0] if found[0].member is not None else None
         for each in self._file.inference.infer(node.func, scope):
@@ -125,7 +129,7 @@ class Calls:
             parts = {str(index): arg.value for index, arg in enumerate(updated.args)}
             if isinstance(updated.func, cst.Attribute):
                 parts["self"] = updated.func.value
-            new = fill(text, parts, list(updated.args))
+            new = fill(text, parts, updated)
             return new.with_changes(lpar=[*updated.lpar, *new.lpar], rpar=[*new.rpar, *updated.rpar])
 
         self._file.edit(node, edit)
@@ -138,8 +142,8 @@ class Calls:
             return self._put_data(node, scope)
         key = key_of(node)
         read = key is None or key in self._reads
-        member = self._corrections["dashboard_table"].get(name)
-        if member is None or (name.startswith("put") and not read):
+        member = snake_case(name)
+        if name not in self._corrections["dashboard_table"]["members"] or (name.startswith("put") and not read):
             return False
         self.replace(node, scope, f"{_TABLE}.{member}({{args}})")
         if not name.startswith("put"):
@@ -231,7 +235,7 @@ class Calls:
         if not isinstance(node.value, cst.Call):
             return
         found = self._called(node.value, scope)
-        if found is None:
+        if found is None or super_call(self._file, node.value, scope):
             return
         paths = self._paths(found)
         if any(path in self._corrections["not_needed"]["calls"] for path in paths):
@@ -313,7 +317,7 @@ class Calls:
         return False
 
     def _is_both(self, node: cst.Attribute, scope: Scope) -> bool:
-        return any(each.path == _BOTH for each in self._file.look_up(node, scope))
+        return any(each.path == _BOTH for each in self._file.lookup.attribute(node, scope))
 
 
 def _without_call(updated: cst.Call) -> cst.BaseExpression:

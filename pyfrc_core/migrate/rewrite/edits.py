@@ -25,12 +25,26 @@ class Apply(cst.CSTTransformer):
     ) -> None:
         self._edits = edits
         self._statements = statements or {}
+        #: How many edits were made before each of the statements around.
+        self._made = 0
+        self._before: list[int] = []
+
+    def on_visit(self, node: cst.CSTNode) -> bool:
+        """Note where a statement begins."""
+        if isinstance(node, cst.BaseStatement):
+            self._before.append(self._made)
+        return super().on_visit(node)
 
     def on_leave(self, original_node: Any, updated_node: Any) -> Any:
-        """Replace a node that has an edit."""
+        """Replace a node that has an edit; what a statement loses of its comments stands before it then."""
         updated = super().on_leave(original_node, updated_node)
         if original_node in self._edits:
+            self._made += 1
             updated = self._edits[original_node](updated)
+        if isinstance(original_node, cst.BaseStatement) and self._before.pop() < self._made:
+            there = _comments(updated)
+            lost = [each for each in _comments(original_node) if each not in there]
+            updated = commented(lost)(updated) if lost else updated
         return updated
 
     def leave_SimpleStatementLine(
@@ -53,6 +67,27 @@ class Apply(cst.CSTTransformer):
         lines: list[cst.BaseStatement] = [updated_node.with_changes(body=[body[0]])]
         lines += [cst.SimpleStatementLine([each]) for each in body[1:]]
         return cst.FlattenSentinel(lines)
+
+
+class _Comments(cst.CSTVisitor):
+    def __init__(self) -> None:
+        self.found: list[str] = []
+
+    def visit_Comment(self, node: cst.Comment) -> None:
+        self.found.append(node.value)
+
+    def visit_IndentedBlock(self, node: cst.IndentedBlock) -> bool:
+        node.header.visit(self)
+        return False  # its statements have their own
+
+
+def _comments(node: Any) -> list[str]:
+    """Return the comments of a statement, without those of the statements inside."""
+    visitor = _Comments()
+    for each in node if isinstance(node, cst.FlattenSentinel) else [node]:
+        if isinstance(each, cst.CSTNode):
+            each.visit(visitor)
+    return visitor.found
 
 
 def _without_semicolon(node: cst.BaseSmallStatement) -> cst.BaseSmallStatement:
@@ -102,10 +137,19 @@ def with_last(method: cst.FunctionDef, statement: cst.BaseStatement) -> cst.Func
     """Return a function with one more statement at its end; it takes the place of a `pass`."""
     body = method.body
     if isinstance(body, cst.SimpleStatementSuite):
-        block = cst.IndentedBlock([cst.SimpleStatementLine(body.body), statement])
+        block = cst.IndentedBlock([cst.SimpleStatementLine(body.body), statement], header=body.trailing_whitespace)
         return method.with_changes(body=block)
-    before = [*body.body[:-1]] if body.body and is_pass(body.body[-1]) else [*body.body]
+    before = [*body.body]
+    if before and is_pass(before[-1]):
+        statement = in_place_of(before.pop(), statement)
     return method.with_changes(body=body.with_changes(body=[*before, statement]))
+
+
+def in_place_of(old: cst.BaseStatement, new: cst.BaseStatement) -> cst.BaseStatement:
+    """Return a statement with the comments of the `pass` whose place it takes, after its own."""
+    old, new = cst.ensure_type(old, cst.SimpleStatementLine), cst.ensure_type(new, cst.SimpleStatementLine)
+    lines = [*new.leading_lines, *old.leading_lines]
+    return new.with_changes(leading_lines=lines, trailing_whitespace=old.trailing_whitespace)
 
 
 def first_parameter(function: cst.FunctionDef | cst.Lambda) -> str:
@@ -128,22 +172,35 @@ def chain(path: str) -> cst.Name | cst.Attribute:
     return node
 
 
-def fill(text: str, parts: Mapping[str, cst.BaseExpression], arguments: list[cst.Arg]) -> cst.BaseExpression:
-    """Return an expression from a text with `{0}`, `{self}` and the like, and `{args}` for all arguments."""
+def fill(text: str, parts: Mapping[str, cst.BaseExpression], call: cst.Call | None = None) -> cst.BaseExpression:
+    """Return an expression from a text with `{0}`, `{self}` and the like, and `{args}` for all arguments of a call."""
     prepared = re.sub(r"\{(\w+)\}", r"part_\1_", text)
     tree = cst.parse_expression(prepared)
-    return cast("cst.BaseExpression", tree.visit(_Fill(parts, arguments)))
+    return standing_alone(cast("cst.BaseExpression", tree.visit(_Fill(parts, call))))
+
+
+def standing_alone(node: cst.BaseExpression) -> cst.BaseExpression:
+    """Return an expression that can stand where it has no parentheses around it: of several lines, it has its own."""
+    code = cst.Module([]).code_for_node(node)
+    try:
+        if "\n" in code:
+            cst.parse_expression(code)
+    except cst.ParserSyntaxError:
+        return node.with_changes(lpar=[cst.LeftParen()], rpar=[cst.RightParen()])
+    return node
 
 
 class _Fill(cst.CSTTransformer):
-    def __init__(self, parts: Mapping[str, cst.BaseExpression], arguments: list[cst.Arg]) -> None:
+    def __init__(self, parts: Mapping[str, cst.BaseExpression], call: cst.Call | None) -> None:
         self._parts = parts
-        self._arguments = arguments
+        self._call = call
 
     def leave_Call(self, original_node: cst.Call, updated_node: cst.Call) -> cst.Call:
         args = original_node.args
-        if len(args) == 1 and isinstance(args[0].value, cst.Name) and args[0].value.value == "part_args_":
-            return updated_node.with_changes(args=self._arguments)
+        name = args[0].value.value if len(args) == 1 and isinstance(args[0].value, cst.Name) else ""
+        if name == "part_args_" and self._call is not None:
+            space = self._call.whitespace_before_args
+            return updated_node.with_changes(args=self._call.args, whitespace_before_args=space)
         return updated_node
 
     def leave_Attribute(self, original_node: cst.Attribute, updated_node: cst.Attribute) -> cst.Attribute:

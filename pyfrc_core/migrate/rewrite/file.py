@@ -2,42 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import cast
 
 import libcst as cst
 from libcst.metadata import CodeRange, MetadataWrapper, PositionProvider
 
 from ...season.spelling import snake_case
-from ..names.table import Member, Table
-from ..report import Report
-from ..types.atoms import Atoms, Obj, OwnObj, OwnRef, Ref
-from ..types.inference import Inference
+from ..report import Place, Report
+from ..types.atoms import Ref
 from ..types.scopes import Module, OwnClass, Scope
 from .edits import Edit, chain, fill, renamed
 from .imports import Imports
-
-
-@dataclass(frozen=True)
-class Found:
-    """What an attribute is, of all that it can be.
-
-    :param owner: the class that defines the member, or "" for a name of a module
-    :param receiver: the class that it was asked for
-    :param member: None if WPILib has no such name
-    :param stays: the name is the team's own, or has not changed
-    """
-
-    owner: str
-    receiver: str
-    path: str
-    member: Member | None
-    stays: bool = False
-
-
-def _unchanged(name: str) -> Found:
-    return Found("-", "", "", Member(name, name), stays=True)
+from .lookup import Found, Lookup
 
 
 class FileRewriter:
@@ -52,18 +30,18 @@ class FileRewriter:
         self,
         module: Module,
         name: str,
-        inference: Inference,
-        table: Table,
+        lookup: Lookup,
         report: Report,
         *,
         first_time: bool,
         shared: bool,
     ) -> None:
         self.module = module
-        self.table = table
-        self.inference = inference
+        self.lookup = lookup
+        self.table = lookup.table
+        self.inference = lookup.inference
         self.first_time = first_time
-        self.imports = Imports(module, table, shared=shared)
+        self.imports = Imports(module, self.table, shared=shared)
         self.edits: dict[cst.CSTNode, Edit] = {}
         #: Nodes that an edit of the expression around them takes care of.
         self.handled: set[cst.CSTNode] = set()
@@ -98,53 +76,14 @@ class FileRewriter:
 
     # Attributes
 
-    def look_up(self, node: cst.Attribute, scope: Scope) -> list[Found]:
-        """Return what an attribute can be, where it is WPILib's or overrides what is WPILib's."""
-        return self.found_in(self.inference.infer(node.value, scope), node.attr.value)
-
-    def found_in(self, owners: Atoms, name: str) -> list[Found]:
-        """Return what a member of any of these can be."""
-        found: list[Found] = []
-        for owner in owners:
-            if isinstance(owner, Ref):
-                path = self.table.canonical(f"{owner.path}.{name}")
-                known = self.table.name(path)
-                if path in self.table.modules or known is not None:
-                    found.append(Found("", "", path, known))
-                    continue
-            if isinstance(owner, Ref | Obj):
-                found += self.member_of([owner.path], name)
-            elif isinstance(owner, OwnObj | OwnRef):
-                mine, theirs = self.inference.lineage(owner.own)
-                members = self.member_of(theirs, name)
-                own = [each for each in mine if self.inference.own_bindings(each, name)]
-                found += members if not own or self._overrides(own, name) else [_unchanged(name)]
-        return found
-
-    def _overrides(self, classes: list[OwnClass], name: str) -> bool:
-        """Return whether a member of the team's is a method, as what it overrides is."""
-        return any(binding.kind == "function" for each in classes for binding in each.scope.bindings.get(name, ()))
-
-    def member_of(self, classes: list[str], name: str) -> list[Found]:
-        """Return a member of the first of the classes that has it; a class inside a class too."""
-        for path in classes:
-            for each in self.table.ancestors(path):
-                nested = self.table.name(f"{each}.{name}")
-                if nested is not None:
-                    return [Found("", path, f"{each}.{name}", nested)]
-            member = self.table.member(path, name)
-            if member is not None:
-                return [Found(member[0], path, f"{member[0]}.{name}", member[1])]
-        return []
-
     def attribute(self, node: cst.Attribute, scope: Scope) -> None:
         """Rewrite an attribute."""
         if node in self.handled:
             return
-        found = self.look_up(node, scope)
+        found = self.lookup.attribute(node, scope)
         if all(each.stays for each in found):
             return
-        new = {self._new_name(each) for each in found}
+        new = {self.lookup.new_name(each) for each in found}
         if len(new) > 1:
             names = ", ".join(sorted(str(each) for each in new))
             self.say(node, f"{node.attr.value} can be several things here.", f"Their new names: {names}.")
@@ -152,13 +91,27 @@ class FileRewriter:
         for each in found:
             self._say_note(node, each.path)
         first, target = found[0], new.pop()
-        if target is None:
+        template = self.table.corrections["templates"].get(first.path)
+        if isinstance(template, str) and node not in self.module.called:
+            self._as_function(node, scope, template)
+        elif target is None:
             self._say_gone(node, first)
         elif first.owner:
             is_value = first.member is not None and first.member.is_value
             self._rename_member(node, scope, target, is_value=is_value)
         elif target != first.path or target.rpartition(".")[2] != node.attr.value:
             self._respell(node, scope, first.path, target)
+
+    def _as_function(self, node: cst.Attribute, scope: Scope, template: str) -> None:
+        """Rewrite a method that is not called here, such as `now = RobotController.getFPGATime`."""
+        count = len(set(re.findall(r"\{\d\}", template)))
+        values = [f"value{number or ''}" for number in range(count)]
+        head = " ".join(["lambda", ", ".join(values)]).rstrip()
+        code = template.removesuffix("({args})") if "{args}" in template else f"({head}: {template})"
+        text = self.imports.fill_in(code, self.consume(node.value, scope), scope)
+        self.handled.add(node)
+        parts = {str(number): cst.Name(value) for number, value in enumerate(values)}
+        self.edit(node, lambda updated: fill(text, {"self": updated.value, **parts}))
 
     def _say_note(self, node: cst.Attribute | cst.Name, path: str) -> None:
         """Report another meaning; of a class, where it is called."""
@@ -173,11 +126,6 @@ class FileRewriter:
         name = node.attr.value if isinstance(node, cst.Attribute) else node.value
         self.say(node, f"{name} has another meaning.", note, done=True)
 
-    def _new_name(self, found: Found) -> str | None:
-        if found.owner:
-            return None if found.member is None else found.member.new
-        return self.table.new_path(found.path)
-
     def _say_gone(self, node: cst.Attribute, found: Found) -> None:
         receiver = self.table.name(found.receiver)
         if receiver is not None and receiver.new is None:
@@ -189,11 +137,11 @@ class FileRewriter:
 
     def _rename_member(self, node: cst.Attribute, scope: Scope, new: str, *, is_value: bool) -> None:
         if is_value and node not in self.module.called:
-            self.edit(node, lambda updated: fill(f"(lambda: {{self}}.{new})", {"self": updated.value}, []))
+            self.edit(node, lambda updated: fill(f"(lambda: {{self}}.{new})", {"self": updated.value}))
         elif new.endswith("().get") and node not in self.module.called:
-            self.edit(node, lambda updated: fill(f"(lambda: {{self}}.{new}())", {"self": updated.value}, []))
+            self.edit(node, lambda updated: fill(f"(lambda: {{self}}.{new}())", {"self": updated.value}))
         elif "(" in new:
-            self.edit(node, lambda updated: fill(f"{{self}}.{new}", {"self": updated.value}, []))
+            self.edit(node, lambda updated: fill(f"{{self}}.{new}", {"self": updated.value}))
         elif "." in new:
             self._spell_anew(node, scope, new)
         elif new != node.attr.value:
@@ -305,12 +253,12 @@ class FileRewriter:
     def overrides(self, own: OwnClass) -> list[tuple[cst.FunctionDef, Found]]:
         """Rename the methods that override methods of WPILib's, and return those that override what is gone."""
         gone: list[tuple[cst.FunctionDef, Found]] = []
-        theirs = self.inference.lineage(own)[1]
+        theirs = self.inference.family(own)[1]
         if not theirs:
             return gone
         for name, bindings in own.scope.bindings.items():
             methods = [each.node for each in bindings if isinstance(each.node, cst.FunctionDef)]
-            found = self.member_of(theirs, name) if methods else []
+            found = self.lookup.member_of(theirs, name) if methods else []
             if not found or not found[0].owner:
                 self._hidden(own, theirs, name, methods)
                 continue
@@ -325,6 +273,16 @@ class FileRewriter:
                     elif snake_case(name) == member.new:
                         self.say(method, f"{name} is {member.new} now, and {own.name} already has a {member.new}.")
         return gone
+
+    def rename_stand_ins(self) -> None:
+        """Rename the team's methods that stand in for WPILib's."""
+        for method, new, path in self.lookup.renamed_methods(self.module):
+            self.edit(method, renamed(new))
+            self.say(method, f"{method.name.value} is {new} now, since it stands in for {path}.", done=True)
+
+    def changed_places(self) -> set[Place]:
+        """Return the lines that the edits are in."""
+        return {Place(self.name_in_report, self.line(node)) for node in self.edits if node in self.positions}
 
     def gone_override(self, method: cst.FunctionDef, found: Found) -> None:
         """Report an override of a method that is gone."""

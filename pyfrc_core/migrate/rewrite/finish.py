@@ -53,8 +53,9 @@ def new_text(file: FileRewriter, *, comments: bool) -> str:
 def _comment(file: FileRewriter) -> None:
     by_line: dict[int, list[str]] = {}
     for remark in file.report.by_hand():
-        if remark.file == file.name_in_report:
-            by_line.setdefault(remark.line, []).append(f"# 2027: {remark.what} {remark.remedy}".rstrip())
+        for place in remark.places:
+            if place.file == file.name_in_report:
+                by_line.setdefault(place.line, []).append(f"# 2027: {' '.join(remark.text().split())}")
     lines = [node for node in file.positions if isinstance(node, cst.SimpleStatementLine | cst.BaseCompoundStatement)]
     for line, texts in by_line.items():
         around = [each for each in lines if file.positions[each].start.line <= line <= file.positions[each].end.line]

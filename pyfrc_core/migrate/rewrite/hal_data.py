@@ -8,9 +8,9 @@ import libcst as cst
 
 from ..types.scopes import Scope
 from ..types.values import values, written_number
-from .edits import changed, in_parentheses
+from .edits import changed
 from .file import FileRewriter
-from .gamepads import Gamepad
+from .gamepads import Gamepad, Numbers
 
 
 class HalData:
@@ -22,6 +22,7 @@ class HalData:
     def __init__(self, rewriter: FileRewriter, gamepads: Mapping[int, Gamepad]) -> None:
         self._file = rewriter
         self._gamepads = gamepads
+        self._numbers = Numbers(rewriter)
         self._with_number: set[cst.CSTNode] = set()
 
     def subscript(self, node: cst.Subscript, scope: Scope) -> None:
@@ -41,7 +42,7 @@ class HalData:
             self._axis(node, index, part, scope)
         elif key == "buttons":
             self._with_number.add(part)
-            self._button(node, index, part, scope)
+            self._numbers.button(index, index.value, scope, {self._gamepad(part, scope)}, " in hal_data, too")
 
     def _said_by_key(self, node: cst.Subscript, key: str) -> None:
         advice = self._file.table.corrections["hal_data_gone"].get(key)
@@ -51,27 +52,6 @@ class HalData:
             self._file.say(
                 node, "Buttons count from 0 in hal_data, too.", "Check what is done with this list.", done=True
             )
-
-    def _button(self, node: cst.Subscript, index: cst.Index, part: cst.Subscript, scope: Scope) -> None:
-        number = index.value
-        if isinstance(number, cst.Attribute) or self._file.inference.infer(number, scope):
-            return  # a constant of an enumeration
-        old = written_number(self._file.inference, number, scope)
-        gamepad = self._gamepad(part, scope)
-        new = gamepad.number("buttons", old) if gamepad is not None and old is not None else None
-        if isinstance(number, cst.Integer):
-            new = max(0, number.evaluated_value - 1) if new is None else new
-            self._file.edit(index, changed(value=cst.Integer(str(new))))
-        elif gamepad is not None and old is not None and new is not None and new != old - 1:
-            self._file.say(node, f"Button {old} of {gamepad.name} is {new} now.", f"Write {new} for {old}.")
-        else:
-            self._file.edit(
-                index,
-                lambda updated: updated.with_changes(
-                    value=cst.BinaryOperation(in_parentheses(updated.value), cst.Subtract(), cst.Integer("1"))
-                ),
-            )
-            self._file.say(node, "Buttons count from 0 in hal_data, too: 1 is subtracted here.", done=True)
 
     def _axis(self, node: cst.Subscript, index: cst.Index, part: cst.Subscript, scope: Scope) -> None:
         old = written_number(self._file.inference, index.value, scope)

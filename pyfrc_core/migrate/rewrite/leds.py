@@ -34,7 +34,7 @@ def rewrite_list(file: FileRewriter, node: cst.CSTNode, scope: Scope) -> None:
     def edit(updated: cst.ListComp | cst.BinaryOperation) -> cst.BaseExpression:
         length = updated.right if isinstance(updated, cst.BinaryOperation) else _range(updated)
         assert length is not None
-        return fill(text, {"0": length}, [])
+        return fill(text, {"0": length})
 
     file.edit(node, edit)
 

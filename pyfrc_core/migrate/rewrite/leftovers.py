@@ -4,49 +4,33 @@ from __future__ import annotations
 
 import libcst as cst
 
-from ...season.spelling import snake_case
 from ..types.atoms import Obj, Ref
 from ..types.scopes import Scope, dotted
 from .edits import changed
 from .file import FileRewriter
 
-_BY_NAME = {"getattr", "hasattr", "setattr", "delattr"}
+#: Functions that take the name of an attribute, and the position of that.
+_BY_NAME = {"getattr": 1, "hasattr": 1, "setattr": 1, "delattr": 1, "object": 1, "attrgetter": 0, "methodcaller": 0}
 
 
 class Leftovers:
-    """What a file has that must be looked at by a person.
+    """What a file has that must be looked at by a person."""
 
-    :param own_names: every name that the project itself defines
-    """
-
-    def __init__(self, file: FileRewriter, own_names: frozenset[str], camel_names: frozenset[str]) -> None:
+    def __init__(self, file: FileRewriter) -> None:
         self._file = file
-        self._camel = camel_names - own_names
-
-    def attribute(self, node: cst.Attribute, scope: Scope) -> None:
-        """Report an attribute with the name of one of WPILib's, of an object whose type is not known."""
-        name = node.attr.value
-        if name not in self._camel or node in self._file.handled or node in self._file.edits:
-            return
-        if not self._file.inference.infer(node.value, scope):
-            self._file.say(
-                node,
-                f"What {_text(node.value)} is could not be found out, so {name} stays.",
-                f"If it is WPILib's, write {snake_case(name)}.",
-            )
+        self._camel = file.table.camel_names()
 
     def call(self, node: cst.Call, scope: Scope) -> None:
         """Rename the member that `getattr` and the like name in a string."""
-        if not isinstance(node.func, cst.Name | cst.Attribute) or len(node.args) < 2:
-            return
         called = dotted(node.func).rpartition(".")[2]
-        if called not in _BY_NAME:
+        position = _BY_NAME.get(called, -1)
+        if not 0 <= position < len(node.args) or (called == "object" and "patch" not in dotted(node.func)):
             return
-        text = node.args[1].value
-        owners = self._file.inference.infer(node.args[0].value, scope)
+        text = node.args[position].value
+        owners = self._file.inference.infer(node.args[0].value, scope) if position else frozenset()
         name = text.evaluated_value if isinstance(text, cst.SimpleString) else None
         if isinstance(text, cst.SimpleString) and isinstance(name, str):
-            found = self._file.found_in(owners, name)
+            found = self._file.lookup.found_in(owners, name)
             new = {each.member.new for each in found if each.member is not None}
             if len(new) == 1 and (changed_name := new.pop()) and changed_name.isidentifier():
                 self._file.edit(text, changed(value=f"{text.prefix}{text.quote}{changed_name}{text.quote}"))
@@ -63,7 +47,8 @@ class Leftovers:
         known = self._file.table.name(value)
         outer, _, last = value.rpartition(".")
         member = self._file.table.member(outer, last) if self._file.table.name(outer) else None
-        if (known is not None and known.new != value) or (member is not None and member[1].new != last):
+        own = self._file.inference.is_own(value.partition(".")[0]) and last in self._camel
+        if own or (known is not None and known.new != value) or (member is not None and member[1].new != last):
             self._file.say(node, f"The text {value!r} names something of WPILib 2026.", "Write its new path.")
 
     def imports(self, node: cst.Import | cst.ImportFrom) -> None:
@@ -78,8 +63,3 @@ class Leftovers:
                 self._file.say(node, f"{path.partition('.')[0]} is a vendor's package.", vendor)
             elif path in self._file.table.modules and not self._file.table.modules[path]:
                 self._file.say(node, f"{path} is gone.", self._file.table.advice(path))
-
-
-def _text(node: cst.BaseExpression) -> str:
-    text = " ".join(cst.Module([]).code_for_node(node).split())
-    return text if len(text) <= 40 else text[:37] + "..."

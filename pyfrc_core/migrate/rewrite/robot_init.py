@@ -7,7 +7,7 @@ from typing import Any
 import libcst as cst
 
 from ..types.scopes import OwnClass, Scope
-from .edits import first_parameter, is_pass, renamed, with_last
+from .edits import first_parameter, in_place_of, is_pass, renamed, with_last
 from .file import FileRewriter
 
 _CALL = "super().__init__()"
@@ -30,19 +30,28 @@ def rewrite(file: FileRewriter, own: OwnClass, method: cst.FunctionDef) -> None:
     file.edit(method, renamed(name))
     first = first_parameter(node) or "self"
     call = cst.ensure_type(cst.parse_statement(f"{first}.{name}()"), cst.SimpleStatementLine)
-    file.edit(node, lambda updated: with_last(updated, call))
+    above = file.inference.lineage(own)[0][1:]
+    twice = next((each for each in above if {"__init__", "robotInit"} <= each.scope.bindings.keys()), None)
+    if twice is None:
+        file.edit(node, lambda updated: with_last(updated, call))
+    else:
+        what = f"robotInit is called {name} now, by the constructor of {twice.name}: before the rest of {own.name}'s."
+        file.say(method, what, "What it needs of that belongs above super().__init__().")
+        return
     file.say(method, f"robotInit is called {name} now, by the constructor.", done=True)
 
 
-def super_call(file: FileRewriter, node: cst.Call, scope: Scope) -> None:
-    """Rewrite `super().robotInit()` in what becomes a constructor."""
+def super_call(file: FileRewriter, node: cst.Call, scope: Scope) -> bool:
+    """Rewrite `super().robotInit()` in what becomes a constructor. Return whether it is that."""
     function = scope.function
     own = function.own_class if function is not None else None
-    if function is None or own is None or function.name != "robotInit" or not _is_super(node):
-        return
-    if not own.scope.bindings.get("__init__"):
-        file.handled.add(node.func)
-        file.edit(node, lambda updated: cst.parse_expression(_CALL))
+    if own is None or function is None or function.name != "robotInit" or not _is_super(node):
+        return False
+    if own.scope.bindings.get("__init__"):
+        return False
+    file.handled.add(node.func)
+    file.edit(node.func, lambda updated: updated.with_changes(attr=cst.Name("__init__")))
+    return True
 
 
 def _is_super(node: cst.CSTNode) -> bool:
@@ -69,15 +78,15 @@ def _calls_super(method: cst.FunctionDef) -> bool:
 
 
 def _with_first(method: Any, code: str) -> Any:
-    statement = cst.parse_statement(code)
+    statement: cst.BaseStatement = cst.parse_statement(code)
     body = method.body
     if isinstance(body, cst.SimpleStatementSuite):
-        block = cst.IndentedBlock([statement, cst.SimpleStatementLine(body.body)])
+        block = cst.IndentedBlock([statement, cst.SimpleStatementLine(body.body)], header=body.trailing_whitespace)
         return method.with_changes(body=block)
     statements = list(body.body)
     index = 1 if _is_docstring(statements[0]) else 0
     if len(statements) == index + 1 and is_pass(statements[index]):
-        statements = statements[:index]
+        statement = in_place_of(statements.pop(), statement)
     return method.with_changes(body=body.with_changes(body=[*statements[:index], statement, *statements[index:]]))
 
 

@@ -68,6 +68,13 @@ class OwnCallable:
 
 
 @dataclass(frozen=True)
+class Returns:
+    """Anything that can be called, as `Callable[[], Rotation2d]`, by what it returns."""
+
+    of: frozenset[Atom]
+
+
+@dataclass(frozen=True)
 class Many:
     """A container.
 
@@ -79,9 +86,11 @@ class Many:
     keys: frozenset[Atom] | None = None
 
 
-Atom = Ref | Obj | Bound | OwnModuleRef | OwnRef | OwnObj | OwnCallable | Many
+Atom = Ref | Obj | Bound | OwnModuleRef | OwnRef | OwnObj | OwnCallable | Returns | Many
 Atoms = frozenset[Atom]
 NOTHING: Atoms = frozenset()
+#: How deep containers are followed: `each = [each]` has no end.
+_DEPTH = 5
 
 
 def union(of: Iterable[Atoms]) -> Atoms:
@@ -91,8 +100,12 @@ def union(of: Iterable[Atoms]) -> Atoms:
 
 def many(of: Iterable[Atoms]) -> Atoms:
     """Return a container of these."""
-    found = union(of)
+    found = frozenset(each for each in union(of) if _depth(each) < _DEPTH)
     return frozenset({Many(found)}) if found else NOTHING
+
+
+def _depth(atom: Atom) -> int:
+    return 1 + max(map(_depth, atom.of), default=0) if isinstance(atom, Many) else 0
 
 
 def elements(of: Atoms) -> Atoms:
@@ -107,7 +120,8 @@ def items(of: Atoms) -> Atoms:
 
 def dictionary(keys: Atoms, values: Atoms) -> Atoms:
     """Return a dictionary."""
-    return frozenset({Many(values, keys)}) if keys or values else NOTHING
+    shallow = frozenset(each for each in keys | values if _depth(each) < _DEPTH)
+    return frozenset({Many(values & shallow, keys & shallow)}) if shallow else NOTHING
 
 
 def instance(of: Ref | OwnRef) -> Atom:

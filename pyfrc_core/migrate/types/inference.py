@@ -6,7 +6,7 @@ nothing: the empty set. Parameters without an annotation are what the project's 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import libcst as cst
 
@@ -23,6 +23,7 @@ from .atoms import (
     OwnObj,
     OwnRef,
     Ref,
+    Returns,
     dictionary,
     elements,
     instance,
@@ -32,10 +33,10 @@ from .atoms import (
     union,
 )
 from .library import ITEM, ITEMS, OPERATORS, SAME, SINGLE
+from .passed import Passed
 from .scopes import Binding, Module, OwnClass, OwnFunction, Scope
-from .values import values
 
-_TIMES = 4
+_TIMES = 6
 _AUTONOMOUS = "robotpy_ext.autonomous.StatefulAutonomous"
 
 
@@ -48,25 +49,17 @@ class Inference:
     def __init__(self, table: Table, modules: Sequence[Module]) -> None:
         self.table = table
         self.modules = {module.name: module for module in modules}
-        self._packages = {name.rpartition(".")[0] for name in self.modules if "." in name}
+        parts = [name.split(".") for name in self.modules]
+        self._packages = {".".join(each[:end]) for each in parts for end in range(1, len(each))}
         self._memo: dict[object, Atoms | None] = {}
         #: What was found the last time, for what depends on itself.
         self._before: dict[object, Atoms | None] = {}
+        self._parsed: dict[cst.SimpleString, cst.BaseExpression | None] = {}
         self._classes = {each.node: each for module in modules for each in module.classes}
         self._functions = {each.node: each for module in modules for each in module.functions}
-        self._calls: dict[str, list[tuple[cst.Call, Scope]]] = {}
-        #: The call that a lambda is passed to.
-        self._receivers: dict[cst.CSTNode, tuple[cst.Call, Scope]] = {}
-        for module in modules:
-            for node, scope in module.sites:
-                if isinstance(node, cst.Call):
-                    self._receivers |= {
-                        arg.value: (node, scope) for arg in node.args if isinstance(arg.value, cst.Lambda)
-                    }
-                if isinstance(node, cst.Call) and isinstance(node.func, cst.Name | cst.Attribute):
-                    name = node.func.value if isinstance(node.func, cst.Name) else node.func.attr.value
-                    self._calls.setdefault(name, []).append((node, scope))
-
+        #: The classes that are derived from one of the team's.
+        self._below: dict[OwnClass, list[OwnClass]] = {}
+        self._passed = Passed(self, self._functions.values(), self._classes.values())
         self._settle()
 
     def _settle(self) -> None:
@@ -76,6 +69,10 @@ class Inference:
                 for node, scope in module.sites:
                     if isinstance(node, cst.Name | cst.Attribute | cst.Call):
                         self.infer(node, scope)
+            self._below = {}
+            for own in self._classes.values():
+                for base in self.lineage(own)[0][1:]:
+                    self._below.setdefault(base, []).append(own)
             settled = self._memo == self._before
             self._before, self._memo = self._memo, {}
             if settled:
@@ -85,10 +82,13 @@ class Inference:
 
     def infer(self, node: cst.CSTNode, scope: Scope) -> Atoms:
         """Return what an expression can be."""
-        key = (node, scope)
+        return self._once((node, scope), self._infer, node, scope)
+
+    def _once(self, key: object, find: Callable[..., Atoms], *of: object) -> Atoms:
+        """Find something once in each turn; what depends on itself is what it was the turn before."""
         if key not in self._memo:
             self._memo[key] = None
-            self._memo[key] = self._infer(node, scope)
+            self._memo[key] = find(*of)
         found = self._memo[key]
         return (self._before.get(key) or NOTHING) if found is None else found
 
@@ -135,6 +135,9 @@ class Inference:
 
     def named(self, name: str, scope: Scope) -> Atoms:
         """Return what a name can be in a scope."""
+        return self._once((name, scope), self._named, name, scope)
+
+    def _named(self, name: str, scope: Scope) -> Atoms:
         bindings = scope.find(name)
         if bindings:
             return union(self.bound(each, name) for each in bindings)
@@ -153,7 +156,9 @@ class Inference:
         if binding.kind == "function" and isinstance(binding.node, cst.FunctionDef):
             return frozenset({OwnCallable(self._functions[binding.node])})
         if binding.kind == "parameter" and isinstance(binding.node, cst.Param) and binding.scope.function is not None:
-            return self._parameter(binding.node, binding.scope.function)
+            return self._passed.parameter(binding.node, binding.scope.function)
+        if binding.kind == "opaque" and isinstance(binding.node, cst.Param) and binding.node.annotation is not None:
+            return many([self.annotated(binding.node.annotation.annotation, binding.scope)])
         if binding.kind == "annotation":
             return self.annotated(binding.node, binding.scope)
         if binding.kind in ("value", "element", "enter"):
@@ -168,18 +173,29 @@ class Inference:
 
     def annotated(self, node: cst.CSTNode, scope: Scope) -> Atoms:
         """Return what an object with this annotation can be."""
-        if isinstance(node, cst.SimpleString):
+        return self._once(("annotated", node, scope), self._annotated, node, scope)
+
+    def parsed(self, node: cst.SimpleString) -> cst.BaseExpression | None:
+        """Return the annotation that a string is; None if it is none."""
+        if node not in self._parsed:
             try:
-                return self.annotated(cst.parse_expression(str(node.evaluated_value)), scope)
-            except cst.ParserSyntaxError:
-                return NOTHING
+                self._parsed[node] = cst.parse_expression(str(node.evaluated_value))
+            except (cst.ParserSyntaxError, ValueError):
+                self._parsed[node] = None
+        return self._parsed[node]
+
+    def _annotated(self, node: cst.CSTNode, scope: Scope) -> Atoms:
+        if isinstance(node, cst.SimpleString):
+            inner_node = self.parsed(node)
+            return NOTHING if inner_node is None else self.annotated(inner_node, scope)
         if isinstance(node, cst.BinaryOperation):
             return self.annotated(node.left, scope) | self.annotated(node.right, scope)
         if isinstance(node, cst.Subscript):
             name = node.value.attr.value if isinstance(node.value, cst.Attribute) else getattr(node.value, "value", "")
             inner = [each.slice.value for each in node.slice if isinstance(each.slice, cst.Index)]
             if name == "Callable":
-                return NOTHING
+                found = self.annotated(inner[-1], scope) if len(inner) == 2 else NOTHING
+                return frozenset({Returns(found)}) if found else NOTHING
             if name.lower() in ("dict", "mapping", "mutablemapping", "defaultdict") and len(inner) == 2:
                 return dictionary(self.annotated(inner[0], scope), self.annotated(inner[1], scope))
             found = union(self.annotated(each, scope) for each in inner)
@@ -193,6 +209,10 @@ class Inference:
         return found
 
     # Modules
+
+    def is_own(self, package: str) -> bool:
+        """Return whether a module or package is the project's."""
+        return package in self.modules or package in self._packages
 
     def _module(self, path: str) -> Atoms:
         if path in self.modules or path in self._packages:
@@ -254,15 +274,27 @@ class Inference:
                     mine.append(base.own)
         return mine, theirs
 
+    def family(self, own: OwnClass) -> tuple[list[OwnClass], list[str]]:
+        """Return where an object of a class may have its attributes from: the lineage, then that of derived classes.
+
+        What a mixin or a base of the team's uses is often in the classes that are derived from it.
+        """
+        mine, theirs = self.lineage(own)
+        for each in self._below.get(own, ()):
+            more, others = self.lineage(each)
+            mine += [one for one in more if one not in mine]
+            theirs += [one for one in others if one not in theirs]
+        return mine, theirs
+
     def own_bindings(self, own: OwnClass, name: str) -> list[Binding]:
         """Return what a class itself binds as an attribute, in its body and by `self.name = ...`."""
         found = [*own.scope.bindings.get(name, ()), *own.assigned.get(name, ())]
         return found if any(each.kind != "item" for each in found) else []
 
     def _own_attribute(self, owner: OwnRef | OwnObj, name: str) -> Atoms:
-        mine, theirs = self.lineage(owner.own)
+        mine, theirs = self.family(owner.own)
         if isinstance(owner, OwnObj) and owner.above:
-            mine = mine[1:]
+            mine = self.lineage(owner.own)[0][1:]
         for own in mine:
             bindings = self.own_bindings(own, name)
             if not bindings:
@@ -270,26 +302,11 @@ class Inference:
             found = union(self.bound(each, name) for each in bindings)
             methods = [each for each in found if isinstance(each, OwnCallable)]
             read = [each for each in methods if {"property", "cached_property"} & each.function.decorators()]
-            return found | union(self._returned(each.function) for each in read)
+            return found | union(self.returned(each.function) for each in read)
         found = union(self._member(owner, path, name) for path in theirs)
-        return found or (self._components(name) if _AUTONOMOUS in theirs else NOTHING)
-
-    def _components(self, name: str) -> Atoms:
-        """Return what the robot gives its autonomous modes under a name."""
-        found: Atoms = NOTHING
-        for call, scope in self._calls.get("AutonomousModeSelector", ()):
-            for arg in call.args:
-                dictionaries = [arg.value, *values(self, arg.value, scope)]
-                for each in dictionaries:
-                    if isinstance(each, cst.Dict):
-                        found |= union(
-                            self.infer(item.value, scope)
-                            for item in each.elements
-                            if isinstance(item, cst.DictElement)
-                            and isinstance(item.key, cst.SimpleString)
-                            and item.key.evaluated_value == name
-                        )
-        return found
+        if not found:  # setattr(self, name, motor)
+            found = union(self.bound(each, name) for own in mine for each in own.assigned.get("*", ()))
+        return found or (self._passed.components(name) if _AUTONOMOUS in theirs else NOTHING)
 
     # Calls
 
@@ -301,8 +318,12 @@ class Inference:
                 return frozenset({OwnObj(own, above=True)}) if own is not None else NOTHING
             if name in SAME or name in ("next", "max", "min"):
                 found = union(self.infer(each.value, scope) for each in node.args)
+                self._passed.give_elements(node, scope)
                 return found if name in SAME else elements(found) | found
+            if name == "map":
+                return many(self.returned(each) for each in self._passed.give_elements(node, scope))
         called = self.infer(node.func, scope)
+        self._passed.give(node, scope, called)
         if isinstance(node.func, cst.Attribute):
             owner = self.infer(node.func.value, scope)
             kept = frozenset(each for each in owner if isinstance(each, Many))
@@ -314,10 +335,12 @@ class Inference:
         return union(self._result(each) for each in called)
 
     def _result(self, called: Atom) -> Atoms:
+        if isinstance(called, Returns):
+            return called.of
         if isinstance(called, OwnRef):
             return frozenset({OwnObj(called.own)})
         if isinstance(called, OwnCallable):
-            return self._returned(called.function)
+            return self.returned(called.function)
         if isinstance(called, Ref):
             name = self.table.name(called.path)
             if name is None:
@@ -336,64 +359,18 @@ class Inference:
         left, right = self.infer(node.left, scope), self.infer(node.right, scope)
         return self._results(left, name) | self._results(right, name.replace("__", "__r", 1))
 
-    def _returned(self, function: OwnFunction) -> Atoms:
+    def returned(self, function: OwnFunction) -> Atoms:
+        """Return what a function of the team's returns."""
         node = function.node
         if isinstance(node, cst.FunctionDef) and node.returns is not None:
-            return self.annotated(node.returns.annotation, function.outer)
+            found = self.annotated(node.returns.annotation, function.outer)
+            return self.with_stand_ins(found, lambda: self._all_returned(function))
+        return self._all_returned(function)
+
+    def _all_returned(self, function: OwnFunction) -> Atoms:
         return union(self.infer(value, scope) for value, scope in function.returned)
 
-    # Parameters
-
-    def _parameter(self, node: cst.Param, function: OwnFunction) -> Atoms:
-        own, parameters = function.own_class, function.parameters()
-        if own is not None and parameters and node is parameters[0] and "staticmethod" not in function.decorators():
-            return frozenset({OwnRef(own) if "classmethod" in function.decorators() else OwnObj(own)})
-        if node.annotation is not None:
-            return self.annotated(node.annotation.annotation, function.outer)
-        found = self.infer(node.default, function.outer) if node.default is not None else NOTHING
-        found |= self._passed(node, function)
-        return found or self._from_callback(function) or self._fixture(node.name.value)
-
-    def _from_callback(self, function: OwnFunction) -> Atoms:
-        """Return what WPILib passes to a lambda."""
-        call, scope = self._receivers.get(function.node, (None, None))
-        if call is None or scope is None:
-            return NOTHING
-        paths = [f"{each.owner}.{each.name}" for each in self.infer(call.func, scope) if isinstance(each, Bound)]
-        types = self.table.corrections["callbacks"]
-        return frozenset(Obj(types[path]) for path in paths if path in types)
-
-    def _passed(self, node: cst.Param, function: OwnFunction) -> Atoms:
-        """Return what the project's own calls pass for a parameter."""
-        own = function.own_class
-        is_constructor = own is not None and function.name == "__init__"
-        position = function.parameters().index(node) - (1 if own is not None else 0)
-        found: Atoms = NOTHING
-        for call, scope in self._calls.get(own.name if is_constructor and own else function.name, ()):
-            wanted: Atom = OwnRef(own) if is_constructor and own is not None else OwnCallable(function)
-            if wanted not in self.infer(call.func, scope):
-                continue
-            for index, arg in enumerate(call.args):
-                if arg.star:
-                    break
-                if arg.keyword.value == node.name.value if arg.keyword else index == position:
-                    found |= self.infer(arg.value, scope)
-        return found
-
-    def _fixture(self, name: str) -> Atoms:
-        """Return what pytest, or pyfrc, passes for a parameter of this name."""
-        fixtures = [each for each in self._functions.values() if each.name == name and "fixture" in each.decorators()]
-        if fixtures:
-            return union(self._returned(each) for each in fixtures)
-        if name == "physics_controller":
-            return frozenset({Obj("pyfrc.physics.core.PhysicsInterface")})
-        return self._robots() if name == "robot" else NOTHING
-
-    def _robots(self) -> Atoms:
-        """Return the robot classes: what tests and physics.py call `robot`."""
-        robots = [
-            own
-            for own in self._classes.values()
-            if any("wpilib.RobotBase" in self.table.ancestors(path) for path in self.lineage(own)[1])
-        ]
-        return frozenset(OwnObj(each) for each in robots)
+    def with_stand_ins(self, annotated: Atoms, given: Callable[[], Atoms]) -> Atoms:
+        """Return what is annotated and, where that is a protocol of the team's, what is given in its place."""
+        protocols = [each for each in annotated if isinstance(each, OwnObj) and not self.lineage(each.own)[1]]
+        return annotated | {each for each in given() if isinstance(each, Obj | OwnObj)} if protocols else annotated

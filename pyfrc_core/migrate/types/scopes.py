@@ -88,6 +88,10 @@ class OwnFunction:
             found.add(dotted(node).rpartition(".")[2])
         return found
 
+    def receives_self(self) -> bool:
+        """Return whether the first parameter is the object, or the class, whose method it is."""
+        return self.own_class is not None and bool(self.parameters()) and "staticmethod" not in self.decorators()
+
     def parameters(self) -> list[cst.Param]:
         """Return all parameters but `*args` and `**kwargs`."""
         of = self.node.params
@@ -179,6 +183,15 @@ class _Builder(cst.CSTVisitor):
         self._module.called.add(node.func)
         if isinstance(node.func, cst.Attribute) and node.func.attr.value in PUTS and node.args:
             self._put(node.func.value, node.args[-1].value)
+        if isinstance(node.func, cst.Name) and node.func.value == "setattr" and len(node.args) == 3:
+            self._set(*(each.value for each in node.args))
+
+    def _set(self, owner: cst.BaseExpression, name: cst.BaseExpression, value: cst.BaseExpression) -> None:
+        """Note what `setattr(self, name, value)` assigns, under "*" if the name is made while the robot runs."""
+        own = self._self_class(owner.value) if isinstance(owner, cst.Name) else None
+        if own is not None:
+            text = str(name.evaluated_value) if isinstance(name, cst.SimpleString) else "*"
+            own.assigned.setdefault(text, []).append(Binding("value", value, self._scope))
 
     def visit_Comparison(self, node: cst.Comparison) -> None:
         self._site(node)

@@ -1,0 +1,33 @@
+"""Any project gives a report, and what `pyfrc migrate` writes of it is valid Python."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("libcst")
+
+from pyfrc_core.migrate.migration import migrate
+from pyfrc_core.migrate.project import why_invalid
+
+from .odd_projects import make_project
+
+
+@pytest.mark.parametrize("seeds", [range(8), pytest.param(range(8, 300), marks=pytest.mark.slow)], ids=["few", "many"])
+def test_odd_projects(tmp_path: Path, seeds: range) -> None:
+    wrong: list[str] = []
+    for seed in seeds:
+        root = tmp_path / str(seed)
+        root.mkdir()
+        make_project(root, seed)
+        before = {file: file.read_bytes() for file in root.rglob("*.py") if file.is_file()}
+        done = migrate(root)
+        wrong += [f"{seed}: {each}" for each in done.report.by_hand() if "a mistake of pyfrc" in each.remedy]
+        wrong += [f"{seed}: {each}" for each in done.report.by_hand() if "LibCST cannot" in each.what]
+        done.write()
+        valid = [file for file, text in before.items() if why_invalid(text) is None]
+        wrong += [f"{seed}: {file}" for file in valid if why_invalid(file.read_bytes()) is not None]
+        if migrate(root).after:
+            wrong.append(f"{seed}: a second run changes {sorted(migrate(root).after)}")
+    assert wrong == []
