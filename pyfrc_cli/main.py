@@ -193,6 +193,8 @@ def _remedy(error: click.ClickException) -> str:
     command = error.ctx.info_name
     if isinstance(error, click.NoSuchOption) and command == "test":
         return "Write options of pytest after --, for example: pyfrc test -- -k drive"
+    if isinstance(error, click.NoSuchOption) and command == "sim" and error.option_name == "--headless":
+        return "Write: pyfrc sim --ui none, or with an end: pyfrc sim --ui none --mode practice"
     if isinstance(error, click.NoSuchOption) and command == "sim" and "gui" in error.option_name:
         return "Write: pyfrc sim, for the simulator's page, or: pyfrc sim --ui none --mode practice"
     if isinstance(error, click.NoSuchOption) and command == "view" and error.option_name == "--log":

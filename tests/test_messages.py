@@ -348,7 +348,8 @@ def test_a_test_file_with_another_name_is_named_where_it_is_the_only_one(make_pr
     assert "Rename it to test_arm.py." in result.stderr
 
 
-def test_an_option_of_another_simulator(make_project: MakeProject) -> None:
-    result = make_project({"robot.py": ROBOT}).run("sim", "--nogui")
+@pytest.mark.parametrize("option", ["--nogui", "--headless"])
+def test_an_option_of_another_simulator(make_project: MakeProject, option: str) -> None:
+    result = make_project({"robot.py": ROBOT}).run("sim", option)
     assert result.code == 2
     assert "pyfrc sim --ui none --mode practice" in result.stderr

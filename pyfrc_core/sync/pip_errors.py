@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import re
 from urllib.parse import urlsplit
 
 from ..errors import PyfrcError
 from ..season import Season
+from .addresses import INDEX_VARIABLE
 
 
 class NothingFitsError(PyfrcError):
@@ -20,6 +22,7 @@ _MISSING = re.compile(
     r"Could not find a version that satisfies the requirement (?P<needed>.+?)"
     r"(?: \(from (?!versions:)(?P<by>[^)]+)\))? \(from versions: (?P<there>[^)]*)\)"
 )
+_WPILIB = re.compile(r"(robotpy|wpilib|pyntcore)(?![a-z])")
 _CONFLICT = re.compile(r"The conflict is caused by:\s*\n(?P<reasons>(?:[ \t]+\S.*\n)+)")
 _UNREACHABLE = re.compile(r"Retrying \(Retry\(|Could not fetch URL|Connection to \S+ timed out|ConnectTimeoutError")
 _REASON = re.compile(r"\[Errno -?\d+\] ([^'\")\n]+)|(certificate.verify.failed)|(timed out)", re.IGNORECASE)
@@ -94,6 +97,14 @@ def _no_wheel(missing: re.Match[str], season: Season) -> PyfrcError:
     if missing["by"]:
         text = f"{text}; {missing['by']} needs it"
     there = [each.strip() for each in missing["there"].split(",") if each.strip() not in ("", "none")]
+    if _WPILIB.match(missing["needed"]) and not any(each.startswith(f"{season.year}.") for each in there):
+        # Other indexes have placeholders of old years under these names.
+        index = os.environ.get(INDEX_VARIABLE)
+        where = f"{INDEX_VARIABLE} is {index or 'empty'}, so that these wheels were not looked for there"
+        return NothingFitsError(
+            f"{text}; WPILib's wheels of {season.year} are on {season.downloads.index}",
+            remedy=f"{where}. Unset it, or name a mirror of that index." if index is not None else "Look there for it.",
+        )
     if there:
         shown = ", ".join(there[-5:])
         text = f"{text}; there are wheels of {'... ' if there[5:] else ''}{shown}"

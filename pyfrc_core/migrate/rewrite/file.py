@@ -45,6 +45,8 @@ class FileRewriter:
         self.edits: dict[cst.CSTNode, Edit] = {}
         #: Nodes that an edit of the expression around them takes care of.
         self.handled: set[cst.CSTNode] = set()
+        #: Imports that are replaced.
+        self.replaced: frozenset[cst.CSTNode] = frozenset()
         #: Statements that are left out.
         self.removed: set[cst.BaseSmallStatement] = set()
         self.name_in_report = name
@@ -282,7 +284,8 @@ class FileRewriter:
 
     def changed_places(self) -> set[Place]:
         """Return the lines that the edits are in."""
-        return {Place(self.name_in_report, self.line(node)) for node in self.edits if node in self.positions}
+        nodes = self.edits.keys() | self.replaced
+        return {Place(self.name_in_report, self.line(node)) for node in nodes if node in self.positions}
 
     def gone_override(self, method: cst.FunctionDef, found: Found) -> None:
         """Report an override of a method that is gone."""

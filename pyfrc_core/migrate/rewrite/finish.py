@@ -39,6 +39,7 @@ def new_text(file: FileRewriter, *, comments: bool) -> str:
     """
     statements = file.imports.plan()
     statements |= {each: [] for each in file.removed}
+    file.replaced = frozenset(statements)
     if comments:
         _comment(file)
     tree = file.module.tree.visit(Apply(file.edits, statements))

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from typing import TYPE_CHECKING
 
 import libcst as cst
 
 from .atoms import NOTHING, Atom, Atoms, Bound, Obj, OwnCallable, OwnObj, OwnRef, elements, items, union
 from .scopes import OwnClass, OwnFunction, Scope
-from .values import values
-
-if TYPE_CHECKING:
-    from .inference import Inference
+from .values import Types, values
 
 
 class Passed:
@@ -21,7 +17,7 @@ class Passed:
     :param functions: all of the project
     """
 
-    def __init__(self, inference: Inference, functions: Collection[OwnFunction], classes: Collection[OwnClass]) -> None:
+    def __init__(self, inference: Types, functions: Collection[OwnFunction], classes: Collection[OwnClass]) -> None:
         self._inference = inference
         self._functions = functions
         self._classes = classes

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Protocol
 
 import libcst as cst
 
+from ..names.table import Table
 from .atoms import Atoms, OwnModuleRef, OwnObj, OwnRef
-from .scopes import Binding, Module, OwnClass, Scope
+from .scopes import Binding, Module, OwnClass, OwnFunction, Scope
 
 
 class Types(Protocol):
     """What is asked of `inference.Inference`."""
 
+    table: Table
+
     @property
     def modules(self) -> Mapping[str, Module]: ...
+    def annotated(self, node: cst.CSTNode, scope: Scope) -> Atoms: ...
+    def returned(self, function: OwnFunction) -> Atoms: ...
+    def with_stand_ins(self, annotated: Atoms, given: Callable[[], Atoms]) -> Atoms: ...
     def infer(self, node: cst.CSTNode, scope: Scope) -> Atoms: ...
     def lineage(self, own: OwnClass) -> tuple[list[OwnClass], list[str]]: ...
     def own_bindings(self, own: OwnClass, name: str) -> list[Binding]: ...
