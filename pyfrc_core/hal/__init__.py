@@ -2,7 +2,10 @@
 
 In: the HAL of this process. Out: `HalData`, dicts and lists that read and write the HAL itself. They store no value
 that the HAL has, so no two users of a run can see different values. Paths into it, such as ``joysticks[0].axes[1]``,
-are also the language of input scripts and traces (`paths`). Each device is a row of a table (`devices`).
+are also the language of input scripts and traces (`paths`).
+
+Each device is a row of a table (`device_table`), which says what its values are: recordings, restarts, comparison, fuzz
+and the simulator ask the row of a path (`rows`), which needs no WPILib.
 
 Traces and recordings find what has changed by one mechanism: `tree_reader` reads every value of the devices that exist
 through WPILib's bindings, and `change_reader` compares. Which of the roboRIO's 290 possible devices exist, the HAL
