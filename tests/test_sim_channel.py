@@ -23,8 +23,8 @@ from pyfrc_core.project import Project
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine import processes
 from pyfrc_core.sim.engine.host import Hosting
-from pyfrc_core.sim.engine.host_process import start_host
 from pyfrc_core.sim.engine.messages import Failed
+from pyfrc_core.sim.engine.processes import start_host
 
 FAILS = """
     import ctypes
@@ -138,7 +138,7 @@ def test_a_host_that_was_ended_is_not_taken_for_the_one_after_it(
 ) -> None:
     """A restart ends it while it starts; its connection is accepted when the next host has been started."""
     first_is_there, next_is_started = Gate(), Gate()
-    introduced, start_host = processes.introduced, processes.host_process.start_host
+    introduced, start_host = processes.introduced, processes.start_host
 
     def introduced_late(connection: Connection) -> object:
         who = introduced(connection)
@@ -154,7 +154,7 @@ def test_a_host_that_was_ended_is_not_taken_for_the_one_after_it(
         return host
 
     monkeypatch.setattr(processes, "introduced", introduced_late)
-    monkeypatch.setattr(processes.host_process, "start_host", start)
+    monkeypatch.setattr(processes, "start_host", start)
     project = Project(make_project({"robot.py": FAILS}).path / "robot.py")
     with Simulation(project, SimOptions(speed=0, fork=False)) as simulation:
         first_is_there.hold()

@@ -30,7 +30,7 @@ from pyfrc_core.processes.spawn import Interpreter
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import parse_script
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.engine import host_process
+from pyfrc_core.sim.engine import processes
 from pyfrc_core.sim.engine.scene import Pose
 from pyfrc_core.sim.engine.snapshot import Snapshot
 from pyfrc_core.sim.engine.watch import Watch
@@ -400,13 +400,13 @@ def test_real_time_goes_on_by_itself(project: Project) -> None:
 def test_where_processes_cannot_be_forked(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
     """The next one is started ahead, and takes over."""
     started: list[Interpreter] = []
-    start_host = host_process.start_host
+    start_host = processes.start_host
 
     def start(*arguments: Any) -> Interpreter:
         started.append(start_host(*arguments))
         return started[-1]
 
-    monkeypatch.setattr(host_process, "start_host", start)
+    monkeypatch.setattr(processes, "start_host", start)
     with Simulation(project, replace(STILL, fork=False)) as simulation:
         drive_forward(simulation)
         run(simulation, 1)

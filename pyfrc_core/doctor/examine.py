@@ -13,10 +13,13 @@ from ..config.robotpy import load_season_settings
 from ..display import WITHOUT_DISPLAY, has_display, has_tkinter
 from ..errors import PyfrcError, SettingsError
 from ..project import Project, find_project
-from ..season import CURRENT, SeasonSetting, installed_wpilib, season_of
+from ..season import CURRENT, Season, SeasonSetting, installed_wpilib, season_of
 from ..shell import getting_tkinter
+from ..sync import LOCK_FILE, load_lock, lock_file_of
+from ..sync.install import different_here
+from ..sync.synchronize import differences
+from ..wording import counted
 from .check_result import CheckResult, hint, ok
-from .downloads import check_downloads
 from .installed import find_installed
 from .packages import check_imports, check_pyfrc, check_python, check_wpilib
 from .robot import RobotSearch
@@ -31,6 +34,9 @@ EXTRAS = {
     "profile": ("pyinstrument", "--html of pyfrc profile"),
     "wpilib-window": ("halsim_gui", "pyfrc sim --ui wpilib"),
 }
+
+
+_SYNC, _MAX_NAMED = "sync", 3
 
 
 def check_browser() -> Iterator[CheckResult]:
@@ -134,3 +140,29 @@ def _project(wanted: DoctorOptions) -> tuple[Project | None, CheckResult | None]
             return None, hint("project", error.message, error.remedy or "")
         return None, problem_from_error("project", error, "Correct it there.")
     return project, None
+
+
+def check_downloads(project: Project, season: Season, installed: str) -> Iterator[CheckResult]:
+    """Check the project's lock, the files that it names, and whether the same versions are installed here.
+
+    :param installed: the version of WPILib on this computer
+    """
+    try:
+        lock = load_lock(lock_file_of(project), season)
+        if lock is None:
+            text = f"there is no {LOCK_FILE}: what the robot needs was not downloaded with pyfrc"
+            yield hint(_SYNC, text, "With internet: pyfrc sync. A robot that has all it needs works without.")
+            return
+        found = list(differences(project, season, installed))
+    except (PyfrcError, OSError) as error:
+        yield problem_from_error(_SYNC, error, "pyfrc sync --upgrade")
+        return
+    if found:
+        more = f"; and {len(found) - _MAX_NAMED} more" if len(found) > _MAX_NAMED else ""
+        yield hint(_SYNC, f"{'; '.join(found[:_MAX_NAMED])}{more}", "With internet: pyfrc sync")
+    else:
+        yield ok(_SYNC, f"{counted(len(lock.files), 'file')} for the {lock.controller} are on this computer")
+    if others := list(different_here(lock)):
+        more = f" and {len(others) - _MAX_NAMED} more" if len(others) > _MAX_NAMED else ""
+        text = f"this computer has {', '.join(others[:_MAX_NAMED])}{more}"
+        yield hint(_SYNC, text, "For the robot's versions here, too: pyfrc sync --install")

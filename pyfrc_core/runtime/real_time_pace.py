@@ -2,21 +2,22 @@
 
 Such a device responds after some milliseconds of real time. A run without a limit passes many packets in them: a loop
 that is closed in the motor's controller then sees its sensor late, overshoots, and does so differently in each run.
-Where no such loop is closed and no device's motion is computed (`real_time_loops`), and while the robot is
+Where no such loop is closed and no device's motion is computed (`RealTimeLoops`), and while the robot is
 disabled, nothing waits.
 """
 
 from __future__ import annotations
 
+import re
+import sys
 import time
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
 
 from ..compat.unrepeatable import real_time_libraries
-from ..patch_table import PatchTable
+from ..patch_table import Patch, PatchTable
 from ..wpi import station
 from .robot_time import PACKET_US
-from .time.real_time_loops import RealTimeLoops
 
 if TYPE_CHECKING:
     from ..config.settings import Settings
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 
 # As they are before robot time replaces them.
 _real_clock, _real_sleep = time.perf_counter, time.sleep
+
+#: The names of phoenix6's control requests for which the motor's controller reads a sensor.
+_CLOSED = re.compile(r"Position|Velocity|MotionMagic|Differential(?!.*Follower)")
 
 
 class RealTimePace:
@@ -73,3 +77,49 @@ class RealTimePace:
         if left > 0:
             self._sleep(left)
         self._last = self._clock()
+
+
+class RealTimeLoops:
+    """Whether such devices need real time: where what they do comes back to the robot.
+
+    That is so while a loop is closed in a motor's controller, and once code has asked for the simulation of a device,
+    which computes its motion. All else, such as a voltage that the robot's code sets, has no effect that the robot
+    could see. The vendor's public functions that begin either are intercepted: nothing else tells.
+    """
+
+    def __init__(self) -> None:
+        #: The devices whose controllers close a loop, by their identity.
+        self._closed: set[int] = set()
+        self._is_simulated = False
+
+    @property
+    def needed(self) -> bool:
+        """Return whether the devices need real time while the robot is enabled."""
+        return self._is_simulated or bool(self._closed)
+
+    def patches(self) -> Iterator[Patch]:
+        """Return the patches that report to this."""
+        hardware: Any = sys.modules.get("phoenix6.hardware")
+        for owner in [each for each in vars(hardware).values() if isinstance(each, type)] if hardware else ():
+            if hasattr(owner, "set_control"):
+                yield Patch(owner, "set_control", self._controlled(owner.set_control))
+            if isinstance(simulated := getattr(owner, "sim_state", None), property) and simulated.fget is not None:
+                yield Patch(owner, "sim_state", property(self._simulated(simulated.fget)))
+        swerve: Any = sys.modules.get("phoenix6.swerve")
+        if swerve is not None and hasattr(swerve, "SwerveDrivetrain"):  # its loops are closed in native code
+            owner = swerve.SwerveDrivetrain
+            yield Patch(owner, "__init__", self._simulated(owner.__init__))
+
+    def _controlled(self, real: Callable[..., Any]) -> Callable[..., Any]:
+        def set_control(device: Any, request: Any, *args: Any, **kwargs: Any) -> Any:
+            (self._closed.add if _CLOSED.search(type(request).__name__) else self._closed.discard)(id(device))
+            return real(device, request, *args, **kwargs)
+
+        return set_control
+
+    def _simulated(self, real: Callable[..., Any]) -> Callable[..., Any]:
+        def call(device: Any, *args: Any, **kwargs: Any) -> Any:
+            self._is_simulated = True
+            return real(device, *args, **kwargs)
+
+        return call

@@ -11,11 +11,13 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from itertools import count
 from multiprocessing.connection import Client, Listener
 from pathlib import Path
 from typing import Any
 
+from ...processes import spawn
 from ...processes.channel import Channel, Connection, Outbox
 from ...processes.crash_report import moment_of, standstill_of
 from ...processes.fork import FORK_IS_SAFE
@@ -25,9 +27,8 @@ from ...processes.spawn import Interpreter
 from ...processes.standstill import Standstill, loading_for
 from ...project.robot_files import RobotFiles
 from ...temporary import temporary_directory
-from . import host_process
 from .commands import Quit
-from .host import CLOSING_SECONDS, Exited, Hosting, Kill, Launch, Preload
+from .host import CLOSING_SECONDS, Exited, Hosting, Kill, Launch, Preload, main
 from .messages import Failed, Job, Message
 
 #: The most bytes that the name of a socket may have on every system.
@@ -36,6 +37,9 @@ _LONGEST_NAME = 100
 _PATIENCE = 1.0
 #: The same for a host, whose robot may have data logs to complete.
 _HOST_PATIENCE = CLOSING_SECONDS + _PATIENCE
+
+#: What a host's interpreter reads from its environment: a fixed order of sets, and output as it is printed.
+ENVIRONMENT = {"PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1", "PYTHONIOENCODING": "utf-8"}
 
 
 @dataclass
@@ -197,7 +201,7 @@ class RobotProcesses:
     def _start_host(self) -> _Spare:
         name, output = f"host {next(self._hosts)}", OutputPipe(self._on_output)
         hosting = Hosting(self._listener.address, self._key, self._forks, self._temporary.name, name, output.stamp)
-        return _Spare(name, host_process.start_host(hosting, output.writing_end), output)
+        return _Spare(name, start_host(hosting, output.writing_end), output)
 
     def _end_spare(self) -> None:
         spare, self._spare = self._spare, None
@@ -361,3 +365,21 @@ def _thread(target: Callable[..., object], name: str, *arguments: Any) -> thread
     thread = threading.Thread(target=target, name=name, args=arguments, daemon=True)
     thread.start()
     return thread
+
+
+def start_host(hosting: Hosting, output: int) -> spawn.Interpreter:
+    """Start a host.
+
+    :param output: the descriptor of what the host prints into
+    :return: its process; on POSIX the leader of a session of its own
+    """
+    return spawn.start(
+        spawn.Start(
+            partial(main, hosting),
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            environment=ENVIRONMENT,
+            own_session=True,
+            ends_with_owner=False,  # it ends with the simulation, which is not bound to a thread
+        )
+    )
