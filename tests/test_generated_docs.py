@@ -47,3 +47,34 @@ def test_messages_name_pages_that_exist() -> None:
                 named[page] = file
     assert len(named) >= 3
     assert {page: file for page, file in named.items() if page not in PAGES} == {}
+
+
+def test_a_page_begins_with_whom_it_is_for() -> None:
+    for page, text in PAGES.items():
+        if page.partition("/")[0] in ("tutorials", "how_to", "reference", "explanation") and "/api/" not in page:
+            first = text.partition("\n\n")[2]
+            assert first.startswith("For "), page
+
+
+def test_pages_are_short() -> None:
+    """A how-to has two screens at most; a page of the reference may be a table."""
+    for page, text in PAGES.items():
+        size = len(text.encode())
+        assert size <= (5_400 if page.startswith("how_to/") else 12_000), (page, size)
+    assert sum(len(text.encode()) for text in PAGES.values()) <= 275_000
+
+
+def test_every_page_is_reached_from_the_front_page() -> None:
+    listed = re.findall(r"^(\w+/[\w/]+)$", PAGES["index.md"], re.MULTILINE)
+    assert sorted(listed) == sorted(
+        page.removesuffix(".md") for page in PAGES if page != "index.md" and ("/api/" not in page or "index" in page)
+    )
+
+
+def test_a_test_reads_each_page_with_commands_or_examples() -> None:
+    tests = "".join(file.read_text("utf-8") for file in (ROOT / "tests").rglob("test_*.py"))
+    with_code = [page for page, text in PAGES.items() if re.search("^```(?:console|python)$", text, re.MULTILINE)]
+    assert len(with_code) > 30
+    assert [page for page in with_code if page not in tests] == []
+    indented = [page for page, text in PAGES.items() if re.search("^ +```(?:console|python)$", text, re.MULTILINE)]
+    assert indented == [], "the tests do not find these"

@@ -12,6 +12,7 @@ import jsonschema
 import pytest
 from conftest import LoadConfig as Load
 from conftest import MakeProject
+from test_generated_docs import expanded
 
 from pyfrc_core.config.sim import Polygon, Rectangle, SimConfig, sim_config_schema
 from pyfrc_core.config.sim_file import load_sim_config
@@ -326,7 +327,7 @@ SCHEMA = jsonschema.Draft202012Validator(json.loads(sim_config_schema()))
 DOCUMENT = (Path(__file__).parents[1] / "docs/reference/sim_config.md").read_text("utf-8")
 (EXAMPLE,) = re.findall(r"^```json\n(.*?)^```$", DOCUMENT, re.MULTILINE | re.DOTALL)
 #: The table's keys (without the pyfrc before each), and their defaults as they stand there.
-ROWS = dict(re.findall(r"^[|] `([^`]+)` [|] [^|]+ [|] ([^|]+) [|] [^|]+ [|]$", DOCUMENT, re.MULTILINE))
+ROWS = dict(re.findall(r"^[|] `([^`]+)` [|] ([^|]*) [|] .+ [|]$", expanded(DOCUMENT), re.MULTILINE))
 
 
 def schema_keys(schema: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, dict[str, Any]]]:

@@ -1,4 +1,4 @@
-"""The pages about `pyfrc sync`: their commands work one after the other, and their lists are complete."""
+"""The pages about `pyfrc sync`: their commands work one after the other, and what they say of each season is right."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from pathlib import Path
 from conftest import MakeProject
 from package_index import WPILIB, package_index
 
-from pyfrc_cli.sync import command
 from pyfrc_core.season import SEASONS
 from pyfrc_core.sync import addresses
 
@@ -45,10 +44,7 @@ def test_the_guides_commands_work_one_after_the_other(make_project: MakeProject,
                 assert "has changed. Commit it.\n  robotpy-navx 2026.0.1 -> 2026.0.2\n" in done.stdout
 
 
-def test_the_guide_lists_every_option_and_variable() -> None:
-    listed = set(re.findall(r"^\| `(--[a-z-]+)", GUIDE, re.MULTILINE))
-    ours = {each.opts[0] for each in command.params} - {"--project", "-v", "-q"}
-    assert listed == ours
+def test_the_guide_lists_every_variable() -> None:
     for variable in (addresses.INDEX_VARIABLE, addresses.PYTHON_VARIABLE):
         assert f"`{variable}`" in GUIDE
 

@@ -62,10 +62,46 @@ def test_what_create_physics_writes_moves_the_robot(make_project: MakeProject) -
     assert result.code == 0, result.output
 
 
+#: The robot and the test of the physics that the page shows.
+DRIVES_IN_A_CURVE = {
+    "robot.py": """
+    import wpilib
+    import wpilib_drivers
+
+
+    class MyRobot(wpilib.TimedRobot):
+        def __init__(self):
+            super().__init__()
+            self.left_motor = wpilib_drivers.PWMSparkMax(0)
+            self.right_motor = wpilib_drivers.PWMSparkMax(1)
+            self.right_motor.set_inverted(True)
+            self.drive = wpilib.DifferentialDrive(self.left_motor, self.right_motor)
+            self.imu = wpilib.OnboardIMU(wpilib.OnboardIMU.MountOrientation.FLAT)
+
+        def autonomous_periodic(self):
+            self.drive.arcade_drive(0.5, 0.2)
+""",
+    "tests/test_turning.py": """
+    from pytest import approx
+
+
+    def test_drives_in_a_curve(control, hal_data, robot, physics_controller):
+        start = physics_controller.get_pose()
+        with control.run_robot():
+            control.step_timing(seconds=1, autonomous=True, enabled=True)
+            moved = physics_controller.get_pose().relative_to(start)
+            assert moved.x > 0.7
+            assert robot.imu.get_yaw() == approx(moved.rotation().radians())
+            assert 0 < hal_data["pwm"][0]["value"] < 0.5
+""",
+}
+
+
 def test_the_example_in_the_physics_guide_passes(make_project: MakeProject) -> None:
     place = "wpilib_2027/"
     examples = files("docs/reference/wpilib_2027.md").items()
-    project = make_project({file.removeprefix(place): text for file, text in examples if file.startswith(place)})
+    shown = {file.removeprefix(place): text for file, text in examples if file.startswith(place)}
+    project = make_project(shown | DRIVES_IN_A_CURVE)
     result = project.run("test")
     assert result.code == 0, result.output
     assert "tests/test_turning.py ." in result.stdout
