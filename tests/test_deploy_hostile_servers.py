@@ -21,8 +21,8 @@ from pyfrc_core.deploy.host_keys import HostKeys
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 SSH = b"SSH-2.0-robot\r\n"
-#: Time limits of each step, and of everything with them; seconds.
-_STEP, _ALL = 0.3, 8.0
+#: Time limits of each step, and of everything with them, which only a connection that hangs reaches; seconds.
+_STEP, _ALL = 0.3, 25.0
 
 
 def before_the_greeting() -> Iterator[tuple[str, Serve]]:
@@ -169,7 +169,8 @@ def test_all_servers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         assert isinstance(error, DeployError), f"{name}: {error!r}"
         assert error.exit_code == 1, name
         text = str(error)
-        assert text.isprintable() or "\n" in text, f"{name}: {text!r}"
-        assert "\x1b" not in text, f"{name}: {text!r}"
+        assert all(line.isprintable() for line in text.splitlines()), f"{name}: {text!r}"
+        if name.startswith("at_the_login"):
+            assert "commands" not in text, f"{name}: no one has logged in, but {text!r}"
         assert error.remedy, name
         assert seconds < _ALL, f"{name}: {seconds:.1f} s"

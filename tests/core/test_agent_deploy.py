@@ -216,6 +216,19 @@ def test_names_that_the_project_has_taken(robot: AgentDisk) -> None:
         assert robot.read("py/field.release-1") == "a map"
 
 
+def test_late_writes_of_the_old_program_replace_nothing_of_the_new_one(robot: AgentDisk) -> None:
+    robot.deploy(ONE, *ONE.values())
+    for name in ("state", "removed"):
+        (robot.places.code / name).write_text("old")
+    robot.deploy(TWO, TWO["robot.py"])
+    (robot.places.releases / "1/late").write_text("late")
+    (robot.places.code / "removed").unlink()
+    (robot.places.code / "x").write_text("new")
+    (robot.places.code / "x").replace(robot.places.code / "state")
+    Releases(robot.places, serve.Activity(lambda **said: None)).carry_late_writes(2)
+    assert (robot.read("py/state"), robot.read("py/late"), robot.read("py/removed")) == ("new", "late", None)
+
+
 def test_links_of_another_tools_program_stay_valid(robot: AgentDisk) -> None:
     (robot.home / "data").mkdir()
     (robot.home / "data/keep.json").write_text("{}")

@@ -94,7 +94,7 @@ class Environments:
             what = "the Python that was sent is no longer there: another computer has deployed meanwhile"
             raise Refusal("environment", what, "Run the command again.")
         complete, damaged = self.is_usable(name), self.damaged()
-        there = {} if complete else self._unpacked(python, {each.sha256 for each in wheels}, damaged)
+        there = {} if complete else self._unpacked(python, {each.sha256 for each in wheels})
         lacking = [] if complete else [each for each in wheels if each.sha256 not in there]
         missing = [each for each in wheels if each in lacking or self._is_in(each.sha256, damaged)]
         if missing or not complete:
@@ -152,14 +152,13 @@ class Environments:
         found = ((wheels_in(self._record(name)).get(sha256, {}), paths) for name, paths in damaged.items())
         return any(not files.keys().isdisjoint(paths) for files, paths in found)
 
-    def _unpacked(self, python: str | None, wanted: set[str], damaged: dict[str, list[str]]) -> dict[str, str]:
-        """Return the environments in which all files of wanted wheels are, undamaged, by wheel."""
+    def _unpacked(self, python: str | None, wanted: set[str]) -> dict[str, str]:
+        """Return the environments in which all files of wanted wheels are, by wheel. Damaged ones are replaced first."""
         found: dict[str, str] = {}
         for name in self._complete():
             record = self._record(name)
             files, wheels = files_in(record), wheels_in(record) if record.get("python") == python else {}
-            good = {path: sha256 for path, sha256 in files.items() if path not in damaged.get(name, ())}
-            found.update({each: name for each in wanted & wheels.keys() if wheels[each].items() <= good.items()})
+            found.update({each: name for each in wanted & wheels.keys() if wheels[each].items() <= files.items()})
         return found
 
     def _check_disk_space(self, needed: int) -> None:
