@@ -153,7 +153,7 @@ class Environments:
         return any(not files.keys().isdisjoint(paths) for files, paths in found)
 
     def _unpacked(self, python: str | None, wanted: set[str]) -> dict[str, str]:
-        """Return the environments in which all files of wanted wheels are, by wheel. Damaged ones are replaced first."""
+        """Return the environments that have all files of wanted wheels, by wheel. Damaged ones are replaced first."""
         found: dict[str, str] = {}
         for name in self._complete():
             record = self._record(name)
