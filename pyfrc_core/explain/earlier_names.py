@@ -11,11 +11,14 @@ def _spark(setting: str) -> str:
     return f"config = rev.SparkMaxConfig(); config.{setting}; and once, with all settings: {once}"
 
 
+def _all(names: str, instead: str) -> dict[str, str]:
+    return dict.fromkeys(names.split(), instead)
+
+
 #: Names of earlier seasons: what to write instead.
 GONE = {
     # wpilib
-    "IterativeRobot": "wpilib.TimedRobot",
-    "SampleRobot": "wpilib.TimedRobot",
+    **_all("IterativeRobot SampleRobot", "wpilib.TimedRobot"),
     "RobotDrive": "wpilib.drive.DifferentialDrive",
     "SpeedController": "wpilib.interfaces.MotorController",
     "SpeedControllerGroup": "wpilib.MotorControllerGroup",
@@ -40,13 +43,14 @@ GONE = {
     "GenericHID.POV": "getPOV(), an angle in degrees: 0 is up, 90 right, and -1 that none is pressed",
     "Timer.delay": "timer.get() or hasElapsed(seconds), asked each time: a robot that waits does nothing else",
     "PWMMotorController.follow": "LEADER.addFollower(FOLLOWER)",
-    "DutyCycleEncoder.getAbsolutePosition": "get(), in turns from 0 to 1",
-    "AnalogEncoder.getAbsolutePosition": "get(), in turns from 0 to 1",
+    **_all("DutyCycleEncoder.getAbsolutePosition AnalogEncoder.getAbsolutePosition", "get(), in turns from 0 to 1"),
     "DutyCycleEncoder.getDistance": "get(), in turns from 0 to 1, and your own factor",
-    "DutyCycleEncoder.setDistancePerRotation": "DutyCycleEncoder(channel, fullRange, expectedZero)",
-    "DutyCycleEncoder.reset": "DutyCycleEncoder(channel, fullRange, expectedZero)",
+    **_all(
+        "DutyCycleEncoder.setDistancePerRotation DutyCycleEncoder.reset",
+        "DutyCycleEncoder(channel, fullRange, expectedZero)",
+    ),
     "DifferentialDrive.setRightSideInverted": "setInverted(True) of the right motor",
-    "NetworkTableInstance.getInstance": "ntcore.NetworkTableInstance.getDefault()",
+    **_all("NetworkTableInstance.getInstance NetworkTables", "ntcore.NetworkTableInstance.getDefault()"),
     "Compressor.start": "enableDigital()",
     "setClosedLoopControl": "enableDigital() or disable()",
     "Command.addSequential": "one.andThen(other)",
@@ -62,24 +66,17 @@ GONE = {
     "getTriggerAxis": "getLeftTriggerAxis and getRightTriggerAxis",
     "getStickButton": "getLeftStickButton and getRightStickButton",
     "isSysBrownedOut": "isBrownedOut",
-    "putInt": "putNumber",
-    "putDouble": "putNumber",
+    **_all("putInt putDouble", "putNumber"),
     "getDouble": "getNumber",
     # commands2
     "CommandBase": "commands2.Command",
     "SubsystemBase": "commands2.Subsystem",
     "Scheduler": "commands2.CommandScheduler",
-    "whenPressed": "onTrue",
-    "whenActive": "onTrue",
-    "whenReleased": "onFalse",
-    "whenInactive": "onFalse",
-    "whenHeld": "whileTrue",
-    "whileActiveOnce": "whileTrue",
-    "whileHeld": "whileTrue(command.repeatedly())",
-    "whileActiveContinous": "whileTrue(command.repeatedly())",
-    "whileActiveContinuous": "whileTrue(command.repeatedly())",
-    "toggleWhenPressed": "toggleOnTrue",
-    "toggleWhenActive": "toggleOnTrue",
+    **_all("whenPressed whenActive", "onTrue"),
+    **_all("whenReleased whenInactive", "onFalse"),
+    **_all("whenHeld whileActiveOnce", "whileTrue"),
+    **_all("whileHeld whileActiveContinous whileActiveContinuous", "whileTrue(command.repeatedly())"),
+    **_all("toggleWhenPressed toggleWhenActive", "toggleOnTrue"),
     "requires": "addRequirements",
     "PerpetualCommand": "commands2.RepeatCommand",
     "perpetually": "repeatedly",
@@ -90,9 +87,7 @@ GONE = {
     "CANSparkMaxLowLevel": "rev.SparkLowLevel",
     "CANSparkFlex": "rev.SparkFlex",
     "CANEncoder": "rev.RelativeEncoder",
-    "CANPIDController": "rev.SparkClosedLoopController",
-    "SparkMaxPIDController": "rev.SparkClosedLoopController",
-    "SparkPIDController": "rev.SparkClosedLoopController",
+    **_all("CANPIDController SparkMaxPIDController SparkPIDController", "rev.SparkClosedLoopController"),
     "getPIDController": "getClosedLoopController",
     "setSmartCurrentLimit": _spark("smartCurrentLimit(40)"),
     "setIdleMode": _spark("setIdleMode(rev.SparkMaxConfig.IdleMode.kBrake)"),
@@ -102,18 +97,14 @@ GONE = {
     "setPositionConversionFactor": _spark("encoder.positionConversionFactor(0.05)"),
     "setVelocityConversionFactor": _spark("encoder.velocityConversionFactor(0.05)"),
     "SparkClosedLoopController.setP": _spark("closedLoop.P(0.1)"),
-    "restoreFactoryDefaults": _spark("inverted(False)"),
-    "burnFlash": _spark("inverted(False)"),
+    **_all("restoreFactoryDefaults burnFlash", _spark("inverted(False)")),
     "AHRS_SPI": "navx.AHRS.create_spi()",
     "WPI_TalonFX": "phoenix6.hardware.TalonFX",
-    "NetworkTables": "ntcore.NetworkTableInstance.getDefault()",
     # pyfrc: words of WPILib, where the fixtures have those of 2019
-    "TestController.set_teleop": "control.set_operator_control(enabled=True)",
-    "TestController.set_teleoperated": "control.set_operator_control(enabled=True)",
-    "TestController.set_disabled": "control.set_operator_control(enabled=False)",
+    **_all("TestController.set_teleop TestController.set_teleoperated", "control.set_operator_control(enabled=True)"),
+    **_all("TestController.set_disabled TestController.disable", "control.set_operator_control(enabled=False)"),
     "TestController.enable": "control.set_operator_control(enabled=True) or control.set_autonomous(enabled=True)",
-    "TestController.disable": "control.set_operator_control(enabled=False)",
-    **dict.fromkeys(("RobotBase.enable", "RobotBase.disable"), "control.set_operator_control(enabled=True)"),
+    **_all("RobotBase.enable RobotBase.disable", "control.set_operator_control(enabled=True)"),
     "FakeTime.sleep": "fake_time.increment_time_by(seconds), or control.step_timing(...) for a robot that runs",
 }
 
