@@ -50,8 +50,11 @@ def _of_angle(angle: ast.expr, call: ast.Call, source: Source) -> Iterator[CodeW
     is_degrees = isinstance(angle, ast.Call) and normalized(last_name(angle.func)) in _DEGREES
     if is_degrees or (isinstance(number, int) and abs(number) > 2 * math.pi):
         right = f"math.radians({written})" if name in ("sin", "cos", "tan") else f"Rotation2d.fromDegrees({written})"
+        takes = "radians" if name in ("sin", "cos", "tan", "Rotation2d") else "a Rotation2d or radians"
         right = right if name == "Rotation2d" else ast.unparse(call).replace(written, right)
-        yield CodeWarning(source.at(call), f"{name}() takes radians, and {written} is in degrees", f"Write {right}")
+        yield CodeWarning(
+            source.at(call), f"{name}() takes {takes}, and {written} is a number in degrees", f"Write {right}"
+        )
 
 
 def _of_power(call: ast.Call, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
