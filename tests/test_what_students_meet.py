@@ -10,6 +10,9 @@ import pytest
 from conftest import MakeProject, Result, sampled
 from test_failures import ANY_TEST, ROBOT
 
+from pyfrc_core.config.toml_file import TomlFile
+from pyfrc_core.errors import SettingsError
+
 TESTS = {"tests/test_a.py": ANY_TEST}
 
 
@@ -354,6 +357,71 @@ def test_a_misspelled_method_is_named_before_the_failures_that_follow_from_it(ma
     test = "def test_it(robot):\n    assert False\n"
     printed = make_project({"robot.py": robot, "tests/test_it.py": test}).run("test").stdout
     assert printed.index("robot.py:4: WPILib never calls") < printed.index("= FAILURES =")
+
+
+# --- tests that do not test the robot that runs
+
+NOT_THE_ROBOT = """
+    import unittest
+    import robot as other
+
+    class TestIt(unittest.TestCase):
+        def test_with_fixtures(self, control, robot):
+            pass
+
+    def test_disabled(control, hal_data, robot):
+        control.run_test(lambda tm: tm < 0.1)
+        assert hal_data["pwm"][0]["value"] == 0.25
+
+    def test_a_number(control, robot):
+        control.run_test(3)
+
+    def test_almost(robot):
+        assert 0.3512 == 0.36
+
+    def test_made_before(control, robot):
+        robot.robotInit()
+        control.run_test(lambda tm: tm < 0.1)
+"""
+WITH_A_MOTOR = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.motor = wpilib.PWMSparkMax(0)
+"""
+
+
+def test_tests_that_do_not_test_the_robot_that_runs(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": WITH_A_MOTOR, "tests/test_a.py": NOT_THE_ROBOT})
+    result = project.run("test")
+    blocks = result.blocks()
+    expected = {
+        "TestIt.test_with_fixtures": "a unittest.TestCase passes no fixtures",
+        "test_disabled": "The robot was disabled in this test: write control.set_operator_control(enabled=True)",
+        "test_a_number": "For three seconds of robot time, write: control.run_test(lambda tm: tm < 3)",
+        "test_almost": "Write assert 0.3512 == pytest.approx(0.36, abs=0.02)",
+        "test_made_before": "PWM channel 0 is used already: tests/test_a.py:19 in the test has made it before",
+    }
+    assert {name for name, text in expected.items() if text in blocks[name]} == expected.keys(), result.stdout
+    assert "unittest/case.py" not in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("line", "quoted"),
+    [
+        ("main = robot.py", 'main = "robot.py"'),
+        ("robotpy_version = 2026.2.2", 'robotpy_version = "2026.2.2"'),
+        ("components = [rev, navx]", 'components = ["rev", "navx"]'),
+        ("jobs = 3 4", ""),
+    ],
+)
+def test_a_text_without_quotes_in_toml(tmp_path: Path, line: str, quoted: str) -> None:
+    (tmp_path / "pyproject.toml").write_text(f"[tool.pyfrc]\n{line}\n")
+    with pytest.raises(SettingsError, match="not valid TOML") as caught:
+        TomlFile(tmp_path / "pyproject.toml")
+    assert caught.value.remedy == (f"A text needs quotes: write {quoted}" if quoted else None)
+    assert str(caught.value).startswith("pyproject.toml:2: ") or "pyproject.toml:2: " in str(caught.value)
 
 
 # --- a test that never ran the robot
