@@ -157,6 +157,10 @@ def _called_value(frame: FrameType, line: int, files: RobotFiles) -> Explanation
             return Explanation(text, f"Write another name for it where {written} = ... stands.")
         if isinstance(call.func, ast.Name) and (explained := _no_functions(frame, line, files)):
             return explained
+        method = next((each for each in ("calculate", "get") if hasattr(value, each)), "")
+        if method and not isinstance(value, dict):
+            text = f"{written} is an object of {kind}, and no function"
+            return Explanation(text, f"Write {written}.{method}({', '.join(map(ast.unparse, call.args))})")
         instead = f"{written}[...]" if isinstance(value, (list, tuple, dict)) else written
         return Explanation(f"{written} is a value ({kind}), and no function", f"Write {instead}, without ()")
     return None
