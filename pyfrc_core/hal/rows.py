@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from typing import NamedTuple
 
 from . import accessors, device_table
-from .fields import DeviceField, DeviceKind
+from .fields import DeviceField, DeviceKind, Role
 from .kinds import WrongPath
 from .paths import join, parse_path
+
+#: The names of what SimDevices measure, and of settings and outputs with similar names.
+_OF_DEVICES = re.compile(
+    r"position|velocity|angle|angular|rotation|yaw|pitch|roll|rate|accel|range|distance|pressed|connected|valid"
+    r"|current|voltage|temperature|[xyz]$",
+    re.IGNORECASE,
+)
+_SETTINGS = re.compile(r"factor|offset|set.?point|limit|\bterm\b|\bm(?:ax|in)\b|units|mode|init", re.IGNORECASE)
+#: The names of what robot code asks a motor controller for.
+_COMMANDS = re.compile("applied output|set.?point|duty", re.IGNORECASE)
 
 
 class TableRow(NamedTuple):
@@ -93,10 +104,16 @@ def stays(path: str) -> bool:
     return kind is not None and kind.stays
 
 
-def is_measured(path: str) -> bool:
-    """Return whether a value is what a sensor measures; SimDevices have no rows."""
-    row = row_of(path)
-    return row is not None and row.field.role == "measured"
+def role_of(path: str) -> Role:
+    """Return whether robot code reads or sets a value; SimDevices have no rows, so the names of their values decide."""
+    if (row := row_of(path)) is not None:
+        return row.field.role
+    if not path.startswith("CAN["):
+        return ""
+    name = str(parse_path(path)[-1])
+    if _OF_DEVICES.search(name) and not _SETTINGS.search(name):
+        return "measured"
+    return "output" if _COMMANDS.search(name) else ""
 
 
 def is_input(path: str, values: Mapping[str, object]) -> bool:

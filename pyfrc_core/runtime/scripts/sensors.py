@@ -10,21 +10,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...compat.unrepeatable import in_real_time
-from ...hal.paths import parse_path
-from ...hal.rows import is_measured
+from ...hal.rows import role_of
 from .network_targets import NETWORK
 
 HOLD = "hold:"
 #: An encoder's period when it stands: JSON has no word for it.
 INFINITE = "inf"
-
-#: The names of what SimDevices measure, and of settings and outputs with similar names.
-_OF_DEVICES = re.compile(
-    r"position|velocity|angle|angular|rotation|yaw|pitch|roll|rate|accel|range|distance|pressed|connected|valid"
-    r"|current|voltage|temperature|[xyz]$",
-    re.IGNORECASE,
-)
-_SETTINGS = re.compile(r"factor|offset|set.?point|limit|\bterm\b|\bm(?:ax|in)\b|units|mode|init", re.IGNORECASE)
 
 #: Where cameras publish: Limelight, PhotonVision.
 _OF_CAMERA = re.compile(r"/(limelight[^/]*|photonvision/[^/]+)/.+", re.DOTALL)
@@ -38,12 +29,7 @@ def camera_of(name: str) -> str | None:
 
 def is_sensor(path: str) -> bool:
     """Return whether a path in `hal_data` is of a value that a device measures."""
-    if is_measured(path):
-        return True
-    if not path.startswith("CAN[") or in_real_time(path):
-        return False
-    name = str(parse_path(path)[-1])
-    return bool(_OF_DEVICES.search(name)) and not _SETTINGS.search(name)
+    return role_of(path) == "measured" and not in_real_time(path)
 
 
 def released(values: Mapping[str, object]) -> dict[str, object]:

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
-from ...hal.rows import row_of
+from ...hal.rows import role_of
 from ...wording import from_here
 from ..robot_time import to_us
 from .script import ScriptError
 from .trace_lines import repeatable_part
-
-#: What robot code asks a motor controller on the CAN bus for.
-_OUTPUT = re.compile(r"CAN\[.*(Applied Output|Setpoint|Duty)")
 
 
 @dataclass(frozen=True)
@@ -63,9 +59,7 @@ def first_difference(recorded: Path, replayed: Path, run_us: int | None = None) 
 
 def rank(path: str) -> tuple[bool, str]:
     """Return what puts the outputs that robot code sets before the sensors that follow from them."""
-    row = row_of(path)
-    is_output = _OUTPUT.match(path) is not None if row is None else row.field.role == "output"
-    return not is_output, path
+    return role_of(path) != "output", path
 
 
 def _changes(trace: Path) -> Iterator[dict[str, Any]]:
