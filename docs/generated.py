@@ -34,8 +34,8 @@ def _table(head: str, rows: Iterable[tuple[str, ...]]) -> str:
 
 
 def _literal(text: str) -> str:
-    """Return prose in which Markdown changes nothing: options keep their two hyphens."""
-    return re.sub(r"([*<_\[\]])", r"\\\1", text).replace("--", "\\-\\-")
+    """Return prose in which Markdown changes nothing; options are code, or they would lose one of their hyphens."""
+    return re.sub(r"--[a-z][a-z-]*", r"`\g<0>`", re.sub(r"([*<_\[\]])", r"\\\1", text))
 
 
 def options(*commands: str) -> str:

@@ -648,5 +648,5 @@ class Module:
     assert printed.startswith("swerve drive, which you need to complete\n  drive: PWM 0 (")
     assert "\n  steering: PWM 4 (" in printed
     assert "drivetrains.four_motor_swerve_drivetrain()" in printed
-    assert "docs/how_to/create_physics.md" in printed
+    assert "docs/how_to/simulate_a_drivetrain.md" in printed
     assert "  left" not in printed

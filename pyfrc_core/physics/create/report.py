@@ -26,13 +26,13 @@ def _advice_for_driving(layout: DrivetrainLayout) -> list[str]:
             "The wheels of a swerve drive cannot be identified by joystick inputs: the robot does not move. To drive "
             "it, let update_sim() give the outputs of the four drive motors and the angles of the four wheels to "
             "drivetrains.four_motor_swerve_drivetrain() of pyfrc.physics, and its result to "
-            "self.physics_controller.drive(): see docs/how_to/create_physics.md."
+            "self.physics_controller.drive(): see docs/how_to/simulate_a_drivetrain.md."
         ]
     if layout.drivetrain is None:
         return [
             "No drivetrain was recognised, so the robot does not move. To drive it, let update_sim() call "
             "self.physics_controller.drive() or move_robot(): see pyfrc.physics.drivetrains (for a swerve drive, its "
-            "four_motor_swerve_drivetrain), pyfrc.physics.tankmodel and docs/how_to/create_physics.md."
+            "four_motor_swerve_drivetrain), pyfrc.physics.tankmodel and docs/how_to/simulate_a_drivetrain.md."
         ]
     return []
 
