@@ -55,6 +55,26 @@ CODE = {
         print(made(True).get_rate(), Fake().get_rate())
         """,
     ),
+    "what a callable returns": (
+        """
+        from typing import Callable
+        from wpimath.geometry import Pose2d
+        class Drive:
+            def __init__(self, pose: Callable[[], Pose2d]):
+                self.pose = pose
+            def far(self):
+                return self.pose().X()
+        """,
+        """
+        from typing import Callable
+        from wpimath import Pose2d
+        class Drive:
+            def __init__(self, pose: Callable[[], Pose2d]):
+                self.pose = pose
+            def far(self):
+                return self.pose().x
+        """,
+    ),
     "a protocol": (
         """
         import typing
@@ -1483,6 +1503,19 @@ BY_HAND = {
     "a name that is looked up": (
         "from operator import methodcaller\nrate = methodcaller('getRate')  # here\n",
         "methodcaller names getRate.",
+    ),
+    "an object of a class that WPILib 2026 has not": (
+        "import wpilib\nmotor = wpilib.Jaguar(0)\nprint(motor.getChannel())  # here\n",
+        "What motor is (robot.py:2) is not known, so these names stay: getChannel.",
+    ),
+    "an import of what WPILib 2026 has not there": (
+        "from wpimath.system import LinearSystemId as made\nit = made.identifyDrivetrainSystem(1, 2, 3, 4)  # here\n",
+        "so these names stay: identifyDrivetrainSystem.",
+    ),
+    "what a callable returns, of unknown type": (
+        "class A:\n    def __init__(self, do):\n        self.do = do\n    def go(self):\n"
+        "        self.do().getRate()  # here\n",
+        "What do is, a parameter of A.__init__ (robot.py:2), is not known",
     ),
     "a motor of unknown type": ("def stop(motor):\n    motor.set(0)  # here\n", "or write set_throttle."),
     "a constructor that calls before the rest of another": (

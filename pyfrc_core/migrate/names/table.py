@@ -158,8 +158,10 @@ class Table:
 
 
 def corrections() -> dict[str, Any]:
-    """Return what was written by hand: `corrections.toml`."""
+    """Return what was written by hand: `corrections.toml`, where a key can have several paths with spaces between."""
     found = tomllib.loads((HERE / "corrections.toml").read_text(encoding="utf-8"))
+    for section in ("gone", "notes", "templates", "other_arguments"):
+        found[section] = {path: text for paths, text in found[section].items() for path in paths.split()}
     for outer, pairs in found.pop("moved_together").items():
         found["moved"] |= {f"{outer}.{name}": new for name, _, new in (pair.partition("=") for pair in pairs.split())}
     return found

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import libcst as cst
 
-from .atoms import Bound, OwnCallable, OwnModuleRef, OwnObj, OwnRef, Ref
+from .atoms import Bound, Obj, OwnCallable, OwnModuleRef, OwnObj, OwnRef, Ref
 from .inference import Inference
 from .scopes import Binding, Module, OwnClass, OwnFunction, Scope
 
@@ -31,7 +31,7 @@ class Cause:
     """Where a type hint is missing.
 
     :param kind: `package`, `parameter`, `attribute`, `variable`, `result`, or `python` for what a function of Python's
-                 passes on
+                 passes on, or for a name that WPILib 2026 has not
     :param name: of the parameter, attribute, variable or function; of the package
     :param node: where it is; of a package, the import
     :param inside: the function of a parameter, the class of an attribute; else ""
@@ -116,7 +116,9 @@ class Causes:
                     return self._bound(name, bindings, seen, owner.own.scope.module, owner.own)
                 missing = Cause("attribute", name, owner.own.scope.module, owner.own.node, owner.own.name)
                 return self.of_base(owner.own) or missing
-        return None  # the table says which members of WPILib's are objects of its classes
+            if isinstance(owner, Ref | Obj):  # WPILib 2026 has no such name
+                return Cause("python", name, scope.module, node)
+        return None
 
     def _call(self, node: cst.Call, scope: Scope, seen: set[object]) -> Cause | None:
         called = self._inference.infer(node.func, scope)
@@ -183,8 +185,10 @@ class Causes:
 
     def _package(self, binding: Binding) -> Cause | None:
         package = binding.path.partition(".")[0]
-        if package in self._inference.table.modules or self._inference.is_own(package):
+        if self._inference.is_own(package):
             return None
+        if package in self._inference.table.modules:
+            return Cause("python", binding.path, binding.scope.module, binding.node)
         is_python = package in sys.stdlib_module_names
         if is_python and package not in _CARRY_MODULES:
             return None
