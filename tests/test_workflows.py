@@ -114,12 +114,18 @@ def test_every_system_runs_the_two_commands_of_the_readme(job: str) -> None:
         assert runs == [f"python {command}" for command in without]
 
 
-def test_the_gate_gets_each_python_that_it_asks_for() -> None:
-    (setup,) = (step for step in JOBS["gate"]["steps"] if "setup-python" in step.get("uses", ""))
+def pythons_of(job: str) -> set[str]:
+    (setup,) = (step for step in JOBS[job]["steps"] if "setup-python" in step.get("uses", ""))
+    return set(setup["with"]["python-version"].split())
+
+
+def test_the_gate_and_its_shards_get_each_python_that_they_ask_for() -> None:
     required = set(re.findall(r"python_of (3\.\d+)\)", GATE))
     assert len(required) >= 2
-    (loop,) = re.findall(r"for version in (.*); do", GATE)
-    assert required | set(loop.split()) <= set(setup["with"]["python-version"].split())
+    assert required <= pythons_of("gate")
+    (shards,) = re.findall(r"^shards=\(\$\{2:-(.*)\}\)$", GATE, re.MULTILINE)
+    assert shards.split() == matrix("nightly")["shard"]
+    assert required | {each for each in shards.split() if each.startswith("3.")} <= pythons_of("nightly")
 
 
 def test_the_workflows_run_every_version_that_is_claimed() -> None:
