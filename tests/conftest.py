@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import compileall
-import faulthandler
+import io
 import json
 import os
 import re
@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import dedent
@@ -23,8 +24,6 @@ import pytest
 from hypothesis import HealthCheck, settings
 from spelling import IN_ANOTHER_FORM, motors_of, spell_copy, spelled
 from started_commands import StartedCommand, start_command
-
-from pyfrc_core.collector import collector_paused
 
 if TYPE_CHECKING:
     from roborio.local import Agents
@@ -56,18 +55,12 @@ settings.register_profile(
 )
 settings.load_profile("suite")
 
-#: Seconds that one test may take, its fixtures included: only a test that hangs takes so long. The slowest has reached
-#: 300 s on a machine whose two cores some thirty processes wanted.
-TEST_LIMIT = 900.0
-
-_STDERR = pytest.StashKey[int]()
-
 # A suite that a shell has started in the background ignores Ctrl-C. The commands that are tested must not inherit that.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-#: Guards of tests that need what not every machine has, and of those that only one season has.
-pytest_plugins = ["skips", "seasons"]
+#: Guards of tests that need what not every machine has, and of those that only one season has; which run, and how long.
+pytest_plugins = ["skips", "seasons", "runs"]
 
 #: That code makes no progress, or is still being loaded.
 _SLOW = re.compile(r"no progress for \d+ s|^still loading WPILib")
@@ -123,6 +116,10 @@ class Result:
         return dict(lines)
 
 
+def _written(stream: io.TextIOWrapper) -> str:
+    return stream.buffer.getvalue().decode("utf-8")  # type: ignore[attr-defined,no-any-return]
+
+
 def _environment() -> dict[str, str]:
     """What commands find in theirs."""
     passed_on = {
@@ -143,24 +140,8 @@ def _environment() -> dict[str, str]:
     }
 
 
-def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option for the tests that take long."""
-    parser.addoption("--run-slow", action="store_true", help="run the tests that are marked as slow, too")
-
-
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out the slow tests, unless they are asked for: all of them, or one by its name."""
-    if config.getoption("run_slow") or any("::" in each for each in config.args):
-        return
-    slow = [item for item in items if item.get_closest_marker("slow")]
-    if slow:
-        config.hook.pytest_deselected(items=slow)
-        items[:] = [item for item in items if not item.get_closest_marker("slow")]
-
-
 def pytest_configure(config: pytest.Config) -> None:
     """Compile our packages, as installing them does: commands would do it each time, since they keep nothing."""
-    config.stash[_STDERR] = os.dup(2)  # while a test runs, its own goes to pytest's capture
     if hasattr(config, "workerinput"):
         _forking.extend(config.workerinput["forking"])
         return
@@ -172,36 +153,6 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_configure_node(node: Any) -> None:
     """Give all workers of pytest-xdist one process that forks: its imports take as long as a hundred forks."""
     node.workerinput["forking"] = [_forking_process()] if forked.POSSIBLE else []
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_collection(session: pytest.Session) -> Generator[None, object, object]:
-    """Collect no garbage while tests are collected: looking through what is made then takes a quarter of the time.
-
-    It stays, and is not looked through later either, here and in forks.
-    """
-    with collector_paused():
-        return (yield)
-
-
-def pytest_unconfigure(config: pytest.Config) -> None:
-    """Close what `pytest_configure` has opened."""
-    os.close(config.stash[_STDERR])
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
-    """End this process with the stacks of all its threads when a test takes longer than `TEST_LIMIT`.
-
-    No wait of a test needs a time limit of its own: this one ends each of them, in fixtures and in C code, too.
-    Processes that the test has started see their pipes and sockets close. With xdist, the worker's crash is this
-    test's failure.
-    """
-    faulthandler.dump_traceback_later(TEST_LIMIT, exit=True, file=item.config.stash[_STDERR])
-    try:
-        return (yield)
-    finally:
-        faulthandler.cancel_dump_traceback_later()
 
 
 #: The address of the process that forks, once there is one.
@@ -351,6 +302,26 @@ class RobotProject:
             stderr=stderr,
             start_new_session=own_session,
         )
+
+    def run_here(self, *args: str | Path, env: Mapping[str, str] | None = None) -> Result:
+        """Run ``pyfrc`` in this process: a command that ends before it runs robot code, such as one that is refused.
+
+        It takes a hundredth of the time of `run`.
+        """
+        from pyfrc_cli import main
+
+        streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8", write_through=True) for _ in range(2)]
+        with pytest.MonkeyPatch.context() as patch:
+            patch.chdir(self.path)
+            patch.setattr(sys, "argv", ["pyfrc", *map(str, args)])
+            for name in ("HOME", "USERPROFILE"):
+                patch.setenv(name, str(self.home))
+            for name, value in {"COLUMNS": "120", **(env or {})}.items():
+                patch.setenv(name, value)
+            with redirect_stdout(streams[0]), redirect_stderr(streams[1]), pytest.raises(SystemExit) as ended:
+                main.run()
+        code = ended.value.code
+        return Result(code if isinstance(code, int) else int(code is not None), *map(_written, streams))
 
     def pytest(self, *args: str | Path, cwd: Path | None = None, env: Mapping[str, str] | None = None) -> Result:
         """Run plain ``pytest``, as an editor does."""

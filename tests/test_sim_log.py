@@ -737,7 +737,6 @@ def test_a_person_sees_where_the_log_differs(recorded: RobotProject, browser: Br
         assert wrong == []
 
 
-@pytest.mark.slow
 def test_a_person_sees_first_what_cannot_be_compared(make_project: MakeProject, browser: Browser) -> None:
     project = make_project({"robot.py": PUBLISHING})
     a_match().save(project.path / "match.wpilog")

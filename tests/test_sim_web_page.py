@@ -69,7 +69,6 @@ def test_driving_by_buttons_and_keys(person: Seen) -> None:
     person.state("disabled")
 
 
-@pytest.mark.slow
 def test_keys_remind_that_the_robot_is_disabled(person: Seen) -> None:
     page = person.page
     page.keyboard.press("w")
@@ -198,7 +197,6 @@ def test_networktables_are_edited_live(person: Seen) -> None:
     page.locator("[data-path='nt:/SmartDashboard/Arm/pivot/arm/angle']").wait_for()
 
 
-@pytest.mark.slow
 def test_gains_are_changed_on_the_dashboard(person: Seen) -> None:
     page = person.page
     person.choose("Layout", "Tuning")
@@ -213,7 +211,6 @@ def test_gains_are_changed_on_the_dashboard(person: Seen) -> None:
     assert written == [3.5]
 
 
-@pytest.mark.slow
 def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> None:
     found = person.page.evaluate(
         """async () => {
@@ -264,7 +261,6 @@ def test_nothing_of_the_robot_is_ever_html(person: Seen) -> None:
     assert "broken" not in page.title()
 
 
-@pytest.mark.slow
 def test_joysticks_by_mouse(person: Seen) -> None:
     page = person.page
     person.button("Enable").click()
@@ -316,7 +312,6 @@ def test_a_gamepad_moves_a_joystick_until_it_is_unplugged(browser, server) -> No
         person.until(lambda: person.value("joysticks[2].axes")[1] == 0)
 
 
-@pytest.mark.slow
 def test_keys_of_ones_own_and_touch_sticks(person: Seen) -> None:
     page = person.page
     person.tab("Keys").click()

@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 from browser_pages import Seen, page_of, person_at_page, shared_browser, shared_server  # noqa: F401 - `person`
-from conftest import sampled
 from test_sim_web_page_dashboard import TABLE, dashboards_file, shown, widgets, with_widgets  # noqa: F401 - `file`
 from test_sim_web_page_tablet import LEAST, LOOK, Fingers
 
@@ -191,7 +190,7 @@ def test_what_others_write_meanwhile_is_not_lost(file: Path, person: Seen) -> No
     shown(person, "gauge").wait_for()
 
 
-@pytest.mark.parametrize(("width", "height"), sampled([(1180, 820), (820, 1180)], (820, 1180)))
+@pytest.mark.parametrize(("width", "height"), [(1180, 820), (820, 1180)])
 def test_fingers_arrange(width: int, height: int, browser: Any, server: Any, file: Path) -> None:
     with_widgets(file, LAMP, GAUGE, {"kind": "number", "topic": f"{TABLE}kP", "x": 0, "y": 0, "w": 1, "h": 1})
     with page_of(browser, server, has_touch=True) as tablet:

@@ -157,7 +157,6 @@ def test_each_kind_of_device_shows_and_takes_its_value(person: Seen) -> None:
     page.locator(".curve-name").first.wait_for(state="detached")
 
 
-@pytest.mark.slow
 def test_joysticks_by_keys(browser, server) -> None:
     with page_of(browser, server, script=PADS) as person:
         page = person.page
@@ -198,7 +197,6 @@ def test_joysticks_by_keys(browser, server) -> None:
         choice.locator("option", has_text="Old Stick (not connected)").wait_for(state="attached")
 
 
-@pytest.mark.slow
 def test_menus_tabs_and_borders_by_keys_and_mouse(person: Seen) -> None:
     page = person.page
     menu = page.get_by_title("Layout", exact=True)
@@ -263,7 +261,6 @@ def test_the_dashboard_runs_commands_and_sets_values(person: Seen) -> None:
     row.wait_for(state="detached")
 
 
-@pytest.mark.slow
 def test_the_field_is_moved_zoomed_and_turned_round(person: Seen) -> None:
     page = person.page
     field = page.locator(".field-canvas")
@@ -295,7 +292,6 @@ def test_the_field_is_moved_zoomed_and_turned_round(person: Seen) -> None:
     person.until(lambda: person.simulation.snapshot.scene.robot.y == pytest.approx(robot.y - 0.25))
 
 
-@pytest.mark.slow
 def test_the_past_by_keys_buttons_and_the_console(person: Seen) -> None:
     page = person.page
     person.button("Enable").click()
@@ -335,7 +331,6 @@ def test_the_past_by_keys_buttons_and_the_console(person: Seen) -> None:
     expect(clock).to_have_text("0:00.00")
 
 
-@pytest.mark.slow
 def test_a_lost_driver_station_and_a_restart_after_a_failure(person: Seen) -> None:
     page = person.page
     person.choose("Restart, save, end", "Disconnect the driver station")

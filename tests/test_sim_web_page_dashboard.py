@@ -115,7 +115,6 @@ def test_a_team_makes_a_dashboard(file: Path, person: Seen) -> None:
     shown(person, "number").wait_for()
 
 
-@pytest.mark.slow
 def test_the_file_is_the_teams(file: Path, person: Seen) -> None:
     """The page follows what Git or an editor writes, and says what is wrong with it."""
     page = person.page
@@ -140,7 +139,6 @@ def test_the_file_is_the_teams(file: Path, person: Seen) -> None:
     assert json.loads(file.read_text("utf-8")) == {"dashboards": {}}
 
 
-@pytest.mark.slow
 def test_every_widget_shows_what_the_robot_publishes(file: Path, person: Seen) -> None:
     with_widgets(
         file,
@@ -177,7 +175,6 @@ def test_every_widget_shows_what_the_robot_publishes(file: Path, person: Seen) -
     shown(person, "gauge").get_by_role("img", name="doubled: 1 V").wait_for()
 
 
-@pytest.mark.slow
 def test_who_only_looks_changes_no_dashboard(browser: Any, server: Any, file: Path) -> None:
     with_widgets(file, {"kind": "lamp", "topic": f"{TABLE}flag"})
     with page_of(browser, server, server.viewing_address) as person:

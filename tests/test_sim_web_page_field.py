@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
 from browser_pages import ROBOT, Seen, page_of, person_at_page, shared_browser, shared_server  # noqa: F401 - `person`
 from web_pages import served
 
@@ -22,7 +21,6 @@ def test_places_are_written_as_robot_code_has_them(person: Seen) -> None:
     page.locator(".pose b", has_text="12.00 ft").wait_for()
 
 
-@pytest.mark.slow
 def test_the_project_says_how_places_are_written(browser: Any, make_shared_project: Any) -> None:
     config = ROBOT["sim/config.json"].replace('"robot":', '"field": {"coordinates": "alliance"}, "robot":')
     with (

@@ -18,7 +18,6 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`
     shared_browser,
     shared_server,
 )
-from conftest import sampled
 from sim_robots import FILES, PATIENCE
 from skips import requires
 from web_pages import Served, served
@@ -55,7 +54,7 @@ def is_alone_and_off(person: Seen) -> bool:
 
 
 @BROWSER
-@pytest.mark.parametrize("way", sampled(["close", "reload", "leave"], "close"))
+@pytest.mark.parametrize("way", ["close", "reload", "leave"])
 def test_a_page_that_goes_away_leaves_no_driving_robot(way: str, driving: Seen) -> None:
     act = {
         "close": driving.page.close,
@@ -69,7 +68,6 @@ def test_a_page_that_goes_away_leaves_no_driving_robot(way: str, driving: Seen) 
 
 
 @BROWSER
-@pytest.mark.slow
 def test_a_moment_that_was_driven_is_gone_on_from_without_its_keys(driving: Seen) -> None:
     since = driving.simulation.snapshot.time
     driving.until(lambda: driving.simulation.snapshot.time > since + 0.6)
@@ -83,7 +81,6 @@ def test_a_moment_that_was_driven_is_gone_on_from_without_its_keys(driving: Seen
     assert motor(driving) == 0
 
 
-@pytest.mark.slow
 @BROWSER
 def test_a_key_that_is_held_drives_on_in_another_run(driving: Seen) -> None:
     since, starts = driving.simulation.snapshot.time, driving.simulation.status.starts
@@ -96,7 +93,7 @@ def test_a_key_that_is_held_drives_on_in_another_run(driving: Seen) -> None:
 
 
 @BROWSER
-@pytest.mark.parametrize("name", sampled(["Left stick", "button"], "Left stick"))
+@pytest.mark.parametrize("name", ["Left stick", "button"])
 def test_a_control_that_loses_the_keyboard_is_released(name: str, person: Seen) -> None:
     person.button("Enable").click()
     person.tab("Touch sticks").click()
@@ -154,7 +151,7 @@ def test_nothing_drives_while_the_panels_show_the_past(person: Seen) -> None:
 
 
 @BROWSER
-@pytest.mark.parametrize("key", sampled(["Enter", "Space"], "Space"))
+@pytest.mark.parametrize("key", ["Enter", "Space"])
 def test_a_robot_is_stopped_from_the_past_and_seen(person: Seen, key: str) -> None:
     person.button("Enable").click()
     person.until(lambda: person.simulation.snapshot.enabled)
@@ -167,7 +164,6 @@ def test_a_robot_is_stopped_from_the_past_and_seen(person: Seen, key: str) -> No
 
 
 @BROWSER
-@pytest.mark.slow
 def test_a_key_steps_through_the_past_and_not_the_present(person: Seen) -> None:
     person.until(lambda: person.simulation.snapshot.time > 0.5)
     person.pause()
@@ -179,7 +175,6 @@ def test_a_key_steps_through_the_past_and_not_the_present(person: Seen) -> None:
 
 
 @BROWSER
-@pytest.mark.slow
 def test_a_branch_that_is_longer_than_the_present_is_shown_whole(person: Seen) -> None:
     from playwright.sync_api import expect
 
@@ -210,7 +205,6 @@ def test_a_branch_that_is_longer_than_the_present_is_shown_whole(person: Seen) -
 
 
 @BROWSER
-@pytest.mark.slow
 def test_a_key_with_another_use_cannot_drive(person: Seen) -> None:
     page = person.page
     person.tab("Keys").click()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
 from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
     Seen,
     missing_browser,
@@ -24,7 +23,6 @@ def written(person: Seen, target: str = KP) -> list[Any]:
     return [step.writes[target] for step in person.simulation.script().steps if target in step.writes]
 
 
-@pytest.mark.slow
 def test_a_number_keeps_its_digits_unless_it_is_edited(person: Seen) -> None:
     person.tab("NetworkTables").click()
     box = person.row(KP).locator("input")
@@ -40,7 +38,6 @@ def test_a_number_keeps_its_digits_unless_it_is_edited(person: Seen) -> None:
     assert written(person) == [6e-5, 1e-9, 12345678.5, 1 / 3, 7e-5]
 
 
-@pytest.mark.slow
 def test_tab_and_a_click_elsewhere_write_what_was_typed_and_escape_does_not(person: Seen) -> None:
     page = person.page
     person.tab("NetworkTables").click()
@@ -57,7 +54,6 @@ def test_tab_and_a_click_elsewhere_write_what_was_typed_and_escape_does_not(pers
     assert written(person) == [2, 3]
 
 
-@pytest.mark.slow
 def test_a_number_is_edited_while_the_robot_is_paused(person: Seen) -> None:
     person.tab("NetworkTables").click()
     person.pause()
@@ -68,7 +64,6 @@ def test_a_number_is_edited_while_the_robot_is_paused(person: Seen) -> None:
     person.shows(box, "4.5")
 
 
-@pytest.mark.slow
 def test_what_is_no_number_is_refused_with_the_reason(person: Seen) -> None:
     page = person.page
     kp = person.row(KP).locator("input")

@@ -44,7 +44,6 @@ def test_structs_and_lists_unfold_into_parts_that_are_plotted_and_saved(person: 
     assert lines[-1].split(",")[1:] == ["3", "0.7", "5.5"]
 
 
-@pytest.mark.slow
 def test_poses_are_drawn_whatever_they_are_published_as(person: Seen) -> None:
     found: Any = person.page.evaluate(
         """async () => {

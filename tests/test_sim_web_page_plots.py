@@ -82,7 +82,6 @@ def test_a_curve_is_shown_in_another_unit_as_a_derivative_or_without_another_one
     assert float(lines[-1].split(",")[3]) == pytest.approx(shown(drove, "sim.pose[1] (2)"), rel=0.01)
 
 
-@pytest.mark.slow
 def test_axes_are_zoomed_locked_and_typed(drove: Seen) -> None:
     page = drove.page
     automatic = limits(drove, "Left")
@@ -109,7 +108,6 @@ def test_axes_are_zoomed_locked_and_typed(drove: Seen) -> None:
     assert limits(drove, "Left") == pytest.approx(automatic, abs=0.1)
 
 
-@pytest.mark.slow
 def test_a_table_has_statistics_of_what_is_in_view(drove: Seen) -> None:
     page = drove.page
     drove.button("All").first.click()
@@ -129,7 +127,6 @@ def test_a_table_has_statistics_of_what_is_in_view(drove: Seen) -> None:
     page.get_by_label("Show sim.pose[0]").wait_for()
 
 
-@pytest.mark.slow
 def test_curves_over_another_curve(drove: Seen) -> None:
     page = drove.page
     page.get_by_label("Settings of sim.pose[0]").click()
@@ -146,7 +143,6 @@ def test_curves_over_another_curve(drove: Seen) -> None:
     assert limits(drove, "X") == pytest.approx([low, high], abs=0.1)
 
 
-@pytest.mark.slow
 def test_more_curves_than_colours_look_different(drove: Seen) -> None:
     page = drove.page
     page.evaluate(ADD, [f"joysticks[0].axes[{number}]" for number in range(6)])
@@ -164,7 +160,6 @@ def test_more_curves_than_colours_look_different(drove: Seen) -> None:
     assert colors == [*range(13), 16]
 
 
-@pytest.mark.slow
 def test_the_axis_of_time_has_times(drove: Seen) -> None:
     steps = drove.page.evaluate(
         """async () => {

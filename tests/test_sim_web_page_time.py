@@ -15,7 +15,6 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
     shared_browser,
     shared_server,
 )
-from conftest import sampled
 from skips import requires
 from web_pages import served
 
@@ -121,7 +120,6 @@ def same_series(person: Seen, path: str) -> None:
     person.eventually(SERIES, path, lambda found: set(found[0]) == set(found[1]))  # the last samples are on their way
 
 
-@pytest.mark.slow
 def test_curves_have_no_holes_when_they_are_added_or_a_run_goes_on(person: Seen) -> None:
     page = person.page
     add = "path => module('js/plotting.js').then(({ addToPlot }) => addToPlot(path, 'plot:1'))"
@@ -164,7 +162,6 @@ def test_looking_back_shows_the_past_everywhere_and_changes_nothing(person: Seen
     page.locator(".state em").wait_for(state="detached")
 
 
-@pytest.mark.slow
 def test_marks_and_moments_are_found_on_the_timeline(person: Seen) -> None:
     page = person.page
     drive(person)
@@ -219,7 +216,6 @@ def test_after_a_click_on_the_timeline_arrows_look_around_until_escape(person: S
     person.state("Emergency stopped")
 
 
-@pytest.mark.slow
 def test_every_value_can_be_searched_and_plotted_by_keys_alone(person: Seen) -> None:
     page = person.page
     person.tab("Plot 1").focus()
@@ -260,7 +256,6 @@ def test_a_crash_shows_the_line_and_the_way_back(person: Seen) -> None:
     assert person.simulation.snapshot.time < failed_at + 60
 
 
-@pytest.mark.slow
 def test_a_robot_that_floods_the_console_or_hangs_leaves_the_page_alive(person: Seen) -> None:
     page = person.page
     person.button("Enable").click()
@@ -281,7 +276,6 @@ def test_a_robot_that_floods_the_console_or_hangs_leaves_the_page_alive(person: 
     person.state("Teleoperated disabled")
 
 
-@pytest.mark.slow
 def test_the_console_is_filtered_and_searched(person: Seen) -> None:
     page = person.page
     page.locator(".line.warning", has_text="this is a warning").first.wait_for()
@@ -334,7 +328,6 @@ def test_panels_are_moved_sized_closed_and_stay_so(person: Seen) -> None:
     person.tab("Console").wait_for()
 
 
-@pytest.mark.slow
 def test_the_page_says_which_values_are_forgotten(browser, make_project, monkeypatch) -> None:
     monkeypatch.setattr("pyfrc_core.sim.ui.web.collector.Runs", partial(Runs, most_bytes=1))
     with served(make_project(ROBOT)) as server, page_of(browser, server) as person:
@@ -354,7 +347,6 @@ def test_the_page_says_which_values_are_forgotten(browser, make_project, monkeyp
         page.locator(".timeline-tip", has_text="Values forgotten").wait_for()
 
 
-@pytest.mark.slow
 def test_the_page_says_that_the_simulation_was_closed(browser, make_project) -> None:
     with served(make_project(ROBOT), speed=1, paused=False) as server, page_of(browser, server) as person:
         server.front_end.close()
@@ -365,7 +357,6 @@ def test_the_page_says_that_the_simulation_was_closed(browser, make_project) -> 
         person.wrong.clear()  # the browser's own words about the lost connection
 
 
-@pytest.mark.slow
 def test_a_server_that_was_silent_is_connected_again(browser, server) -> None:
     with page_of(browser, server) as person:
         page = person.page
@@ -396,7 +387,7 @@ def test_a_server_that_was_silent_is_connected_again(browser, server) -> None:
         person.wrong.clear()  # the browser's own words about attempts that came to nothing
 
 
-@pytest.mark.parametrize("scheme", sampled(["light", "dark"], "light"))
+@pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_everything_fits_and_can_be_read(browser, server, scheme) -> None:
     with page_of(browser, server, color_scheme=scheme) as person:
         page = person.page

@@ -15,7 +15,6 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`
     shared_browser,
     shared_server,
 )
-from conftest import sampled
 from skips import requires
 from web_pages import Served
 
@@ -42,7 +41,7 @@ def test_two_windows_arrange_the_page_together(person: Seen) -> None:
     person.page.get_by_title("Layout", exact=True).get_by_text("Tuning").wait_for()
 
 
-@pytest.mark.parametrize("replaces", sampled([False, True], True))
+@pytest.mark.parametrize("replaces", [False, True])
 def test_a_file_that_is_there_is_replaced_after_a_question(replaces: bool, person: Seen) -> None:
     file = person.simulation.project.root / "drive.jsonl"
     file.write_text("mine")
@@ -56,7 +55,6 @@ def test_a_file_that_is_there_is_replaced_after_a_question(replaces: bool, perso
     assert (file.read_text() == "mine") is not replaces
 
 
-@pytest.mark.slow
 def test_a_flood_of_prints_leaves_the_warnings(person: Seen) -> None:
     person.button("Enable").click()
     person.state("Teleoperated")

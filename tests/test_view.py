@@ -434,14 +434,20 @@ def test_a_robot_is_chosen_and_states_of_the_other_log_are_drawn_below_those_of_
         page.close()
 
 
-def test_the_code_of_a_project_can_be_run_with_a_log(tmp_path: Path, browser: Browser) -> None:
+def test_the_code_of_a_project_can_be_run_with_a_log(tmp_path: Path) -> None:
+    log, project = open_log(a_match().save(tmp_path / "match.wpilog"), HEIGHT), Project(tmp_path / "robot.py")
+    with served_source(LogSource(project, log)) as server, server.page() as page:
+        assert page.hello["source"]["replays"] is False
+        assert page.ask(type="command", name="what_if")["type"] == "error"
+    with served_source(LogSource(project, log, what_if=lambda: "its address")) as server, server.page() as page:
+        assert page.hello["source"]["replays"] is True
+        assert page.command("what_if")["address"] == "its address"
+
+
+def test_the_page_goes_to_the_simulation_that_runs_the_code(tmp_path: Path, browser: Browser) -> None:
     require("the page of pyfrc view in a browser", missing_browser())
-    log = open_log(a_match().save(tmp_path / "match.wpilog"), HEIGHT)
-    project = Project(tmp_path / "robot.py")
+    log, project = open_log(a_match().save(tmp_path / "match.wpilog"), HEIGHT), Project(tmp_path / "robot.py")
     with served_source(LogSource(project, log)) as server:
-        with server.page() as page:
-            assert page.hello["source"]["replays"] is False
-            assert page.ask(type="command", name="what_if")["type"] == "error"
         address = f"{server.address}&there"
         answers = iter(["", "", address])
         with served_source(LogSource(project, log, what_if=lambda: next(answers))) as before:
