@@ -19,23 +19,16 @@ IN_2027 = frozenset(
         "determinism",
         "failures",
         "fuzz_lines",
-        "fuzz_shrink",
         "fuzz_states",
         "hangs",
         "isolation",
-        "live_robot",
-        "live_runs",
-        "logs",
         "lost_driver_station",
-        "motion",
         "one_row",
         "robot_time",
         "scripts",
         "sim_headless",
-        "sim_scene",
         "sim_session",
         "sim_wpilog",
-        "visionsim",
     }
 )
 
@@ -47,11 +40,18 @@ IN_2027_AT_NIGHT = frozenset(
         "failures_at_import",
         "fuzz_hints",
         "fuzz_plan",
+        "fuzz_shrink",
         "hal_paths",
+        "live_robot",
+        "live_runs",
+        "logs",
+        "motion",
         "set_order",
         "sim_ending",
+        "sim_scene",
         "sync",
         "sync_lock",
+        "visionsim",
     }
 )
 

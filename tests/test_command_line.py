@@ -14,6 +14,7 @@ from pathlib import Path
 import click
 import pytest
 from conftest import sampled
+from loops import for_each
 
 from pyfrc_cli.completion import SHELLS
 from pyfrc_cli.main import COMMANDS, OLDER_NAMES, cli, run
@@ -42,7 +43,7 @@ def leaves(group: click.Group, path: tuple[str, ...] = ()) -> Iterator[tuple[tup
 EVERY = dict(leaves(cli))
 
 
-@pytest.mark.parametrize("path", EVERY, ids=" ".join)
+@for_each("path", EVERY)
 def test_each_command_tells_its_exit_codes_and_has_a_short_option_for_help(path: tuple[str, ...]) -> None:
     command = EVERY[path]
     help_text = command.get_help(click.Context(command, info_name=" ".join(path), terminal_width=200))

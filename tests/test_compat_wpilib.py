@@ -9,6 +9,7 @@ from subprocess import run
 
 import magicbot
 import pytest
+from loops import for_each
 
 from pyfrc_core import wpi
 from pyfrc_core.compat.private_name import IncompatibleLibraryError, PrivateName
@@ -27,7 +28,7 @@ def private_names() -> list[PrivateName]:
 NAMES = [name for name in private_names() if name not in (commands.SUBSYSTEMS, commands.SCHEDULED_COMMANDS)]
 
 
-@pytest.mark.parametrize("name", NAMES, ids=lambda name: name.path)
+@for_each("name", NAMES)
 def test_it_is_there(name: PrivateName) -> None:
     try:
         name.find()

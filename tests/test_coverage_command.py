@@ -113,7 +113,7 @@ def functions_run(report: dict[str, Any]) -> set[str]:
     return {name for name, function in functions.items() if name and function["executed_lines"]}
 
 
-@pytest.mark.parametrize("isolation", sampled(["auto", "reuse", "spawn", "none"], "auto", "reuse", "none"))
+@pytest.mark.parametrize("isolation", sampled(["auto", "reuse", "spawn", "none"], "auto"))
 def test_lines_in_threads_and_isolated_tests_count(project: RobotProject, isolation: str) -> None:
     tests = () if isolation != "none" else ("--", "-k", "teleop")
     report = measured(project, "test", "--isolation", isolation, *tests)
@@ -121,6 +121,7 @@ def test_lines_in_threads_and_isolated_tests_count(project: RobotProject, isolat
     assert functions_run(report) == expected
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("isolation", sampled(["auto", "reuse", "spawn"], "auto"))
 def test_lines_that_only_a_fuzz_match_runs_count(project: RobotProject, isolation: str) -> None:
     report = measured(project, "fuzz", "--runs", "2", "-j", "2", "--isolation", isolation)
@@ -201,6 +202,7 @@ def test_what_cannot_be_is_said(project: RobotProject, words: tuple[str, ...], c
     assert "Traceback" not in result.output
 
 
+@pytest.mark.slow
 def test_the_wrapped_commands_project_is_measured(project: RobotProject, tmp_path: Path) -> None:
     result = project.run("coverage", "test", "--project", str(project.path), cwd=tmp_path)
     assert result.code == 0, result.output
@@ -231,6 +233,7 @@ def test_the_worst_file_comes_first_and_in_it_the_longest_function() -> None:
     assert never_run({"files": {}}) == ""
 
 
+@pytest.mark.slow
 def test_lines_that_a_simulation_runs_count(project: RobotProject) -> None:
     report = measured(project, "sim", "--ui", "none", "--mode", "practice", "--nt-port", "0")
     assert functions_run(report) == {"in_a_thread", "in_a_notifier", "in_autonomous"}

@@ -134,6 +134,7 @@ def test_voltage_and_power(control, hal_data, robot):
 """
 
 
+@pytest.mark.slow
 def test_motors_in_closed_loops_move_by_their_mode(make_project: MakeProject) -> None:
     project = make_project({"robot.py": SPARKS})
     printed = create(project)

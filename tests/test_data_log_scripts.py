@@ -82,7 +82,12 @@ def outputs(trace: Path) -> list[tuple[float, str, Any]]:
     ]
 
 
-@pytest.mark.parametrize("arguments", [("--mode", "practice"), ("--script", "drive.jsonl")])
+BOTH = pytest.mark.parametrize(
+    "arguments", [("--mode", "practice"), pytest.param(("--script", "drive.jsonl"), marks=pytest.mark.slow)]
+)
+
+
+@BOTH
 def test_the_log_of_a_robot_replays_to_the_same_outputs(arguments: tuple[str, ...], make_project) -> None:
     project = make_project(robot())
     result = project.run("sim", "--ui", "none", *arguments, "--record", "recorded.jsonl")
@@ -96,7 +101,7 @@ def test_the_log_of_a_robot_replays_to_the_same_outputs(arguments: tuple[str, ..
     assert replayed == outputs(project.path / "recorded.trace.jsonl")
 
 
-@pytest.mark.parametrize("arguments", [("--mode", "practice"), ("--script", "drive.jsonl")])
+@BOTH
 def test_the_log_of_the_simulator_replays_to_the_same_outputs(arguments: tuple[str, ...], make_project) -> None:
     project = make_project(robot("pass"))
     sim = ("sim", "--ui", "none", *arguments, "--wpilog", "match.wpilog", "--record", "recorded.jsonl")

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from loops import for_each
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_memory, project_of
 
@@ -36,7 +37,7 @@ def pythons() -> dict[str, str]:
     return {"this": sys.executable, **dict.fromkeys(["3.9"] if there else [], there[0] if there else "")}
 
 
-@pytest.mark.parametrize("source", SOURCES, ids=lambda source: source.stem)
+@for_each("source", SOURCES)
 def test_python_39_and_its_standard_library_are_enough(source: Path) -> None:
     tree = ast.parse(source.read_text("utf-8"), feature_version=(3, 9))
     for node in ast.walk(tree):

@@ -120,6 +120,7 @@ def test_a_deploy_prints_one_line_per_phase_and_the_program_runs(robot: Roborio,
     assert (robot.disk / "etc/natinst/share/ni-rt.ini").read_text().count("\n;StartupDLLs") == 1
 
 
+@pytest.mark.slow
 def test_a_deploy_from_a_checkout_records_the_commit(robot: Roborio, make_project) -> None:
     require("which commit was deployed", missing_programs("git"))
     project = make_project(program())
@@ -137,6 +138,7 @@ def test_a_deploy_from_a_checkout_records_the_commit(robot: Roborio, make_projec
     assert f"release {info['current']}, running" in shown
 
 
+@pytest.mark.slow
 def test_the_plan_is_shown_and_nothing_is_done(robot: Roborio, make_project) -> None:
     project = make_project({**program(), "old.py": "", "same.py": "X = 1\n"})
     assert deploy(project, robot).code == 0
@@ -188,15 +190,6 @@ def test_a_program_that_dies_is_shown_with_its_traceback_and_the_way_back(robot:
     assert result.code == 3
     assert "release 1 runs again" in result.stderr
     assert "number 1" in code_on(robot)
-
-
-@pytest.mark.slow
-def test_the_way_back_is_in_the_json_of_a_program_that_dies(robot: Roborio, make_project) -> None:
-    project = make_project(program(1))
-    assert deploy(project, robot).code == 0
-    project.write(program(2, DIES))
-    error = events(deploy(project, robot, "--json"))[-1]
-    assert f"pyfrc deploy --robot {robot.where} --rollback" in error["remedy"]
 
 
 @pytest.mark.slow
@@ -252,6 +245,7 @@ def test_what_is_carried_over_under_another_name_or_not_at_all_is_named(robot: R
     assert (robot.home / "py/logs.release-1/match.csv").read_text() == "precious"
 
 
+@pytest.mark.slow
 def test_undeploying_has_to_be_meant(robot: Roborio, make_project) -> None:
     project = make_project(program())
     assert deploy(project, robot).code == 0
@@ -270,6 +264,7 @@ def test_undeploying_has_to_be_meant(robot: Roborio, make_project) -> None:
 # -- what is looked at before ------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_failing_test_prevents_the_deploy_unless_the_user_confirms(robot: Roborio, make_project) -> None:
     project = make_project({**program(), "tests/test_it.py": "def test_it(): raise ValueError('crooked')\n"})
     result = project.run("deploy", "--robot", robot.where)
@@ -285,6 +280,7 @@ def test_a_failing_test_prevents_the_deploy_unless_the_user_confirms(robot: Robo
     assert "number 1" in code_on(robot)
 
 
+@pytest.mark.slow
 def test_a_program_that_cannot_be_imported_is_not_deployed(robot: Roborio, make_project) -> None:
     project = make_project(program(1, "\nimport no_such_library\n"))
     result = deploy(project, robot)
@@ -323,34 +319,21 @@ def test_another_main_file_has_to_be_meant(robot: Roborio, make_project) -> None
 OURS = version("wpilib")
 
 
+#: Each problem with its sentence and the beginning of its remedy.
+PROBLEMS = [
+    ({"wpilib": "2026.1.1"}, f"the robot has wpilib 2026.1.1, this computer has {OURS}", "--no-version-check"),
+    ({"password": "secret"}, "refuses lvuser with an empty password", "passwd -d lvuser"),
+    ({"image": None}, "this is not a roboRIO", "--robot HOST"),
+    ({"python": None}, "there is no Python on the robot", "pyfrc sync; then at the robot: pyfrc deploy"),
+    ({"wpilib": None}, "there is no wpilib", "at the robot: pyfrc deploy"),
+    ({"image": "FRC_roboRIO_2024_v2.1"}, "the robot's image is of 2024", "roboRIO Imaging Tool"),
+    ({"image": "FRC_roboRIO_2026_v1.1"}, "the robot's image is 2026_v1.1", "image 2026_v1.2"),
+    ({"disk_size": "700k"}, "the robot's disk is full", "Remove what the project does not need"),
+]
+
+
 @pytest.mark.parametrize(
-    ("how", "what", "remedy"),
-    [
-        ({"password": "secret"}, "refuses lvuser with an empty password", "passwd -d lvuser"),
-        ({"image": None}, "this is not a roboRIO", "--robot HOST"),
-        pytest.param(
-            {"python": None},
-            "there is no Python on the robot",
-            "pyfrc sync; then at the robot: pyfrc deploy",
-            marks=pytest.mark.slow,
-        ),
-        pytest.param({"wpilib": None}, "there is no wpilib", "at the robot: pyfrc deploy", marks=pytest.mark.slow),
-        ({"wpilib": "2026.1.1"}, f"the robot has wpilib 2026.1.1, this computer has {OURS}", "--no-version-check"),
-        pytest.param(
-            {"image": "FRC_roboRIO_2024_v2.1"},
-            "the robot's image is of 2024",
-            "roboRIO Imaging Tool",
-            marks=pytest.mark.slow,
-        ),
-        pytest.param(
-            {"image": "FRC_roboRIO_2026_v1.1"},
-            "the robot's image is 2026_v1.1",
-            "image 2026_v1.2",
-            marks=pytest.mark.slow,
-        ),
-        ({"disk_size": "700k"}, "the robot's disk is full", "Remove what the project does not need"),
-    ],
-    ids=lambda value: "-".join(value) if isinstance(value, dict) else None,
+    ("how", "what", "remedy"), sampled(PROBLEMS, PROBLEMS[0]), ids=["-".join(how) for how, _, _ in PROBLEMS]
 )
 def test_problems_of_a_robot_are_reported_with_remedies(how, what, remedy, new_robot, make_project) -> None:
     robot = new_robot(**how)
@@ -367,16 +350,6 @@ def test_the_second_model_s_image_is_accepted() -> None:
     assert image_problem("FRC_roboRIO2_2026_v1.2", OURS, ROBORIO) is None
 
 
-@pytest.mark.parametrize(
-    "how",
-    sampled([{"wpilib": "2026.1.1"}, {"image": "FRC_roboRIO_2024_v2.1"}], {"wpilib": "2026.1.1"}),
-    ids=["wpilib", "image"],
-)
-def test_versions_are_not_checked_with_the_option(how, new_robot, make_project) -> None:
-    result = deploy(make_project(program()), new_robot(**how), "--no-version-check")
-    assert result.code == 0, result.output
-
-
 @pytest.fixture
 def user_keys(tmp_path: Path) -> Path:
     """A directory with two of the user's keys: the one that the robot wants, and another."""
@@ -385,6 +358,7 @@ def user_keys(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_the_ssh_agents_keys_are_offered_with_the_option(new_robot, make_project, user_keys: Path) -> None:
     robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
     project = make_project(program())
@@ -413,23 +387,6 @@ def test_the_ssh_agents_keys_are_offered_with_the_option(new_robot, make_project
 
 
 @pytest.mark.slow
-def test_the_key_in_a_file_is_offered_with_the_option(new_robot, make_project, user_keys: Path) -> None:
-    robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
-    project = make_project(program())
-    subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "secret", "-f", str(user_keys / "locked")], check=True)
-    for file, refusal in (
-        ("wrong", f"the robot refuses lvuser with {user_keys / 'wrong'}"),
-        ("locked", f"{user_keys / 'locked'}: this key has a passphrase"),
-        ("right.pub", f"{user_keys / 'right.pub'}: this is not a private key"),
-        ("none", f"{user_keys / 'none'}: this key cannot be read"),
-    ):
-        result = deploy(project, robot, "--identity", str(user_keys / file))
-        assert result.code == 1
-        assert refusal in result.first_error
-        assert "Traceback" not in result.output
-    assert deploy(project, robot, "--identity", str(user_keys / "right")).code == 0
-
-
 def test_the_users_keys_are_offered_to_no_robot_otherwise(new_robot, make_project, user_keys: Path) -> None:
     """Nor is the agent asked for them; nor is anything read from ~/.ssh."""
     robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
@@ -535,27 +492,29 @@ def test_without_a_robot_the_failed_attempts_are_listed(make_project) -> None:
     assert "A virtual robot prints it. Start one in another terminal: pyfrc virtual-robot" in result.stderr
 
 
-@pytest.mark.parametrize(
-    "args",
-    [
-        ["--in-place", "--auto-rollback"],
-        ["--rollback", "--dry-run"],
-        ["--rollback", "x"],
-        ["--json", "--nc"],
-        ["--dry-run", "--nc-ds"],
-        ["--robot", "127.0.0.1", "--team", "1"],
-        ["--robot", "127.0.0.1:x"],
-        ["--robot", "lvuser@127.0.0.1"],
-        ["--robot", "--skip-tests"],
-        ["--skip-tests", "--robot-name", "--dry-run"],
-        ["--skip-tests", "--identity", "--dry-run"],
-        ["--skip-tests", "--accept-host-key", "--dry-run"],
-        ["--robot", "robot.local", "--no-resolve"],
-        ["--team", "0"],
-    ],
-    ids=" ".join,
-)
-def test_options_that_cannot_be_together_are_wrong_usage(args: list[str], make_project) -> None:
-    result = make_project(program()).run("deploy", *args)
-    assert result.code == 2, result.output
-    assert "Traceback" not in result.output
+#: Options that cannot be together, or not have such values.
+WRONG = """
+--in-place --auto-rollback
+--rollback --dry-run
+--rollback x
+--json --nc
+--dry-run --nc-ds
+--robot 127.0.0.1 --team 1
+--robot 127.0.0.1:x
+--robot lvuser@127.0.0.1
+--robot --skip-tests
+--skip-tests --robot-name --dry-run
+--skip-tests --identity --dry-run
+--skip-tests --accept-host-key --dry-run
+--robot robot.local --no-resolve
+--team 0
+"""
+
+
+def test_options_that_cannot_be_together_are_wrong_usage(make_project) -> None:
+    project = make_project(program())
+    for words in WRONG.strip().splitlines():
+        result = project.run_here("deploy", *words.split())
+        assert result.code == 2, (words, result.output)
+        assert result.stderr, words
+        assert "Traceback" not in result.output, words

@@ -12,6 +12,7 @@ from contextlib import ExitStack, suppress
 from dataclasses import replace
 
 import pytest
+from loops import for_each
 from ports import refusing_port
 from roborio import PATIENCE
 
@@ -226,8 +227,8 @@ def test_an_address_has_one_form(text: str, address: Address) -> None:
     assert parse_address(text) == address
 
 
-@pytest.mark.parametrize(
-    ("text", "remedy"),
+@for_each(
+    "text, remedy",
     [
         ("10.12.34.02", "Write 10.12.34.2"),
         ("010.12.34.2:22", "Write 10.12.34.2"),
@@ -248,7 +249,7 @@ def test_an_old_spelling_of_an_address_is_refused_with_the_right_one(text: str, 
     assert remedy in str(caught.value)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "text",
     [
         *("\uff11\uff10.12.34.2", "10\u300212\u300234\u30022", "10.12.34.*", "a,b", "|1|a|b", "!robot", "a;b"),

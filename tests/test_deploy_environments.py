@@ -377,7 +377,7 @@ def test_connections_cut(scenario: Scenario, places: int) -> None:
 
 
 @pytest.mark.parametrize("loses", sampled([False, True], True), ids=["killed", "without power"])
-@on_each("each", 10, 1)
+@on_each("each", 40, 1)
 def test_agents_killed_before_steps_on_the_disk(scenario: Scenario, each: int, loses: bool) -> None:
     assert scenario.installing.steps is not None
     assert scenario.deploying.steps is not None

@@ -74,12 +74,6 @@ HELLO = wire.message_frame({"done": FACTS})
 REQUEST = DeployRequest("robot.py", {})
 
 
-@pytest.fixture(params=CONTROLLERS, ids=lambda each: each.name, autouse=True)
-def controller(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The same from each kind of robot."""
-    monkeypatch.setattr(FakeRobot, "controller", request.param, raising=False)
-
-
 def packed(text: bytes) -> bytes:
     return wire.frame(wire.MESSAGE, zlib.compress(text))
 
@@ -92,7 +86,7 @@ class FakeRobot:
     """
 
     address = "10.12.34.2"
-    controller: ControllerKind
+    controller: ControllerKind = CONTROLLERS[0]
 
     def __init__(self, *scripts: bytes, then: Script = (), status: int | None = -1, errors: bytes = b"") -> None:
         self._scripts = iter(scripts)
@@ -146,6 +140,9 @@ def protocol_error(robot: FakeRobot, do: Callable[[AgentClient], object] = lambd
     return error.message
 
 
+NOT_THE_AGENT = "the robot sent data that is not from pyfrc's agent: "
+
+
 # -- frames ------------------------------------------------------------------------------------------------------------
 
 FRAMES = {
@@ -185,21 +182,26 @@ LARGE: dict[str, Callable[[], bytes]] = {
 }
 
 
-def frame_of(name: str) -> bytes:
-    return FRAMES[name] if name in FRAMES else LARGE[name]()
-
-
-@pytest.mark.parametrize("name", [*FRAMES, *LARGE])
-def test_a_frame_that_is_none(name: str) -> None:
-    frame = frame_of(name)
+def refused_within_memory(frame: bytes, what: str) -> None:
+    """Assert that a frame is refused in a sentence, and that this takes little memory."""
     tracemalloc.start()
     try:
         message = protocol_error(FakeRobot(frame))
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    assert message.startswith("the robot sent data that is not from pyfrc's agent: ")
-    assert peak < 40_000_000
+    assert message.startswith(NOT_THE_AGENT), what
+    assert peak < 40_000_000, what
+
+
+def test_a_frame_that_is_none() -> None:
+    for what, frame in FRAMES.items():
+        refused_within_memory(frame, what)
+
+
+@pytest.mark.parametrize("what", LARGE)
+def test_a_large_frame_that_is_none(what: str) -> None:
+    refused_within_memory(LARGE[what](), what)
 
 
 def test_the_longest_real_response_is_read(project: Manifest) -> None:
@@ -210,11 +212,11 @@ def test_the_longest_real_response_is_read(project: Manifest) -> None:
     assert len(robot.plan(project).added) == 50_000
 
 
-@pytest.mark.parametrize("cut", [0, 1, 5, 6, len(HELLO) - 1])
 @pytest.mark.parametrize("status", [-1, None, 0])
-def test_a_link_that_is_closed_in_the_middle(cut: int, status: int | None) -> None:
-    message = protocol_error(FakeRobot(HELLO[:cut], status=status), start=0.01)
-    assert message.startswith("the connection to the robot was lost: the stream has ended")
+def test_a_link_that_is_closed_in_the_middle(status: int | None) -> None:
+    for cut in (0, 1, 5, 6, len(HELLO) - 1):
+        message = protocol_error(FakeRobot(HELLO[:cut], status=status), start=0.01)
+        assert message.startswith("the connection to the robot was lost: the stream has ended"), cut
 
 
 def test_many_errors_printed() -> None:
@@ -261,11 +263,13 @@ def _long_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(agent_stream, "MAX_FRAMES", 100)
 
 
-def test_facts_with_a_wrong_field() -> None:
+@pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda each: each.name)
+def test_facts_with_a_wrong_field(controller: ControllerKind, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(FakeRobot, "controller", controller)
     count = 0
     for what, facts in variants(FACTS):
         message = protocol_error(FakeRobot(of_json({"done": facts})))
-        assert message.startswith("the robot sent data that is not from pyfrc's agent: "), what
+        assert message.startswith(NOT_THE_AGENT), what
         count += 1
     assert count > 150
 
@@ -274,7 +278,7 @@ def test_a_release_with_a_wrong_field() -> None:
     for what, release in variants(FACTS["releases"][0]):
         if what not in ("no main", "no from", "no debug"):  # an old record may lack them
             message = protocol_error(FakeRobot(of_json({"done": {**FACTS, "releases": [release]}})))
-            assert message.startswith("the robot sent data that is not from pyfrc's agent: "), what
+            assert message.startswith(NOT_THE_AGENT), what
 
 
 @pytest.fixture
@@ -288,7 +292,7 @@ def test_a_response_to_a_deploy_with_an_invalid_field(project: Manifest) -> None
             continue
         reply = wire.message_frame({"need": []}) + of_json({"done": deployed})
         message = protocol_error(FakeRobot(HELLO, reply), lambda robot: robot.deploy(project, REQUEST))
-        assert message.startswith("the robot sent data that is not from pyfrc's agent: "), what
+        assert message.startswith(NOT_THE_AGENT), what
 
 
 NEEDS: list[Any] = [
@@ -303,18 +307,17 @@ NEEDS: list[Any] = [
 ]
 
 
-@pytest.mark.parametrize("need", NEEDS, ids=str)
-def test_contents_that_were_not_offered(need: dict[str, Any], project: Manifest) -> None:
-    message = protocol_error(FakeRobot(HELLO, wire.message_frame(need)), lambda robot: robot.deploy(project, REQUEST))
-    assert "'need'" in message
+def test_contents_that_were_not_offered(project: Manifest) -> None:
+    for need in NEEDS:
+        robot = FakeRobot(HELLO, wire.message_frame(need))
+        assert "'need'" in protocol_error(robot, lambda client: client.deploy(project, REQUEST)), need
 
 
-@pytest.mark.parametrize("need", [{"need": ["other.whl"], "bytes": 1}, {"need": ["robot.py", "robot.py"]}, {"need": 1}])
-def test_wheels_that_were_not_offered(need: dict[str, Any], project: Manifest) -> None:
-    robot = FakeRobot(HELLO, wire.message_frame(need))
-    session = AgentClient.start(robot)
-    with pytest.raises(DeployError, match="not from pyfrc's agent"):
-        session.install("a" * 16, "b" * 16, project, [1] * len(project.entries))
+def test_wheels_that_were_not_offered(project: Manifest) -> None:
+    for need in ({"need": ["other.whl"], "bytes": 1}, {"need": ["robot.py", "robot.py"]}, {"need": 1}):
+        session = AgentClient.start(FakeRobot(HELLO, wire.message_frame(need)))
+        with pytest.raises(DeployError, match="not from pyfrc's agent"):
+            session.install("a" * 16, "b" * 16, project, [1] * len(project.entries))
 
 
 def test_a_phase_that_is_not_known_is_one_of_a_later_agent(project: Manifest) -> None:
@@ -335,30 +338,30 @@ def test_a_duplicate_response(project: Manifest) -> None:
     assert "it sent a message without a request" in protocol_error(FakeRobot(HELLO, reply), do)
 
 
-@pytest.mark.parametrize(
-    ("op", "answer"),
-    [
-        (lambda robot: robot.rollback(), {"release": 1, "previous": None, "changed": [1], "about": {}}),
-        (lambda robot: robot.rollback(), {"release": 1, "previous": None, "changed": [], "about": []}),
-        (lambda robot: robot.undeploy(), {"removed": "yes"}),
-        (lambda robot: robot.undeploy(), 1),
-        (lambda robot: robot.restart(), "done"),
-        (lambda robot: robot.watch(1.0), {}),
-        (lambda robot: robot.watch(1.0), STATE),
-        (lambda robot: robot.watch(1.0), {**STATE, "verdict": "\x1b[2J"}),
-        (lambda robot: robot.watch(1.0), {**STATE, "verdict": ["running"]}),
-        (lambda robot: robot.watch(1.0), {**STATE, "verdict": "running", "seconds": float("nan")}),
-        (lambda robot: robot.watch(1.0), {**STATE, "verdict": "running", "age": float("inf")}),
-        (lambda robot: robot.watch(1.0), {**STATE, "verdict": "running", "cpu": -1}),
-        (lambda robot: robot.watch(1.0), {**STATE, "verdict": "running", "network_tables": 1}),
-        (lambda robot: robot.info(), {}),
-        (lambda robot: robot.plan(Manifest(())), {"added": [], "changed": 1, "removed": [], "files": 0, "bytes": 0}),
-        (lambda robot: robot.plan(Manifest(())), {"added": [], "changed": [], "removed": [], "files": -1, "bytes": 0}),
-    ],
-)
-def test_other_responses_with_an_invalid_field(op: Callable[[AgentClient], object], answer: object) -> None:
-    message = protocol_error(FakeRobot(HELLO, wire.message_frame({"done": answer})), op)
-    assert message.startswith("the robot sent data that is not from pyfrc's agent: ")
+OTHERS: list[tuple[Callable[[AgentClient], object], object]] = [
+    (lambda robot: robot.rollback(), {"release": 1, "previous": None, "changed": [1], "about": {}}),
+    (lambda robot: robot.rollback(), {"release": 1, "previous": None, "changed": [], "about": []}),
+    (lambda robot: robot.undeploy(), {"removed": "yes"}),
+    (lambda robot: robot.undeploy(), 1),
+    (lambda robot: robot.restart(), "done"),
+    (lambda robot: robot.watch(1.0), {}),
+    (lambda robot: robot.watch(1.0), STATE),
+    (lambda robot: robot.watch(1.0), {**STATE, "verdict": "\x1b[2J"}),
+    (lambda robot: robot.watch(1.0), {**STATE, "verdict": ["running"]}),
+    (lambda robot: robot.watch(1.0), {**STATE, "verdict": "running", "seconds": float("nan")}),
+    (lambda robot: robot.watch(1.0), {**STATE, "verdict": "running", "age": float("inf")}),
+    (lambda robot: robot.watch(1.0), {**STATE, "verdict": "running", "cpu": -1}),
+    (lambda robot: robot.watch(1.0), {**STATE, "verdict": "running", "network_tables": 1}),
+    (lambda robot: robot.info(), {}),
+    (lambda robot: robot.plan(Manifest(())), {"added": [], "changed": 1, "removed": [], "files": 0, "bytes": 0}),
+    (lambda robot: robot.plan(Manifest(())), {"added": [], "changed": [], "removed": [], "files": -1, "bytes": 0}),
+]
+
+
+def test_other_responses_with_an_invalid_field() -> None:
+    for op, response in OTHERS:
+        message = protocol_error(FakeRobot(HELLO, wire.message_frame({"done": response})), op)
+        assert message.startswith(NOT_THE_AGENT), response
 
 
 # -- without end -------------------------------------------------------------------------------------------------------

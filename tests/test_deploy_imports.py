@@ -8,6 +8,7 @@ from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
 import pytest
+from loops import for_each
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
 
@@ -19,8 +20,8 @@ from pyfrc_core.deploy.program_imports import ProgramImports, imports_in
 # --- the statements of one file
 
 
-@pytest.mark.parametrize(
-    ("source", "certain", "perhaps"),
+@for_each(
+    "source, certain, perhaps",
     [
         ("import a, b.c\nfrom d import e", ["a", "b.c", "d"], []),
         ("class A:\n    import a\nfor x in []:\n    import b\nwith open('x'):\n    import c", ["a", "b", "c"], []),

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from conftest import RobotProject, sampled
+from loops import for_each
 from roborio import Roborio, require_roborio
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
@@ -221,7 +222,7 @@ GARBAGE = [
 ]
 
 
-@pytest.mark.parametrize("garbage", GARBAGE, ids=[each[:40].decode(errors="replace") for each in GARBAGE])
+@for_each("garbage", GARBAGE)
 def test_a_damaged_record_is_no_record(garbage: bytes) -> None:
     assert parse_record(garbage.decode(errors="surrogateescape")) == {}
 

@@ -348,6 +348,7 @@ def test_deploying_all_the_same(roborio: Roborio, make_project) -> None:
     assert "warning: robot.py:2: import commands2" in done.stdout
 
 
+@pytest.mark.slow
 def test_the_robots_python_is_the_seasons(roborio: Roborio, make_project) -> None:
     customize = roborio.disk / SITE / "sitecustomize.py"
     customize.write_text(customize.read_text().replace("(3, 14,", "(3, 99,"))
@@ -359,6 +360,7 @@ def test_the_robots_python_is_the_seasons(roborio: Roborio, make_project) -> Non
     assert deploy(project, roborio, "--no-version-check").code == 0
 
 
+@pytest.mark.slow
 def test_a_file_that_the_robots_python_cannot_compile(roborio: Roborio, make_project) -> None:
     project = make_project({"robot.py": ROBOT.format(imports="import arm"), "arm.py": "SPEED = 1\n"})
     assert deploy(project, roborio).code == 0

@@ -103,6 +103,7 @@ def test_a_file_that_becomes_a_pipe_while_it_is_sent(robot: LocalRobot, agents: 
     assert robot.startable() is None
 
 
+@pytest.mark.slow
 def test_private_files_are_not_uploaded_without_a_question(project: RobotProject, look_alike: Roborio) -> None:
     project.write({".gitignore": "tba_key.txt\n", "tba_key.txt": "12345"})
     (project.path / "settings").symlink_to(".gitignore")

@@ -14,6 +14,7 @@ from pathlib import Path
 import click
 import pytest
 from conftest import SHORT_MATCH, add_settings, sampled
+from loops import for_each
 from projects_of_before import OF_2019, OF_TODAY
 from test_virtual_robot import started
 
@@ -102,6 +103,7 @@ TESTING = (
 )
 
 
+@pytest.mark.slow
 def test_the_examples_in_the_testing_guide_pass(new_project) -> None:
     examples = files_of(TESTING)
     examples["switch/robot.py"] = files("docs/how_to/test_a_limit_switch.md")["elevator/robot.py"]
@@ -231,6 +233,7 @@ PHYSICS = {
 PHYSICS_PROJECTS = sorted({file.rpartition("/")[0] for file in PHYSICS if f"/{file}".endswith("/physics.py")})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("directory", sampled(PHYSICS_PROJECTS, *PHYSICS_PROJECTS[::3]))
 def test_the_examples_in_the_physics_guide_pass(directory: str, project) -> None:
     project.write(PHYSICS)
@@ -304,6 +307,7 @@ def test_the_examples_in_the_simulation_guide_work(project) -> None:
     assert "failure: None\nmode: autonomous\nleft motor: 0.49" in done.stdout, done.stdout
 
 
+@pytest.mark.slow
 def test_the_examples_in_the_guide_to_logs_work(project) -> None:
     for command in commands("docs/how_to/look_at_a_log.md") + commands("docs/how_to/compare_with_a_log.md"):
         result = project.run(*shlex.split(command)[1:])
@@ -311,6 +315,7 @@ def test_the_examples_in_the_guide_to_logs_work(project) -> None:
     assert {file.name for file in (project.path / ".runs").glob("*.html")} == {"before.html", "both.html"}
 
 
+@pytest.mark.slow
 def test_the_robot_in_the_guide_to_2027_becomes_what_is_shown_there(make_project) -> None:
     pytest.importorskip("libcst")
     document = "docs/how_to/from_2026_to_2027.md"
@@ -526,7 +531,7 @@ def test_the_fuzzing_guide_lists_every_check() -> None:
     assert set(re.findall(r"^(\w+) = (?:true|false)", example, re.MULTILINE)) == checks
 
 
-@pytest.mark.parametrize(
+@for_each(
     "document",
     [
         "README.md",

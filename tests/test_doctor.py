@@ -243,7 +243,7 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
     [
         ({"robot.py": "import wpilib\n\n1 / 0\n"}, "program", "robot.py:3: ZeroDivisionError", ""),
         pytest.param({"robot.py": "import os\nos._exit(0)\n"}, "program", "robot.py:2", "", marks=pytest.mark.slow),
-        ({"robot.py": "x = 1\n"}, "program", "no robot class", "class MyRobot"),
+        pytest.param({"robot.py": "x = 1\n"}, "program", "no robot class", "class MyRobot", marks=pytest.mark.slow),
         (
             {"pyproject.toml": "[tool.pyfrc]\nmian = 'robot.py'\n"},
             "project",
@@ -257,13 +257,20 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
             "no-such>=1",
             marks=pytest.mark.slow,
         ),
-        (
+        pytest.param(
             {"pyproject.toml": "[tool.robotpy]\nrequires = ['click>99']\n"},
             "project",
             "requires click>99, but ",
             "click>99",
+            marks=pytest.mark.slow,
         ),
-        ({"sim/config.json": '{"pyfrc": {"robot": {"w": "wide"}}}'}, "sim/config.json", "robot.w", ""),
+        pytest.param(
+            {"sim/config.json": '{"pyfrc": {"robot": {"w": "wide"}}}'},
+            "sim/config.json",
+            "robot.w",
+            "",
+            marks=pytest.mark.slow,
+        ),
         pytest.param(
             {"wpilib/__init__.py": ""},
             "project",
@@ -271,19 +278,27 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
             "another name",
             marks=pytest.mark.slow,
         ),
-        ({"sim/dashboards.json": '{"dashboards": {"a": {"rows": 0}}}'}, "sim/dashboards.json", "a.rows = 0", ""),
+        pytest.param(
+            {"sim/dashboards.json": '{"dashboards": {"a": {"rows": 0}}}'},
+            "sim/dashboards.json",
+            "a.rows = 0",
+            "",
+            marks=pytest.mark.slow,
+        ),
         pytest.param({"random.py": ""}, "project", "random.py hides a library", "another name", marks=pytest.mark.slow),
-        (
+        pytest.param(
             {"physics.py": "class PhysicsEngine:"},
             "physics",
             "physics.py:1: IndentationError",
             "indent this one by four spaces",
+            marks=pytest.mark.slow,
         ),
-        (
+        pytest.param(
             {"physics.py": "import phisics"},
             "physics",
             "physics.py:1: there is no module phisics",
             "Did you mean physics?",
+            marks=pytest.mark.slow,
         ),
         pytest.param(
             {"physics.py": "class PhysicEngine: pass"},
@@ -340,6 +355,7 @@ def server(says: bytes) -> Iterator[str]:
         thread.join()
 
 
+@pytest.mark.slow
 def test_a_robot_that_is_off(make_project) -> None:
     """A robot that is not found is a problem if the user has specified it, else a hint."""
     with refusing_port() as port:
@@ -360,6 +376,7 @@ def test_a_team_number_that_is_none(make_project) -> None:
     assert "teamNumber" in finding["text"]
 
 
+@pytest.mark.slow
 def test_the_next_step_is_the_last_thing_that_is_shown(make_project) -> None:
     project = make_project({"robot.py": ROBOT})
     (step,) = results_of(project.run("doctor", "--json"))["next step"]

@@ -178,7 +178,7 @@ def left(directory: Path) -> dict[str, str]:
     }
 
 
-@pytest.mark.parametrize("command", sampled(COMMANDS, COMMANDS[0], COMMANDS[3]))
+@pytest.mark.parametrize("command", sampled(COMMANDS, COMMANDS[0]))
 def test_a_command_does_the_same_as_in_a_new_interpreter(command: str, make_shared_project: MakeProject) -> None:
     cold, warm = make_shared_project(FILES), make_shared_project(FILES)
     program, *words = command.split()

@@ -158,7 +158,7 @@ FAULTY = """
     """
 
 
-@pytest.mark.parametrize("kind", sampled(FAULTS, "not_a_number", "process_ended"))
+@pytest.mark.parametrize("kind", sampled(FAULTS, "not_a_number"))
 def test_what_is_a_failure(kind: str, make_project) -> None:
     code, message = FAULTS[kind]
     slow = f"hang_seconds = {0.1 if kind == 'hangs' else 0.2}\n    out_of_range = true"
@@ -215,6 +215,7 @@ def test_motors_that_drive_on_their_own_are_heard_through_the_drive(make_project
     )
 
 
+@pytest.mark.slow
 def test_a_robot_whose_import_makes_devices_is_fuzzed_too(make_project) -> None:
     robot = """
         import wpilib
@@ -345,6 +346,7 @@ def test_an_interrupted_campaign_keeps_what_was_found_and_nothing_else(make_proj
     assert "fuzz/zerodivisionerror-robot-autonomousperiodic.jsonl" in kept(project)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("taken", sampled(["tests", "tests/fuzz", ".pyfrc"], "tests/fuzz"))
 def test_what_is_found_in_a_project_that_cannot_be_written_is_kept(taken: str, make_project) -> None:
     """A file where a directory is to be: no one can make that one, not even root."""

@@ -152,6 +152,7 @@ def test_a_robot_that_always_fails_at_its_start_ends_the_campaign(make_project) 
         assert "4 matches, " in result.stdout
 
 
+@pytest.mark.slow
 def test_a_start_that_fails_by_chance_is_a_hint(make_project) -> None:
     """A sensor that cannot be read at once, for example."""
     created = "print(file=open('starts', 'a')); assert len(open('starts').read()) % 3, 'no gyro'"
@@ -166,6 +167,7 @@ def test_a_start_that_fails_by_chance_is_a_hint(make_project) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_lights_are_no_motor_that_moves_while_disabled(make_project) -> None:
     project = make(
         make_project, created="self.other = wpilib.PWMSparkMax(1)", disabled="self.lights(); self.drive()", seconds=6

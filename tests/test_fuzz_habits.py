@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 import wpilib
+from loops import for_each
 from wpilib.event import EventLoop
 
 from pyfrc_core.fuzz.inputs.asked_controls import watch_controls
@@ -58,8 +59,8 @@ def test_buttons_are_held_for_seconds() -> None:
     assert any(seconds > 4 for seconds in held)
 
 
-@pytest.mark.parametrize(
-    ("joystick", "call", "target"),
+@for_each(
+    "joystick, call, target",
     [
         (wpilib.XboxController, lambda stick: stick.getLeftBumper(), "buttons[5]"),
         (wpilib.XboxController, lambda stick: stick.getAButtonPressed(), "buttons[1]"),

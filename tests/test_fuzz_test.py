@@ -12,6 +12,7 @@ from typing import get_args
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from loops import for_each
 
 from pyfrc_core.fuzz.inputs.values import SPANS, InputKind, can_be, draw, nearest
 from pyfrc_core.runtime.scripts.script import load_script
@@ -110,7 +111,7 @@ def matches(make_shared_project) -> list[Written]:
 # -- which inputs are written -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
+@for_each(
     "target",
     [
         *(f"joysticks[0].axes[{axis}]" for axis in range(6)),

@@ -12,6 +12,7 @@ import wpilib
 from hal import simulation as hs
 from hypothesis import given
 from hypothesis import strategies as st
+from loops import for_each
 from wpilib import simulation as sim
 
 from pyfrc_core.hal import HalData
@@ -59,7 +60,7 @@ def test_every_documented_list_has_its_length(tree: HalData) -> None:
     assert {key: len(tree[key]) for key in LISTS} == LISTS
 
 
-@pytest.mark.parametrize("path", FIELDS)
+@for_each("path", FIELDS)
 def test_every_documented_field_is_there_and_can_be_read(tree: HalData, path: str) -> None:
     place = tree.read(path)
     assert not set(FIELDS[path].split()) - set(place)
@@ -185,8 +186,8 @@ def test_joysticks_show_what_wpilib_simulators_set(tree: HalData) -> None:
     assert tree["joysticks"][3]["left_rumble"] == 65535
 
 
-@pytest.mark.parametrize(
-    ("path", "value", "error", "says"),
+@for_each(
+    "path, value, error, says",
     [
         ("pwm[0].value", "fast", TypeError, r"pwm\[0\].value: expected a number from -1 to 1, not 'fast'"),
         ("pwm[0].value", 1.5, ValueError, "from -1 to 1"),

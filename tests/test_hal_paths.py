@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from loops import for_each
 
 from pyfrc_core.hal import format_path, parse_path
 
@@ -31,8 +32,8 @@ def test_paths(path: str, segments: tuple[str | int, ...]) -> None:
     assert parse_path(path) == segments
 
 
-@pytest.mark.parametrize(
-    ("path", "wrong"),
+@for_each(
+    "path, wrong",
     [
         ("", "empty"),
         ("pwm[", r"'\['"),

@@ -202,6 +202,7 @@ def test_threads_that_end_and_event_loops_are_fine(report: Result, test: str) ->
     assert report.outcomes()[f"tests/test_it.py::{test}"] == "PASSED", report.output
 
 
+@pytest.mark.slow
 def test_in_a_new_interpreter_a_thread_that_cannot_be_ended_is_explained_and_nothing_more(
     make_project: MakeProject,
 ) -> None:
@@ -255,6 +256,7 @@ STUCK_TESTS = """
 """
 
 
+@pytest.mark.slow
 def test_code_that_waits_for_ever_is_named_after_3_s_and_fails_after_10(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, "tests/test_it.py": STUCK_TESTS})
     result = project.run("test", "-j", "4")

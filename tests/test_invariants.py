@@ -183,7 +183,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("mistake", sampled(WRONG, *list(WRONG)[::3]))
+@pytest.mark.parametrize("mistake", sampled(WRONG, *list(WRONG)[:1]))
 def test_a_file_that_is_wrong_is_named_by_each_command(mistake: str, project) -> None:
     head, body, message = WRONG[mistake]
     script = '{"format": "pyfrc-input 1", "robot": "robot.py", "seed": 0, "end": 1}\n'

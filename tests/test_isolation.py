@@ -286,7 +286,7 @@ def test_several_at_a_time_give_the_same_in_the_same_order(everything: RobotProj
     ("isolation", "left_out"),
     [
         # Each of its tests is a new interpreter: enough of them, not all.
-        (
+        pytest.param(
             "spawn",
             (
                 "test_parametrised",
@@ -301,6 +301,7 @@ def test_several_at_a_time_give_the_same_in_the_same_order(everything: RobotProj
                 "test_expected",
                 "test_talks_and_passes",
             ),
+            marks=pytest.mark.slow,
         ),
         # Used again, each is as good as new.
         pytest.param("reuse", (), marks=pytest.mark.slow),
@@ -490,6 +491,7 @@ def test_no_selected_test_is_exit_code_5(few: RobotProject) -> None:
     assert few.run("test", "--", "-k", "nothing").code == 5
 
 
+@pytest.mark.slow
 @needs_fork
 def test_the_debugger_stops_in_the_failing_test(few: RobotProject) -> None:
     result = few.run("test", "--", "--pdb", "-k", "two", stdin="p 'the ' + 'robot is', type(control).__name__\nc\n")
@@ -551,6 +553,7 @@ def test_ctrl_c_ends_the_run_and_every_process(make_project: MakeProject) -> Non
         assert not Path(f"/proc/{pid}").exists()
 
 
+@pytest.mark.slow
 @needs_fork
 def test_sigterm_ends_the_run_of_a_robot_with_a_device_in_a_class_variable(make_project: MakeProject) -> None:
     """Its tests run from a process that was forked before the import, which alone must not receive the signal."""
@@ -697,6 +700,7 @@ def test_an_error_in_the_teardown_of_a_shared_fixture_is_told(make_project: Make
 # -- where tests are ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_plain_pytest_in_a_robot_project_has_the_fixtures(few: RobotProject) -> None:
     in_project = few.pytest("-v", "-k", "one or four")
     assert in_project.code == 0, in_project.output
@@ -723,6 +727,7 @@ def test_plain_pytest_elsewhere_is_left_alone(make_project: MakeProject) -> None
     assert "fixture 'control' not found" in result.stdout
 
 
+@pytest.mark.slow
 def test_tests_beside_the_robots_directory_are_found(make_project: MakeProject) -> None:
     tests = """
         from robot import MyRobot
@@ -827,6 +832,7 @@ def test_coverage_counts_lines_of_the_robot_wherever_they_run(
     assert [path.name for path in project.temporary.iterdir() if not path.name.startswith("pytest-of-")] == []
 
 
+@pytest.mark.slow
 def test_plugins_of_libraries_that_pyfrc_depends_on_are_not_loaded(make_project: MakeProject) -> None:
     test = """
         import sys

@@ -186,7 +186,12 @@ def test_unchanged_code_does_the_same(project: RobotProject) -> None:
             "SETPOINT = 0.4",
             "at 0:02.60, in AdvantageKit/RealOutputs/Arm/Setpoint: 0.3 in match.wpilog",
         ),
-        ('"Fast", 0.8', '"Fast", 0.7', "at 0:01.00, in AdvantageKit/RealOutputs/Odometry/Robot/translation/x: 1.8 in"),
+        pytest.param(
+            '"Fast", 0.8',
+            '"Fast", 0.7',
+            "at 0:01.00, in AdvantageKit/RealOutputs/Odometry/Robot/translation/x: 1.8 in",
+            marks=pytest.mark.slow,
+        ),
         # Never changed in the log, so it was the code's default.
         ("OFFSET = 0.25", "OFFSET = 0.5", "at 0:00.02, in AdvantageKit/RealOutputs/Arm/Setpoint: 0 in match.wpilog"),
     ],
@@ -200,6 +205,7 @@ def test_a_robots_log_is_played_from_shortly_before_it_was_enabled(project: Robo
     assert "no difference: 4 values" in said_of(project)
 
 
+@pytest.mark.slow
 def test_a_fuzzed_match_begins_with_its_inputs(make_project: MakeProject) -> None:
     fails = ROBOT.replace("SETPOINT if", "1 / (self.gain.get() - 0.5) if self.pad.getLeftY() else SETPOINT if")
     project = make_project({"robot.py": fails})

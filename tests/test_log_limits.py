@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from loops import for_each
 from written_logs import Written, a_kit_log
 
 from pyfrc_core.project import Project
@@ -63,7 +64,7 @@ LACKING: dict[str, tuple[Written, list[str]]] = {
 }
 
 
-@pytest.mark.parametrize("case", LACKING)
+@for_each("case", LACKING)
 def test_inputs_that_a_log_does_not_have_are_named(case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     log, sentences = LACKING[case]
@@ -191,7 +192,7 @@ COMPARED: dict[str, tuple[Values, Values, Values, Values, list[str], bool]] = {
 }
 
 
-@pytest.mark.parametrize("case", COMPARED)
+@for_each("case", COMPARED)
 def test_no_difference_is_said_only_where_most_was_compared(case: str, tmp_path: Path) -> None:
     network, hal, log_network, log_hal, begins, mostly = COMPARED[case]
     by = Comparison(True, given=frozenset({"nt:/SmartDashboard/Auto/selected"}))

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from loops import for_each
 from written_logs import Written, a_kit_log, a_match
 
 from pyfrc_core.errors import PyfrcError
@@ -172,8 +173,8 @@ def assert_written(log: Written, directory: Path) -> None:
             targets.close()
 
 
-@pytest.mark.parametrize("type_name", TYPES)
-@pytest.mark.parametrize("number", [1, 3])
+@for_each("type_name", TYPES)
+@for_each("number", [1, 3])
 def test_each_name_with_each_type(type_name: str, number: int, tmp_path: Path) -> None:
     """All names at once, with the same value, also before and beside those of a match."""
     plain = type_name.removesuffix("[]")

@@ -197,6 +197,7 @@ def test_line_ends_tabs_and_encoding_stay(make_project: MakeProject) -> None:
     assert (project.path / "robot.py").read_bytes() == "\r\n".join(lines).replace("P", "_p", 1).encode()
 
 
+@pytest.mark.slow
 def test_links_out_of_the_project_are_named(project: RobotProject) -> None:
     """Their code is not read, so it cannot be said that nothing is left to do."""
     beside = project.temporary / "lib"

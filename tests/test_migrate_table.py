@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
+from loops import for_each
 
 from pyfrc_core.collector import collector_paused
 from pyfrc_core.migrate.names.packages import Class, Packages
@@ -40,8 +41,8 @@ def isinstance_of_value(packages: Packages, path: str) -> bool:
     return not isinstance(packages.entries[path], Class) and type(packages.entries[path]).__name__ == "Value"
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
+@for_each(
+    "old, new",
     [
         ("getRate", "get_rate"),
         ("kRed", "RED"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from loops import for_each
 from wpimath.system.plant import DCMotor
 
 from pyfrc.physics import motor_cfgs
@@ -39,7 +40,7 @@ def test_every_motor_is_compared() -> None:
     assert set(MOTORS) < set(motor_cfgs.__all__)
 
 
-@pytest.mark.parametrize("constant", MOTORS)
+@for_each("constant", MOTORS)
 def test_figures_are_those_of_wpilib(constant: str) -> None:
     name, dc_motor = MOTORS[constant]
     ours: MotorModelConfig = getattr(motor_cfgs, constant)

@@ -106,7 +106,7 @@ def contents(project: RobotProject) -> dict[Path, bytes]:
 def refused(project: RobotProject, name: str, arguments: tuple[str, ...], path: str, why: str) -> None:
     before, option = contents(project), name.split(" ")[1]
     words = [word for each in arguments for word in ((option, path) if each == "{}" else (each,))]
-    result = project.run(*words)
+    result = project.run_here(*words)
     assert (result.code, result.first_error) == (2, f"{option} {Path(path)} cannot be written: {why}"), words
     assert "Traceback" not in result.output
     assert contents(project) == before

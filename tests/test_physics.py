@@ -9,6 +9,7 @@ import pytest
 from hal import simulation as hs
 from hypothesis import example, given
 from hypothesis import strategies as st
+from loops import for_each
 from wpimath.geometry import Pose2d, Rotation2d, Transform2d
 from wpimath.kinematics import ChassisSpeeds
 
@@ -170,10 +171,8 @@ def test_a_coordinates_offset_leads_back_from_it(x: float, y: float, angle: floa
     assert robot.get_position()[:2] == pytest.approx((10, 10), abs=1e-9)
 
 
-@pytest.mark.parametrize("heading", [0, 90, -30])
-@pytest.mark.parametrize(
-    ("target", "offset"), [((2, 21), -90), ((3, 20), 180), ((2, 19), 90), ((1, 20), 0), ((3, 21), -135)]
-)
+@for_each("heading", [0, 90, -30])
+@for_each("target, offset", [((2, 21), -90), ((3, 20), 180), ((2, 19), 90), ((1, 20), 0), ((3, 21), -135)])
 def test_the_offset_is_that_of_2019(heading: float, target: tuple[float, float], offset: float) -> None:
     assert controller(2, 20, heading).get_offset(*target) == pytest.approx((math.dist((2, 20), target), offset))
 

@@ -87,10 +87,14 @@ def test_settings_above_a_robot_in_a_subdirectory_are_no_robot(make_project: Mak
 @pytest.mark.parametrize(
     "robot",
     [
-        "import wpilib\n\n\nclass Robot(wpilib.TimedRobot):\n    pass\n",
         "from wpilib import TimedRobot\n\n\nclass Arm(\n    TimedRobot\n):\n    pass\n",
-        "import math, wpilib\nfrom base import Base\n\n\nclass MyRobot(Base):\n    pass\n",
-        "import wpilib\nfrom base import Base\n\nif __name__ == '__main__':\n    wpilib.run(Base)\n",
+        *sampled(
+            [
+                "import wpilib\n\n\nclass Robot(wpilib.TimedRobot):\n    pass\n",
+                "import math, wpilib\nfrom base import Base\n\n\nclass MyRobot(Base):\n    pass\n",
+                "import wpilib\nfrom base import Base\n\nif __name__ == '__main__':\n    wpilib.run(Base)\n",
+            ]
+        ),
     ],
 )
 def test_a_robot_class_makes_a_robot_project(make_project: MakeProject, robot: str) -> None:

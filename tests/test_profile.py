@@ -386,6 +386,7 @@ def test_the_flame_view_shows_the_robots_functions(make_project: MakeProject) ->
     assert "stopwatch.py" not in page
 
 
+@pytest.mark.slow
 def test_the_flame_view_shows_the_threads_of_the_robot(make_project: MakeProject) -> None:
     pytest.importorskip("pyinstrument")
     robot = """
@@ -477,6 +478,7 @@ def test_profiling_does_not_change_what_the_robot_does(make_project: MakeProject
     assert hashes("plain") == hashes("profiled") != []
 
 
+@pytest.mark.slow
 def test_a_simulation_is_profiled(make_project: MakeProject) -> None:
     project = make_project({"robot.py": SMALL_ROBOT})
     _, report = profile(project, "sim", "--ui", "none", "--mode", "teleop", "--seconds", "2", "--nt-port", "0")

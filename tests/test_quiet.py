@@ -7,6 +7,7 @@ import re
 
 import pytest
 from conftest import MakeProject, RobotProject
+from loops import for_each
 from roborio import Roborio
 from roborio.fixtures import roborio  # noqa: F401 - `robot`
 from test_command_line import EVERY
@@ -53,7 +54,7 @@ def words(printed: str) -> list[str]:
     return [line for line in printed.splitlines() if not re.match("Not loading|Default .* Override me!$", line)]
 
 
-@pytest.mark.parametrize("path", EVERY, ids=" ".join)
+@for_each("path", EVERY)
 def test_each_command_takes_it_behind_its_name(path: tuple[str, ...]) -> None:
     options = {name for parameter in EVERY[path].params for name in parameter.opts}
     assert {"-q", "--quiet", "-v", "--verbose"} <= options

@@ -298,6 +298,7 @@ def test_a_recorded_test_run_says_it_once(with_phoenix: PhoenixProject) -> None:
     assert "do not repeat" not in with_phoenix.output("test")
 
 
+@pytest.mark.slow
 def test_a_replay_says_it_and_compares_the_rest(with_phoenix: PhoenixProject) -> None:
     """The rest of this robot repeats."""
     script = with_phoenix.record("recorded")
@@ -317,11 +318,13 @@ def test_a_replay_that_differs_is_no_failure(with_phoenix: PhoenixProject) -> No
     assert "(v6)" not in output
 
 
+@pytest.mark.slow
 def test_the_simulator_says_it_once(with_phoenix: PhoenixProject) -> None:
     """As a warning in the terminal."""
     assert with_phoenix.output("sim", "--ui", "none", "--seconds", "0.5").count(SENTENCE) == 1
 
 
+@pytest.mark.slow
 def test_the_doctor_says_it(with_phoenix: PhoenixProject) -> None:
     """It does not construct the robot, so it names the library."""
     result = with_phoenix.project.run("doctor", env=with_phoenix.environment)
@@ -365,6 +368,7 @@ def test_a_failure_that_does_not_repeat_is_kept(with_phoenix: PhoenixProject) ->
 
 if find_spec("phoenix6") is not None:
 
+    @pytest.mark.slow
     def test_a_competition_robot_on_phoenix(make_project: MakeProject) -> None:
         """It drives, and all of its 20 CTRE devices are known."""
         robot = Path(__file__).parent / "robots" / "competition" / "ctre_swerve"

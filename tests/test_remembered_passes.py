@@ -160,10 +160,12 @@ def test_what_failed_runs_until_it_passes(project) -> None:
     assert ran(project) == ALL
 
 
+@pytest.mark.slow
 def test_another_seed_runs_everything(project) -> None:
     assert ran(project, "--seed", "5") == ALL
 
 
+@pytest.mark.slow
 def test_a_new_test_runs_and_a_new_module_runs_everything(project) -> None:
     (project.path / "tests/test_more.py").write_text("def test_more():\n    pass\n")
     assert ran(project) == {"more"}
@@ -185,6 +187,7 @@ def test_a_library_beside_the_project_counts(make_project, tmp_path: Path) -> No
     assert ran(made) == {"a"}
 
 
+@pytest.mark.slow
 def test_a_file_that_changes_during_the_run_is_named(make_project) -> None:
     robot = "import wpilib\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
     test = """
@@ -229,6 +232,7 @@ LOGS = """
 """
 
 
+@pytest.mark.slow
 def test_logs_of_the_robot_are_no_changes(make_project) -> None:
     test = "def test_a(control, robot):\n    with control.run_robot():\n        control.step_timing(seconds=0.1)\n"
     test = test.replace("seconds=0.1", "seconds=0.1, autonomous=True, enabled=True")
@@ -244,12 +248,14 @@ def test_logs_of_the_robot_are_no_changes(make_project) -> None:
     assert ran(made) == {"a"}
 
 
+@pytest.mark.slow
 def test_a_report_of_the_tests_is_no_change(project) -> None:
     for _ in range(2):
         assert ran(project, "--", "--junitxml=report.xml") == set()
     assert (project.path / "report.xml").is_file()
 
 
+@pytest.mark.slow
 def test_what_a_test_imports_late_from_outside_the_project_counts(make_project, tmp_path: Path) -> None:
     (tmp_path / "latelib.py").write_text("SPEED = 1\n")
     test = f"import sys\n\ndef test_a(robot):\n    sys.path.append({str(tmp_path)!r})\n    import latelib\n"
@@ -296,6 +302,7 @@ def small_project(make_project, name: str, text: str):
     return make_project({**files, "tests/test_saves.py": SAVES.format(name=name, text=text)})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sampled(["robot.py", "parts/arm.py", "parts/new.py"], "parts/arm.py"))
 def test_a_source_that_is_saved_while_the_tests_run_is_not_deployed_untested(make_project, name: str) -> None:
     made = small_project(make_project, name, repr(SMALL + "# saved\n"))
@@ -316,6 +323,7 @@ def test_what_the_tests_write_themselves_prevents_no_deploy(make_project) -> Non
     assert result.first_error.startswith("no robot found")
 
 
+@pytest.mark.slow
 def test_a_deploy_runs_all_tests_after_a_run_that_left_some_out(make_project) -> None:
     """They may have read the file that has changed, as data."""
     made = make_project(FILES)
@@ -326,6 +334,7 @@ def test_a_deploy_runs_all_tests_after_a_run_that_left_some_out(make_project) ->
     assert "4 passed" in made.run(*NO_ROBOT).output
 
 
+@pytest.mark.slow
 def test_part_of_the_tests_or_a_failure_is_not_enough_for_a_deploy(make_project) -> None:
     made = make_project(FILES)
     assert made.run("test", "--", "-k", "auto").code == 0

@@ -151,6 +151,7 @@ def hashes(project: RobotProject, isolation: str) -> tuple[dict[str, str], str]:
     return {file.name: file.read_text().splitlines()[-1] for file in traces}, result.output
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sampled(list(ROBOTS), "commands"))
 def test_one_interpreter_runs_all_tests(name: str, make_project: MakeProject) -> None:
     if name in ("rev", "pathplannerlib"):
@@ -163,6 +164,7 @@ def test_one_interpreter_runs_all_tests(name: str, make_project: MakeProject) ->
     assert re.findall("pyfrc: .*", printed) == []
 
 
+@pytest.mark.slow
 def test_the_fuzz_test_has_the_same_inputs_in_a_fork(make_project: MakeProject) -> None:
     project = make_project({"robot.py": MAGIC, "tests/test_fuzz.py": "from pyfrc.tests.fuzz_test import *\n"})
     assert hashes(project, "fork")[0] == hashes(project, "reuse")[0]

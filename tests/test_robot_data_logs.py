@@ -148,6 +148,7 @@ def test_time_that_is_turned_back(fork: bool | None, make_project) -> None:
     assert sorted(len(turns(log)) for log in logs) == [25, 50, 151]
 
 
+@pytest.mark.slow
 def test_the_simulators_own_log_of_a_robot_that_ends_its_process(make_project) -> None:
     made = make_project(robot("os._exit(3) if count == 333 else self.motor.set(count % 100 / 100)"))
     made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "20", "--wpilog", "run.wpilog")
@@ -237,6 +238,7 @@ SYSID = """
 """
 
 
+@pytest.mark.slow
 def test_what_a_sysid_routine_writes_is_in_the_runs_log(make_project) -> None:
     """With the names and units that WPILib's own writes; no other log is started."""
     tests = {"tests/sysid_test.py": "from pyfrc.tests import test_autonomous\n"}

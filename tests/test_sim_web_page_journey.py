@@ -107,7 +107,7 @@ def looks_back_and_goes_on(person: Seen, end: float) -> None:
     page.get_by_role("slider", name="Timeline").focus()
     page.keyboard.press("Home")
     person.button("Drive on from here").click()
-    person.until(lambda: person.simulation.snapshot.time < time)
+    person.until(lambda: person.simulation.snapshot is not None and person.simulation.snapshot.time < time)
     page.locator(".state em").wait_for(state="detached")
     page.locator(".pose b", has_text="10.00 ft").wait_for()
 

@@ -10,6 +10,7 @@ from typing import Any, get_args
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from loops import for_each
 from skips import missing_tkinter, require
 from virtual_display import WINDOW
 
@@ -425,8 +426,8 @@ def test_the_speed_slider_stands_where_the_speed_is(speed: float) -> None:
     assert speed_of_slider(slider_of_speed(speed)) == pytest.approx(speed, rel=0.08)
 
 
-@pytest.mark.parametrize(
-    ("shown", "status", "words"),
+@for_each(
+    "shown, status, words",
     [
         (None, Status(), ("Starting…", "wait")),
         (None, Status(replayed=1.2, replaying_to=63.0), ("Replaying 0:01.20 of 1:03.00", "wait")),

@@ -142,6 +142,7 @@ def test_the_log_has_the_console(make_project: MakeProject) -> None:
     assert all(text in result.output for time, text in printed if time < 0.8)  # the terminal has them, too
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="on Windows, no file is replaced while it is open")
 def test_a_log_that_is_written_anew_does_not_change_what_others_have_opened(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT})

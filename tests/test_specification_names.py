@@ -9,6 +9,7 @@ import re
 from typing import Any
 
 import pytest
+from loops import for_each
 
 SWERVE = (
     "lr_motor, rr_motor, lf_motor, rf_motor, lr_angle, rr_angle, lf_angle, rf_angle, x_wheelbase=2, y_wheelbase=2, "
@@ -186,7 +187,7 @@ def documented_part(signature: inspect.Signature, parameters: str) -> str:
     )
 
 
-@pytest.mark.parametrize(("module", "name", "parameters"), SPECIFICATION, ids=lambda value: str(value))
+@for_each("module, name, parameters", SPECIFICATION)
 def test_documented_name(module: str, name: str, parameters: str | None) -> None:
     found = find(module, name)
     if parameters is not None:
@@ -218,7 +219,7 @@ def test_the_ends_of_a_run_escape_a_blanket_except() -> None:
         assert not issubclass(ending, Exception)
 
 
-@pytest.mark.parametrize(("module", "name"), [(module, name) for module, name, _ in SPECIFICATION if "." not in name])
+@for_each("module, name", [(module, name) for module, name, _ in SPECIFICATION if "." not in name])
 def test_it_is_the_same_object_as_in_the_core(module: str, name: str) -> None:
     found = find(module, name)
     defined_in = getattr(found, "__module__", "")
@@ -253,9 +254,7 @@ SINCE_2020 = {
 }
 
 
-@pytest.mark.parametrize(
-    ("module", "name"), [(module, name) for module in SINCE_2020 for name in SINCE_2020[module].split()]
-)
+@for_each("module, name", [(module, name) for module in SINCE_2020 for name in SINCE_2020[module].split()])
 def test_name_since_2020(module: str, name: str) -> None:
     assert find(module, name) is not None
 

@@ -6,6 +6,7 @@ import re
 import shlex
 from pathlib import Path
 
+import pytest
 from conftest import MakeProject
 from package_index import WPILIB, package_index
 
@@ -20,6 +21,7 @@ def blocks(kind: str) -> list[str]:
     return re.findall(rf"^```{kind}\n(.*?)^```$", GUIDE, re.MULTILINE | re.DOTALL)
 
 
+@pytest.mark.slow
 def test_the_guides_commands_work_one_after_the_other(make_project: MakeProject, tmp_path: Path) -> None:
     (settings,) = blocks("toml")
     assert f'robotpy_version = "{WPILIB}"' in settings

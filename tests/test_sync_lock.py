@@ -142,6 +142,59 @@ def test_a_wrong_hash_in_an_index_is_the_indexs_fault():
     assert "requirements" not in said
 
 
+LOOKED = "Looking in indexes: http://a.invalid/simple, http://b.invalid:8/robot\n"
+MISSING = "ERROR: Could not find a version that satisfies the requirement {} (from versions: {})\n"
+RETRYING = (
+    "WARNING: Retrying (Retry(total=1, connect=None)) after connection broken by "
+    "'NewConnectionError('<HTTPConnection>: Failed to establish a new connection: [Errno 111] Connection refused')': "
+    "/robot/six/\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("printed", "said", "remedy"),
+    [
+        (
+            MISSING.format("six>5", "none"),
+            "there is no wheel of six>5 for ROBOT",
+            "wheel for the robot from its authors",
+        ),
+        (
+            MISSING.format("six>5 (from seven)", "none"),
+            "there is no wheel of six>5 for ROBOT; seven needs it",
+            "Check the name",
+        ),
+        (
+            MISSING.format("six>5", "0.1, 0.2, 0.3, 0.4, 0.5, 1.0"),
+            "there is no wheel of six>5 for ROBOT; there are wheels of ... 0.2, 0.3, 0.4, 0.5, 1.0",
+            "Ask for one of these versions",
+        ),
+        (
+            "The conflict is caused by:\n    The user requested six==1\n    seven 1 depends on six<1\n",
+            "the requirements contradict each other: [tool.robotpy] has six==1; seven 1 depends on six<1",
+            "Change the versions under [tool.robotpy]",
+        ),
+        (
+            LOOKED + RETRYING + MISSING.format("six", "none"),
+            "the package index b.invalid cannot be reached: Connection refused",
+            "pyfrc sync --from DIRECTORY",
+        ),
+        (
+            "Could not fetch URL http://a.invalid/: certificate verify failed",
+            "the package index cannot be reached: its certificate could not be verified",
+            "docs/sync.md",
+        ),
+        ("OSError: [Errno 28] No space left on device", "the disk is full", "Free some space"),
+        ("ERROR: it broke\n", "pip could not find the packages: it broke", "pyfrc -v sync prints more."),
+        ("", "pip could not find the packages: it printed nothing", "prints more"),
+    ],
+)
+def test_why_pip_finds_nothing(printed: str, said: str, remedy: str):
+    error, python = explain(printed, CURRENT), ".".join(map(str, CURRENT.controller.python))
+    assert error.message == said.replace("ROBOT", f"the {CURRENT.controller.name} (Python {python})")
+    assert remedy in str(error.remedy)
+
+
 def test_a_lock_of_another_season_is_refused(lock_file: Path):
     other = next(season for season in SEASONS.values() if season.year != CURRENT.year)
     message = f"for the {CURRENT.controller.name} of {CURRENT.year}, and the project for the {other.controller.name}"

@@ -135,6 +135,7 @@ def test_it_goes_through_a_match_in_the_simulator(project: RobotProject, templat
     assert (float(driven[1]) > 1) == (template != "elevator-arm")  # which has no wheels
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("project", sampled(["timed", "command", "magic"], "command"), indirect=True)
 def test_fuzzing_finds_no_failure(project: RobotProject) -> None:
     """For a robot of each kind; the others are fuzzed for one match by their own tests."""

@@ -39,6 +39,7 @@ def test_test_and_coverage(make_project) -> None:
     assert "pipe.py" not in result.stdout.partition("Cover")[2]
 
 
+@pytest.mark.slow
 def test_doctor_and_others(make_project) -> None:
     project = make_project(FILES)
     spoil(project.path)

@@ -140,6 +140,7 @@ def ended(pid: int) -> bool:
         os.close(descriptor)
 
 
+@pytest.mark.slow
 def test_a_project_for_another_controller_is_refused(project: RobotProject, directory: Path) -> None:
     other = next(each for each in CONTROLLERS if each.name != CURRENT.controller.name)
     with started(project, directory, "--controller", other.name.upper()) as robot:
@@ -325,6 +326,7 @@ def test_a_command_that_a_signal_ends_gives_the_exit_code_of_a_shell(project: Ro
     assert result.code == 128 + signal.SIGKILL, result.output
 
 
+@pytest.mark.slow
 def test_the_guides_example_deploys(project: RobotProject) -> None:
     guide = (Path(__file__).parents[1] / "docs/how_to/deploy_without_a_robot.md").read_text("utf-8")
     (example,) = re.findall(r"^```sh\npyfrc (virtual-robot .*)\n```$", guide, re.MULTILINE)

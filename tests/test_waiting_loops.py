@@ -207,6 +207,7 @@ SETTINGS = """
 """
 
 
+@pytest.mark.slow
 def test_a_headless_simulation_shows_the_line_and_ends(make_project: MakeProject) -> None:
     """Also with a recorded script, whose trace a replay repeats."""
     project = make_project({"robot.py": TIMED, "pyproject.toml": SETTINGS})

@@ -497,6 +497,7 @@ EIGHT_TESTS = """
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", sampled(["-j 2", "--isolation none"], "-j 2"))
 def test_one_bug_is_explained_once_and_the_other_tests_point_there(make_project: MakeProject, how: str) -> None:
     project = make_project({"robot.py": ONE_BUG, "tests/test_a.py": EIGHT_TESTS})

@@ -40,6 +40,7 @@ def test_builtin_runs_each_ready_made_test_once(make_project, tests: str | None,
 ODD = "a $HOME [1] %PATH%" + ("" if sys.platform == "win32" else " b::c")
 
 
+@pytest.mark.slow
 def test_a_project_in_a_directory_with_any_name(make_project) -> None:
     files = {f"{ODD}/robot.py": ROBOT, f"{ODD}/tests/test_a.py": OWN, f"{ODD}/pytest.ini": "[pytest]\nmarkers = odd\n"}
     project = make_project(files)

@@ -157,6 +157,7 @@ def test_where_nothing_is_forked_interpreters_are_used_again(make_project: MakeP
     assert outcomes == {"test_forked": "FAILED", "test_another": "PASSED"}
 
 
+@pytest.mark.slow
 def test_what_a_test_has_left_is_the_reason_for_a_new_interpreter(make_project: MakeProject) -> None:
     tests = """
         import json

@@ -93,7 +93,7 @@ def project(make_shared_project: MakeProject) -> RobotProject:
 @pytest.mark.parametrize("command", INPUTS)
 def test_what_has_no_inputs_is_named(command: str, project: RobotProject) -> None:
     for name, what in {**WHAT, **INPUTS_ONLY}.items():
-        result = project.run(*INPUTS[command], name)
+        result = project.run_here(*INPUTS[command], name)
         assert result.code == 2, (name, result.output)
         assert what in result.first_error
         assert name in result.first_error

@@ -103,7 +103,9 @@ def check_all_cuts(
     assert outcomes == {True, False}
 
 
-BOTH = pytest.mark.parametrize("controller", [ROBORIO, SYSTEMCORE], ids=lambda each: each.name)
+BOTH = pytest.mark.parametrize(
+    "controller", [ROBORIO, pytest.param(SYSTEMCORE, marks=pytest.mark.slow)], ids=lambda each: each.name
+)
 
 
 @BOTH

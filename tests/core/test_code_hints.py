@@ -10,6 +10,7 @@ from types import ModuleType, SimpleNamespace
 import commands2
 import pytest
 import wpilib
+from loops import for_each
 
 from pyfrc_core.repeated_lines import RepeatedLines, shortened
 from pyfrc_core.runtime.checks.code_checks import find_misspelled_settings
@@ -49,8 +50,8 @@ def hints(text: str, is_test: bool = False) -> list[str]:
     return [f"{each.where.removeprefix('robot.py:')}: {each.text} / {each.remedy}" for each in found]
 
 
-@pytest.mark.parametrize(
-    ("line", "text", "remedy"),
+@for_each(
+    "line, text, remedy",
     [
         ("self.command.schedule", "self.command.schedule does nothing", "Write self.command.schedule()"),
         ("self.state == 2", "this comparison does nothing", "self.state = ..."),
@@ -88,7 +89,7 @@ def test_a_line_that_does_not_do_what_it_says(line: str, text: str, remedy: str)
     assert remedy in found
 
 
-@pytest.mark.parametrize(
+@for_each(
     "line",
     [
         "self.speed = -1",

@@ -15,6 +15,7 @@ import commands2.button
 import pytest
 import wpilib
 import wpilib.drive
+from loops import for_each
 
 from pyfrc_core.config.packages import PACKAGES, SUCCESSORS, install_line, robot_line
 from pyfrc_core.config.robotpy import load_robot_packages, unknown_components
@@ -446,7 +447,7 @@ def test_an_object_whose_methods_raise_does_not_hide_the_error(tmp_path: Path) -
     assert explain(AttributeError("no x", name="x", obj=Broken()), RobotFiles(tmp_path)) is None
 
 
-@pytest.mark.parametrize("successor", [*GONE.values(), *SUCCESSORS.values()])
+@for_each("successor", [*GONE.values(), *SUCCESSORS.values()])
 def test_successors_exist(successor: str) -> None:
     """Dotted names of modules in the tables can be imported, and have the attribute."""
     for dotted in re.findall(r"\b(?:wpilib|wpimath|commands2|rev|phoenix6|ntcore|navx)\.[\w.]*\w", successor):
@@ -520,8 +521,8 @@ def test_a_method_with_other_parameters(headline_of: Raise, tmp_path: Path) -> N
     )
 
 
-@pytest.mark.parametrize(
-    ("text", "message", "remedy"),
+@for_each(
+    "text, message, remedy",
     [
         (
             "x = 1\n<<<<<<< HEAD\nx = 2\n=======\nx = 3\n>>>>>>> arm\n",

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import wpilib
+from loops import for_each
 
 from pyfrc_core.hal import HalData, devices_exist, existing_devices
 from pyfrc_core.hal.containers import NOT_SET, LiveDict, Slot, ValueList, plain, stored
@@ -54,8 +55,8 @@ def store() -> Store:
 # -- dicts -------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("do", "error", "message"),
+@for_each(
+    "do, error, message",
     [
         (lambda tree: tree["speeed"], UnknownKey, "place.speeed: there is no key 'speeed' in place"),
         (lambda tree: tree[["speed"]], UnknownKey, "there is no key ['speed'] in place"),
@@ -83,8 +84,8 @@ def test_errors_of_a_dict_name_the_place(
 # -- lists -------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("do", "error", "message"),
+@for_each(
+    "do, error, message",
     [
         (lambda it: it[3], WrongIndex, "place.list[3]: there is no entry 3, the list has 3\n  use 0 to 2"),
         (lambda it: it[-4], WrongIndex, "there is no entry -4, the list has 3"),
@@ -127,8 +128,8 @@ class Text(str):
     __slots__ = ()
 
 
-@pytest.mark.parametrize(
-    ("value", "shown"),
+@for_each(
+    "value, shown",
     [
         (None, None),
         (True, True),

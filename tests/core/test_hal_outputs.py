@@ -9,6 +9,7 @@ import hal
 import pytest
 import wpilib
 from hal import simulation as hs
+from loops import for_each
 from wpilib import simulation as sim
 from wpilib.interfaces import MotorController
 
@@ -178,8 +179,8 @@ def test_the_driver_station_at_first() -> None:
 STATION = choice({"unknown": 0, "Red": 1})
 
 
-@pytest.mark.parametrize(
-    ("kind", "refused", "error", "message"),
+@for_each(
+    "kind, refused, error, message",
     [
         (FLOAT, True, TypeError, "x: expected a number, not True (bool)"),
         (FLOAT, "1", TypeError, "x: expected a number, not '1' (str)"),

@@ -8,6 +8,7 @@ from typing import Any
 
 import ntcore
 import pytest
+from loops import for_each
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.runtime.scripts.network_entries import NetworkEntries
@@ -40,8 +41,8 @@ def written(network: ntcore.NetworkTableInstance, kind: str, first: object, valu
         publisher.close()
 
 
-@pytest.mark.parametrize(
-    ("kind", "first", "value", "expected"),
+@for_each(
+    "kind, first, value, expected",
     [
         ("Double", 1.0, 3, ("double", 3.0)),
         ("Float", 1.5, 2.5, ("float", 2.5)),

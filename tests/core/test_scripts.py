@@ -10,6 +10,7 @@ import ntcore
 import pytest
 import wpilib
 from hal import simulation as hs
+from loops import for_each
 
 from pyfrc_core.errors import PyfrcError, UsageError
 from pyfrc_core.hal import HalData
@@ -57,8 +58,8 @@ def test_a_script_is_read_as_it_was_written(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("lines", "message"),
+@for_each(
+    "lines, message",
     [
         ([], "a.jsonl:1: the file is empty: its first line must be the header"),
         (["{}"], 'a.jsonl:1: the first line must be the header, with "format": "pyfrc-input 1"'),
