@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Container
 
 import pytest
 from conftest import MakeProject, RobotProject, sampled
@@ -47,7 +48,7 @@ def project(make_project: MakeProject) -> RobotProject:
     return make_project({"robot.py": ROBOT, "tests/test_it.py": TESTS})
 
 
-def check(output: str, times: int, defaults: int = 1) -> None:
+def check(output: str, times: int, defaults: Container[int] = (1,)) -> None:
     """Check what is shown of several runs of the robot.
 
     :param defaults: how often it is shown that methods are not overridden, which WPILib prints once in a process
@@ -55,7 +56,7 @@ def check(output: str, times: int, defaults: int = 1) -> None:
     lines = output.splitlines()
     assert sum(line.endswith("the robot's own line") for line in lines) == times
     assert sum(line.endswith("NavX: the robot's own error") for line in lines) == times
-    assert [lines.count(line) for line in (ONCE, ROBOT_PERIODIC)] == [defaults, defaults]
+    assert all(lines.count(line) in defaults for line in (ONCE, ROBOT_PERIODIC))
     for hidden in ("CameraServerShared", "SimulationPeriodic", "[phoenix]", "NavX: Connected", "\t"):
         assert hidden not in output
 
@@ -64,10 +65,11 @@ def check(output: str, times: int, defaults: int = 1) -> None:
     "isolation", [pytest.param("fork", marks=needs_fork), "reuse", pytest.param("spawn", marks=pytest.mark.slow)]
 )
 def test_of_the_output_of_tests_that_failed(project: RobotProject, isolation: str) -> None:
-    # What an interpreter prints once is in its first test: with a second interpreter, that may be one that fails.
+    # What an interpreter prints once is in its first test: in the one that passes; or, if a second interpreter was
+    # ready before the first one was as good as new, in one that fails, too.
     result = project.run("test", "--isolation", isolation, "-j", "1")
     assert "2 failed, 1 passed" in result.stdout
-    check(result.output, 2, defaults=0 if isolation == "reuse" else 1)  # there, in the test that has passed
+    check(result.output, 2, defaults=range(3) if isolation == "reuse" else (1,))
 
 
 @needs_fork

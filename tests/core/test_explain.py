@@ -55,8 +55,9 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
     commands2.CommandScheduler.resetInstance()
 
 
-@pytest.mark.parametrize(
-    ("code", "message", "remedy"),
+@pytest.mark.filterwarnings("default::ImportWarning")  # of a dot before a module's name
+@for_each(
+    "code, message, remedy",
     [
         # Devices: the channel is the user's, and not the HAL's number.
         (
