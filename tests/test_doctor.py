@@ -19,9 +19,10 @@ from packaging.requirements import Requirement
 from ports import refusing_port
 
 from pyfrc_core._version import __version__
-from pyfrc_core.doctor import CheckResult
+from pyfrc_core.doctor import CheckResult, robot_project
 from pyfrc_core.doctor.installed import Installed, Package, find_installed
 from pyfrc_core.doctor.packages import NEWEST, OLDEST, check_imports, check_pyfrc, check_python, check_wpilib
+from pyfrc_core.project import find_project
 from pyfrc_core.season import CURRENT
 
 ROBOT = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
@@ -321,6 +322,26 @@ def test_what_is_wrong_in_a_project(files: dict[str, str], topic: str, said: str
     assert wrong, found
     assert said in wrong[0]["text"]
     assert remedy in wrong[0]["remedy"]
+
+
+def test_what_is_wrong_in_files_that_are_not_run(make_project) -> None:
+    made = make_project(
+        {
+            "robot.py": ROBOT,
+            "pyproject.toml": "[tool.robotpy]\nrequires = ['click>99', 'no-such>=1']\n",
+            "sim/config.json": '{"pyfrc": {"robot": {"w": "wide"}}}',
+            "sim/dashboards.json": '{"dashboards": {"a": {"rows": 0}}}',
+        }
+    )
+    project = find_project(made.path)
+    config, *_ = problems(robot_project._sim_config(project))
+    assert "robot.w" in config.text
+    (dashboard,) = problems(robot_project._dashboards(project))
+    assert "a.rows = 0" in dashboard.text
+    click, missing = problems(robot_project._asked_for(project, find_installed(), None))
+    assert "requires click>99, but " in click.text
+    assert "click>99" in click.remedy
+    assert "it is not installed" in missing.text
 
 
 @pytest.mark.slow

@@ -55,7 +55,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
     commands2.CommandScheduler.resetInstance()
 
 
-@pytest.mark.filterwarnings("default::ImportWarning")  # of a dot before a module's name
 @for_each(
     "code, message, remedy",
     [
