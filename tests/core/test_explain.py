@@ -55,8 +55,8 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
     commands2.CommandScheduler.resetInstance()
 
 
-@for_each(
-    "code, message, remedy",
+@pytest.mark.parametrize(
+    ("code", "message", "remedy"),
     [
         # Devices: the channel is the user's, and not the HAL's number.
         (
