@@ -61,7 +61,7 @@ _KNOWN = (
 
 
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
-    if isinstance(error, AttributeError) and error.name:
+    if isinstance(error, AttributeError) and error.name and " for setting " not in str(error):  # from Python 3.13 on
         return _attribute(error, error.name, files)
     if isinstance(error, AttributeError) and (found := re.search(r"object (?:has no )?attribute '(\w+)'", str(error))):
         return _assigned(found[1], users_frame(error, files))
