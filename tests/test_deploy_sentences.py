@@ -56,6 +56,10 @@ class Server:
     def __init__(self, allowed: list[str], key: paramiko.PKey | None = None) -> None:
         self.allowed, self.key = allowed, key
         self.offered: list[str] = []
+        self._lets_in = False
+
+    def is_authenticated(self) -> bool:
+        return self._lets_in
 
     def auth_none(self, user: str) -> None:
         raise paramiko.BadAuthenticationType("", self.allowed)
@@ -68,6 +72,7 @@ class Server:
         self.offered.append(key.get_name())
         if key != self.key:
             raise paramiko.AuthenticationException
+        self._lets_in = True
 
 
 @pytest.fixture
