@@ -182,7 +182,7 @@ RETRYING = (
         (
             "Could not fetch URL http://a.invalid/: certificate verify failed",
             "the package index cannot be reached: its certificate could not be verified",
-            "docs/sync.md",
+            "A network that inspects connections needs its certificate",
         ),
         ("OSError: [Errno 28] No space left on device", "the disk is full", "Free some space"),
         ("ERROR: it broke\n", "pip could not find the packages: it broke", "pyfrc -v sync prints more."),
