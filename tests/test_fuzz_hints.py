@@ -122,7 +122,7 @@ def test_the_time_of_loops_is_what_all_but_five_need() -> None:
         while time.thread_time() - began < 0.002:
             pass
 
-    loop = Periodic(compute, 0, 1_000)
+    loop = Periodic(compute, 0, 1_000, 0)
     times = LoopTimes(SimpleNamespace(timed_loop=SimpleNamespace(main=loop)))  # type: ignore[arg-type]
     for _ in range(5):
         loop.call()
