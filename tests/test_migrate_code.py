@@ -115,6 +115,8 @@ CODE = {
                 list(map(lambda motor: motor.set(1), self.sides))
                 Drive.run(self.back, 1)
         drive = Drive(**{"left": wpilib.Talon(0), "right": wpilib.Talon(1)})
+        for each in map(wpilib.Encoder, range(2), range(2, 4)):
+            each.getRate()
         """,
         """
         import wpilib
@@ -136,6 +138,8 @@ CODE = {
                 list(map(lambda motor: motor.set_throttle(1), self.sides))
                 Drive.run(self.back, 1)
         drive = Drive(**{"left": wpilib_drivers.Talon(0), "right": wpilib_drivers.Talon(1)})
+        for each in map(wpilib.Encoder, range(2), range(2, 4)):
+            each.get_rate()
         """,
     ),
     "what a mixin and an own base use of derived classes": (

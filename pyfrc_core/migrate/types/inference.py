@@ -321,7 +321,8 @@ class Inference:
                 self._passed.give_elements(node, scope)
                 return found if name in SAME else elements(found) | found
             if name == "map":
-                return many(self.returned(each) for each in self._passed.give_elements(node, scope))
+                self._passed.give_elements(node, scope)
+                return many(self._result(each) for arg in node.args[:1] for each in self.infer(arg.value, scope))
         called = self.infer(node.func, scope)
         self._passed.give(node, scope, called)
         if isinstance(node.func, cst.Attribute):

@@ -51,14 +51,13 @@ class Passed:
             if isinstance(each, OwnCallable) and each.function.name != _called_name(call):
                 self._give(each.function, [self._inference.infer(arg.value, scope) for arg in call.args])
 
-    def give_elements(self, call: cst.Call, scope: Scope) -> list[OwnFunction]:
-        """Note what `map` and its relatives pass to the functions that they get, and return these."""
+    def give_elements(self, call: cst.Call, scope: Scope) -> None:
+        """Note what `map` and its relatives pass to the functions that they get."""
         passed = [self._inference.infer(arg.value, scope) for arg in call.args]
         functions = [each.function for atoms in passed for each in atoms if isinstance(each, OwnCallable)]
         others = [elements(each) for each in passed if elements(each)]
         for each in functions:
             self._give(each, others)
-        return functions
 
     def _give(self, function: OwnFunction, arguments: Iterable[Atoms]) -> None:
         parameters = function.parameters()[1 if function.receives_self() else 0 :]
