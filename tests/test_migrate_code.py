@@ -1590,6 +1590,12 @@ def test_ports_that_do_not_suffice_are_counted(tmp_path: Path) -> None:
     ] * 3
 
 
+def test_a_form_feed_before_the_first_indentation(tmp_path: Path) -> None:
+    robot = "import wpilib\nclass Robot(wpilib.TimedRobot):\n    def robotInit(self): pass\n"
+    after = migrated(tmp_path, robot="\fdef page():\n\f    return 1\n" + robot)["robot"]
+    assert "    def __init__(self):\n        super().__init__()\n" in after
+
+
 def test_a_module_with_the_name_of_a_new_one_is_reported(tmp_path: Path) -> None:
     """CTRE's generated projects have a telemetry.py."""
     (tmp_path / "telemetry.py").write_text("class Telemetry:\n    pass\n", "utf-8")

@@ -48,7 +48,8 @@ def new_text(file: FileRewriter, *, comments: bool) -> str:
         lines = [cst.SimpleStatementLine([each]) for each in file.imports.at_top]
         index = _after_docstring(tree)
         tree = tree.with_changes(body=[*tree.body[:index], *lines, *tree.body[index:]])
-    return tree.code
+    # A form feed in front of the first indentation of a file would be in each new block, and end the one around it.
+    return tree.with_changes(default_indent=tree.default_indent.replace("\f", "")).code
 
 
 def _comment(file: FileRewriter) -> None:
