@@ -165,7 +165,13 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
     if needed and not needed[0] <= count <= most:
         need = f"{needed[0]}" if needed[0] == most else f"{needed[0]} to {most}"
         text = f"{name}() was called with {counted(count, 'value')}, but takes {need}"
-        return Explanation(text, f"It takes: {takes}")
+        missing = [each.partition(":")[0] for each in forms[0][count : needed[0]]] if len(forms) == 1 else []
+        written = (
+            f"Write {ast.unparse(call.func)}({', '.join([*got, *missing])})\n  "
+            if missing and not call.keywords
+            else ""
+        )
+        return Explanation(text, f"{written}It takes: {takes}")
     if len(got) == 2 and not call.keywords and (swapped := _swapped(values, got, forms)):
         return Explanation(
             f"{name}() got its two values in the wrong order", f"Write {name}({swapped})\n  It takes: {takes}"

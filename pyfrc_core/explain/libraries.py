@@ -6,6 +6,7 @@ user's class that the library was working with) and `since` (where a device was 
 
 from __future__ import annotations
 
+import ast
 import re
 from dataclasses import dataclass
 from traceback import walk_tb
@@ -15,7 +16,18 @@ from ..project.robot_files import RobotFiles
 from ..season import CURRENT
 from .explanation import Explanation
 from .other_season import in_2027
-from .places import class_named, frames_of, is_in_opmode, line_of_class, users_class, users_frame
+from .places import (
+    calls_at,
+    class_named,
+    frames_of,
+    is_in_opmode,
+    last_name,
+    line_of_class,
+    robot_trees,
+    users_class,
+    users_frame,
+    value_of,
+)
 
 _STACK_LINE = re.compile(r'File "([^"]+)", line (\d+)')
 _FILE_AND_LINE = re.compile(r"(?P<file>.+\.py):(?P<line>\d+)")
@@ -354,7 +366,23 @@ def _explained(row: KnownError, found: re.Match[str], error: BaseException, file
         words["since"], remedy, line = again.text, again.remedy, again.place
     elif first is not None and is_in_opmode(*first) and (now := users_frame(error, files)) is not None:
         remedy = _MADE_BY_TWO if is_in_opmode(now[0].f_code.co_filename, now[1]) else remedy
+    else:
+        remedy += _set_elsewhere(words.get("channel", words.get("id", "")), error, files)
     return Explanation(in_2027(row.text).format_map(words), remedy, line)
+
+
+def _set_elsewhere(number: str, error: BaseException, files: RobotFiles) -> str:
+    """Return where a number that the user's line passes by a name is set, as a sentence; empty: it passes none so."""
+    where = users_frame(error, files)
+    for call in calls_at(*where, "") if where is not None else ():
+        for each in (*call.args, *(keyword.value for keyword in call.keywords)):
+            if where is None or isinstance(each, ast.Constant) or str(value_of(each, where[0])) != number:
+                continue
+            for file, tree in robot_trees(files):
+                for node in ast.walk(tree):
+                    if isinstance(node, ast.Assign) and last_name(node.targets[0]) == last_name(each):
+                        return f" {ast.unparse(each)} is set in {file}:{node.lineno}."
+    return ""
 
 
 def _first_stack(text: str, files: RobotFiles) -> list[tuple[str, int]]:

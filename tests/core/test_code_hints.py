@@ -14,10 +14,10 @@ from loops import for_each
 
 from pyfrc_core.repeated_lines import RepeatedLines, shortened
 from pyfrc_core.runtime.checks.code_checks import find_misspelled_settings
-from pyfrc_core.runtime.checks.enum_values import find_early_reads, find_wrong_comparisons
+from pyfrc_core.runtime.checks.enum_values import find_early_reads, find_sticks_read_once, find_wrong_comparisons
 from pyfrc_core.runtime.checks.kinds import Kinds
 from pyfrc_core.runtime.checks.lost_commands import find_lost_commands
-from pyfrc_core.runtime.checks.never_used import find_never_used
+from pyfrc_core.runtime.checks.never_used import find_never_used, find_unmatched_keys
 from pyfrc_core.runtime.checks.no_effect import find_lines_without_effect
 from pyfrc_core.runtime.checks.sources import Source
 from pyfrc_core.runtime.checks.wrong_moments import find_wrong_moments
@@ -41,6 +41,7 @@ def hints(text: str, is_test: bool = False) -> list[str]:
         *find_lines_without_effect(kinds),
         *find_wrong_comparisons(files),
         *find_early_reads(files),
+        *find_sticks_read_once(kinds),
         *find_never_used(kinds),
         *find_lost_commands(kinds),
         *find_wrong_moments(kinds),
@@ -162,6 +163,33 @@ def test_what_is_used_and_never_started(made: str, use: str, start: str, effect:
     assert found.startswith(f"3: self.part is never started, {effect} / Write self.part.")
     for started in (f"self.part.{start}", "helper(self.part)", "part = self.part"):
         assert hints(f"{dedent(robot)}        {started}\n") == []
+
+
+def test_a_timer_that_is_only_reset_is_started_there() -> None:
+    found, *_ = hints("timer = wpilib.Timer()\ntimer.reset()\nt = timer.get()")
+    assert found == "2: timer is never started, so it stays at 0 s / Write timer.restart() in place of reset()."
+
+
+def test_a_stick_that_is_read_at_the_start() -> None:
+    robot = """
+    class MyRobot:
+        def robotInit(self):
+            self.stick = wpilib.Joystick(0)
+            self.drive.setDefaultCommand(Drive({}self.stick.getY()))
+    """
+    (found,) = hints(robot.format("-"))
+    assert found.startswith("4: robotInit runs once, so this is the stick's position at the start")
+    assert "write lambda: self.stick.getY()" in found
+    assert hints(robot.format("lambda: -")) == []
+
+
+def test_keys_of_the_dashboard_in_two_spellings() -> None:
+    put = "wpilib.SmartDashboard.putNumber('Shooter Speed', 1)\n"
+    got = "wpilib.SmartDashboard.getNumber({!r}, 0)"
+    (found,) = find_unmatched_keys([source(put + got.format("ShooterSpeed"))])
+    assert str(found.text) == "nothing puts 'ShooterSpeed' on the dashboard; robot.py:1 puts 'Shooter Speed'"
+    for key in ("Shooter Speed", "Arm Speed"):  # a dashboard may set the other
+        assert list(find_unmatched_keys([source(put + got.format(key))])) == []
 
 
 def test_a_timer_that_is_never_read() -> None:

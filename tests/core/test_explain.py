@@ -65,6 +65,11 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "own",
         ),
         (
+            "class Ports:\n    LEFT = 0\na = wpilib.PWMSparkMax(0)\nb = wpilib.PWMSparkMax(Ports.LEFT)",
+            "PWM channel 0 is used already, since robot.py:4",
+            "Ports.LEFT is set in robot.py:3.",
+        ),
+        (
             "m = wpilib.PneumaticsModuleType.REVPH\na = wpilib.Solenoid(m, 4)\nb = wpilib.DoubleSolenoid(m, 3, 4)",
             "channel 4 of this pneumatics module has a solenoid already",
             "A DoubleSolenoid has two channels",
@@ -107,6 +112,11 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "wpilib.Encoder(0)",
             "Encoder() was called with 1 value, but takes 2 to 4",
             "encodingType: EncodingType = EncodingType.k4X)",
+        ),
+        (
+            "wpilib.SmartDashboard.getNumber('Shooter Speed')",
+            "getNumber() was called with 1 value, but takes 2",
+            "Write wpilib.SmartDashboard.getNumber('Shooter Speed', defaultValue)",
         ),
         (
             "wpilib.Timer.get()",

@@ -10,12 +10,12 @@ from ...config.toml_file import TomlFile
 from ...errors import PyfrcError
 from ...explain.names import meant
 from .code_warning import CodeWarning
-from .enum_values import find_early_reads, find_wrong_comparisons
+from .enum_values import find_early_reads, find_sticks_read_once, find_wrong_comparisons
 from .foreign_paths import find_foreign_paths
 from .kinds import Kinds
 from .lost_commands import find_lost_commands
 from .misspelled_methods import find_misspelled_methods
-from .never_used import find_never_used
+from .never_used import find_never_used, find_unmatched_keys
 from .no_effect import find_lines_without_effect
 from .opmodes_never_run import find_opmodes_never_run
 from .sources import sources
@@ -44,12 +44,14 @@ def find_code_warnings(project: Project) -> list[CodeWarning]:
         *find_foreign_paths(robots),
         *find_lines_without_effect(kinds),
         *find_never_used(kinds),
+        *find_unmatched_keys(robots),
         *find_lost_commands(kinds),
         *find_wrong_moments(kinds),
         *find_wrong_units(kinds),
         *find_wrong_tests(kinds),
         *find_wrong_comparisons(files),
         *find_early_reads(robots),
+        *find_sticks_read_once(kinds),
         *find_misspelled_settings(project),
     ]
 

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import sys
 from collections.abc import Iterator
 from difflib import get_close_matches
@@ -18,9 +19,12 @@ from ...explain.places import last_name
 from ...explain.returned import class_of, returned_type
 from ...wpi import names
 from .code_warning import CodeWarning
+from .kinds import Kinds
 from .sources import Source
 
 _AT_START = ("robotInit", "robot_init", "createObjects")
+#: The methods of joysticks that read an axis.
+_AXIS = re.compile(r"get_?(raw_?axis|twist|throttle|(left|right)_?trigger_?axis|(left_?|right_?)?[xyz])", re.IGNORECASE)
 _STARTED_AT_ONCE = ("Robot", "Subsystem", "SubsystemBase", "Container")
 
 
@@ -83,18 +87,37 @@ def find_early_reads(sources: list[Source]) -> Iterator[CodeWarning]:
     """Yield where the alliance is read once, before the driver station is connected."""
     for source in sources:
         calls = [each for each in ast.walk(source.tree) if _asks(each)]
-        for cls in (each for each in ast.walk(source.tree) if isinstance(each, ast.ClassDef) and len(calls) == 1):
-            at_once = any(last_name(base).endswith(_STARTED_AT_ONCE) for base in cls.bases)
-            at_once = at_once or cls.name.endswith(_STARTED_AT_ONCE)
-            for method in (each for each in cls.body if isinstance(each, ast.FunctionDef)):
-                if method.name not in _AT_START and not (method.name == "__init__" and at_once):
-                    continue
-                looks = any(isinstance(each, ast.Is | ast.IsNot) for each in ast.walk(method))  # is it None?
-                for call in (each for each in _at_once(method) if _asks(each) and not looks):
-                    what = UNKNOWN_AT_FIRST[last_name(call.func)]
-                    text = f"the {what} is not known yet in {method.name}: {last_name(call.func)}() is None"
-                    text += " until the driver station is connected"
-                    yield CodeWarning(source.at(call), text, in_2027(READ_LATER))
+        for method in _run_at_start(source) if len(calls) == 1 else ():
+            looks = any(isinstance(each, ast.Is | ast.IsNot) for each in ast.walk(method))  # is it None?
+            for call in (each for each in _at_once(method) if _asks(each) and not looks):
+                what = UNKNOWN_AT_FIRST[last_name(call.func)]
+                text = f"the {what} is not known yet in {method.name}: {last_name(call.func)}() is None"
+                text += " until the driver station is connected"
+                yield CodeWarning(source.at(call), text, in_2027(READ_LATER))
+
+
+def find_sticks_read_once(kinds: Kinds) -> Iterator[CodeWarning]:
+    """Yield where a joystick's axis is read once, at the start, such as for a command that should follow it."""
+    for source in (each for each in kinds.sources if not each.is_test):
+        for method in _run_at_start(source):
+            for call in (each for each in _at_once(method) if isinstance(each, ast.Call)):
+                owner = kinds.of(call.func.value, source) if isinstance(call.func, ast.Attribute) else None
+                hid = any(each.__name__.endswith("GenericHID") for each in getattr(owner, "__mro__", ()))
+                if hid and _AXIS.fullmatch(last_name(call.func)):
+                    written = ast.unparse(call)
+                    text = f"{method.name} runs once, so this is the stick's position at the start, and never changes"
+                    remedy = f"For a command, write lambda: {written} and call it there; else read it in "
+                    yield CodeWarning(source.at(call), text, in_2027(f"{remedy}teleopPeriodic."))
+
+
+def _run_at_start(source: Source) -> Iterator[ast.FunctionDef]:
+    """Yield the methods that run when the robot program starts."""
+    for cls in (each for each in ast.walk(source.tree) if isinstance(each, ast.ClassDef)):
+        at_once = any(last_name(base).endswith(_STARTED_AT_ONCE) for base in cls.bases)
+        at_once = at_once or cls.name.endswith(_STARTED_AT_ONCE)
+        for method in (each for each in cls.body if isinstance(each, ast.FunctionDef)):
+            if method.name in _AT_START or (method.name == "__init__" and at_once):
+                yield method
 
 
 def _asks(node: ast.AST) -> bool:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+import re
+from collections.abc import Collection, Iterator
 
 from ...explain.other_season import in_2027
 from ...explain.places import last_name
@@ -53,10 +54,45 @@ def find_never_used(kinds: Kinds) -> Iterator[CodeWarning]:
             is_used = not uses or any((name, use) in used for use in uses)
             if effect and is_used and name not in passed_on and not any((name, each) in used for each in starts):
                 written = ast.unparse(target)
-                remedy = f"Write {in_2027(write or start).format(written)} where it is made."
-                yield CodeWarning(source.at(node), f"{written} {effect}", remedy)
+                code = in_2027(write or start).format(written)
+                at, remedy = source.at(node), f"Write {code} below this line."
+                if kind == "Timer":  # which counts from where it is started
+                    remedy = f"Write {code} where it begins to count, as in autonomousInit."
+                    resets = (by.at(call) for by, each in nodes for call in _calls(each, name, "reset"))
+                    if reset := next(resets, ""):
+                        at, remedy = reset, f"Write {code} in place of reset()."
+                yield CodeWarning(at, f"{written} {effect}", remedy)
         elif isinstance(node, (ast.Module, ast.ClassDef)):
             yield from _defined_twice(node, source)
+
+
+def _calls(node: ast.AST, name: str, method: str) -> Iterator[ast.Call]:
+    """Yield the node if it calls a method, named by a regular expression, of the object that has a name."""
+    if (
+        isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Attribute)
+        and last_name(node.func.value) == name
+        and re.fullmatch(method, node.func.attr)
+    ):
+        yield node
+
+
+def find_unmatched_keys(files: Collection[Source]) -> Iterator[CodeWarning]:
+    """Yield where SmartDashboard is asked for a key that is only put in another spelling."""
+    places: dict[str, dict[str, dict[str, str]]] = {"put": {}, "get": {}}
+    for source in files:
+        for node in ast.walk(source.tree):
+            for call in _calls(node, "SmartDashboard", "(put|get).+"):
+                key = call.args[0].value if call.args and isinstance(call.args[0], ast.Constant) else None
+                if isinstance(key, str) and isinstance(call.func, ast.Attribute):
+                    alike = re.sub(r"[\W_]", "", key).lower()
+                    places[call.func.attr[:3]].setdefault(alike, {}).setdefault(key, source.at(call))
+    for alike, got in places["get"].items():
+        put = places["put"].get(alike, {})
+        for key in got.keys() - put.keys() if put else ():
+            other, where = next(iter(put.items()))
+            text = f"nothing puts {key!r} on the dashboard; {where} puts {other!r}"
+            yield CodeWarning(got[key], text, "Write the same key in both.")
 
 
 def _defined_twice(parent: ast.Module | ast.ClassDef, source: Source) -> Iterator[CodeWarning]:
