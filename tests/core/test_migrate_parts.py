@@ -16,13 +16,19 @@ from pyfrc_core.migrate.rewrite.ports import Ports
 _ALL = "SystemCore's ports 0 to 5 are for PWM, digital, analog and LEDs together"
 
 
+def remarks_of(report: Report) -> list[tuple[int, str, str, bool]]:
+    """Line, sentence, remedy and whether it runs, by line."""
+    remarks = [*report.by_hand(), *report.to_check()]
+    return sorted((place.line, each.what, each.remedy, each.done) for each in remarks for place in each.places)
+
+
 def reported(*devices: tuple[str, int]) -> list[tuple[int, str, str, bool]]:
     """Line, sentence, remedy and whether it runs, of devices with these channels, one in each line."""
     ports, report = Ports(table()), Report()
     for line, (name, channel) in enumerate(devices, 1):
         ports.use("robot.py", line, f"wpilib.{name}", channel)
     ports.report(report)
-    return [(each.line, each.what, each.remedy, each.done) for each in sorted(report.remarks)]
+    return remarks_of(report)
 
 
 def test_kinds_of_channels() -> None:
@@ -80,7 +86,7 @@ def migrated(tmp_path: Path, code: str) -> tuple[str, list[str]]:
     file.write_text(code, "utf-8")
     done = migrate(tmp_path)
     done.write()
-    said = [f"{each.line} {each.what}" for each in sorted(done.report.remarks)]
+    said = [f"{line} {what}" for line, what, _, _ in remarks_of(done.report)]
     return file.read_text("utf-8"), said
 
 
@@ -111,3 +117,25 @@ def test_imports_of_what_is_gone(tmp_path: Path, code: str, new: str, said: list
     text, remarks = migrated(tmp_path, code)
     assert text == new
     assert [each for each in remarks if "is gone" in each] == said
+
+
+def test_a_name_that_another_file_imports_for_this_one_is_renamed_in_both(tmp_path: Path) -> None:
+    (tmp_path / "parts.py").write_text("from wpilib import PS4Controller, PS4Controller as Pad, Timer\n", "utf-8")
+    text, _ = migrated(
+        tmp_path, "from parts import PS4Controller, Pad, Timer\npads = PS4Controller(0), Pad(1), Timer()\n"
+    )
+    assert (
+        text == "from parts import DualShock4Controller, Pad, Timer\npads = DualShock4Controller(0), Pad(1), Timer()\n"
+    )
+    assert "DualShock4Controller, DualShock4Controller as Pad, Timer" in (tmp_path / "parts.py").read_text("utf-8")
+
+
+def test_a_statement_that_is_left_out_after_a_colon_becomes_pass(tmp_path: Path) -> None:
+    gone = "wpilib.LiveWindow.disableAllTelemetry()"
+    text, _ = migrated(tmp_path, f"import wpilib\nif True: {gone}\n{gone}\n{gone}; x = 1\n")
+    assert text == "import wpilib\nif True: pass\nx = 1\n"
+
+
+def test_six_devices_suffice_and_the_seventh_does_not() -> None:
+    shared = reported(*(("PWMSparkMax", number) for number in range(5)), ("AnalogInput", 0))
+    assert [remedy for _, _, remedy, _ in shared] == [f"{_ALL}. Give each its own; free: 5."]
