@@ -103,7 +103,7 @@ def trace_of(run: RobotRun, file: Path) -> Path:
     trace = Trace(run.hal_data, out)
     trace.look(0.02)
     trace.finish()
-    file.write_text(out.getvalue())
+    file.write_text(out.getvalue(), encoding="utf-8")
     return file
 
 

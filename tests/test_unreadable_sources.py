@@ -55,9 +55,8 @@ def test_migrate(tmp_path: Path) -> None:
     spoil(tmp_path)
     (tmp_path / "latin.py").write_bytes(b"x = '\xe9'\n")
     done = migrate(tmp_path)
-    assert [(each.file, each.line) for each in done.report.by_hand()] == [
-        *[("latin.py", 1), ("pipe.py", 0), ("tests/drive.py", 0), ("tests/old.py", 0)]
-    ]
+    places = [str(place) for each in done.report.by_hand() for place in each.places]
+    assert sorted(places) == ["latin.py:1", "pipe.py", "tests/drive.py", "tests/old.py"]
 
 
 def test_a_copy_for_create_physics_has_no_pipes(tmp_path: Path) -> None:

@@ -253,5 +253,5 @@ def test_turns_are_those_of_wpilibs_loop(make_project: MakeProject, robot: str, 
 
 
 def calls(file: Path) -> list[str]:
-    found: list[str] = json.loads(file.read_text())
+    found: list[str] = json.loads(file.read_text(encoding="utf-8"))
     return found
