@@ -290,12 +290,14 @@ def test_what_is_done_in_each_loop(line: str, found: str) -> None:
         def robotInit(self):
             self.timer = wpilib.Timer()
             self.motor = wpilib.PWMSparkMax(1)
+            self.done = False
             self.timer.start()
         def go(self): return self.run(self.stop)
         def teleopPeriodic(self):
             {line}
     """
-    assert [found in each for each in hints(robot)] == [True] * bool(found)
+    got = hints(robot)
+    assert [found in each for each in got] == [True] * bool(found), got
 
 
 def test_a_drive_that_is_set_once() -> None:
