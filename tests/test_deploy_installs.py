@@ -164,7 +164,10 @@ def test_todays_tool_after_ours_and_ours_again(blank: Computer, laptop: Laptop) 
     printed = r"Robot program starting\ntheirs\nRobot program startup complete"
     code = f"import time\nprint('{printed}', flush=True)\ntime.sleep(1000)\n"
     blank.put(f"{blank.home_directory}/py/robot.py", code)
-    python = blank.controller.layout.python or f"{blank.home_directory}/venv/bin/python3"
+    python = blank.controller.layout.python
+    if not IS_ROBORIO:  # there, it installs a Python of its own
+        made = f"exec $(ls -d {blank.home_directory}/.pyfrc/pythons/*/bin/python3) -m venv --without-pip {python[:-12]}"
+        blank.run("/bin/sh", "-c", made)
     start = f"{python} -u -O {blank.home_directory}/py/robot.py\n"
     blank.put(f"{blank.home_directory}/robotCommand", start, mode=0o755)
     laptop.deploy(blank)

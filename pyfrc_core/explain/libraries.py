@@ -358,14 +358,15 @@ def _explained(row: KnownError, found: re.Match[str], error: BaseException, file
     line = line_of_class(cls, files, row.at.format_map(words)) if cls is not None and here is None else ""
     remedy = in_2027(row.remedy).format_map(words)
     outer = next(iter(_first_stack(str(error), files)), ("", 0))
-    if before and outer[0] and not files.is_robot_code(outer[0]):
+    now = {(frame.f_code.co_filename, line) for frame, line in walk_tb(error.__traceback__)}
+    if before and outer[0] and not files.is_robot_code(outer[0]) and outer not in now:
         words["since"] = f": {files.relative(outer[0])}:{outer[1]} in the test has made it before the run does"
         remedy = "Remove that line: control.run_test(...) calls robotInit and the other methods itself."
     elif before and before == here:
         again = _made_by(error, files) or Explanation(words["since"], _MADE_AGAIN, line)
         words["since"], remedy, line = again.text, again.remedy, again.place
-    elif first is not None and is_in_opmode(*first) and (now := users_frame(error, files)) is not None:
-        remedy = _MADE_BY_TWO if is_in_opmode(now[0].f_code.co_filename, now[1]) else remedy
+    elif first is not None and is_in_opmode(*first) and (where := users_frame(error, files)) is not None:
+        remedy = _MADE_BY_TWO if is_in_opmode(where[0].f_code.co_filename, where[1]) else remedy
     else:
         remedy += _set_elsewhere(words.get("channel", words.get("id", "")), error, files)
     return Explanation(in_2027(row.text).format_map(words), remedy, line)
