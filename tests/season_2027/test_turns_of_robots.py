@@ -158,6 +158,7 @@ BY_WPILIB = """
     import os
     import sys
     import threading
+    import time
 
     import hal.simulation
     from wpilib.simulation import DriverStationSim as Station
@@ -187,6 +188,8 @@ BY_WPILIB = """
 
     threading.Thread(target=compete, daemon=True).start()
     hal.simulation.wait_for_program_start()
+    while hal.simulation.get_next_notifier_timeout() > 2**62:  # reported before the loop waits for its first turn
+        time.sleep(0.001)
 
 
     def packet():
