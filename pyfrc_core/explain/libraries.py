@@ -381,7 +381,9 @@ def _set_elsewhere(number: str, error: BaseException, files: RobotFiles) -> str:
                 continue
             for file, tree in robot_trees(files):
                 for node in ast.walk(tree):
-                    if isinstance(node, ast.Assign) and last_name(node.targets[0]) == last_name(each):
+                    if not isinstance(node, ast.Assign) or not isinstance(node.value, ast.Constant):
+                        continue
+                    if last_name(node.targets[0]) == last_name(each) and str(node.value.value) == number:
                         return f" {ast.unparse(each)} is set in {file}:{node.lineno}."
     return ""
 

@@ -187,7 +187,7 @@ def test_keys_of_the_dashboard_in_two_spellings() -> None:
     put = "wpilib.SmartDashboard.putNumber('Shooter Speed', 1)\n"
     got = "wpilib.SmartDashboard.getNumber({!r}, 0)"
     (found,) = find_unmatched_keys([source(put + got.format("ShooterSpeed"))])
-    assert str(found.text) == "nothing puts 'ShooterSpeed' on the dashboard; robot.py:1 puts 'Shooter Speed'"
+    assert str(found.text) == "this asks the dashboard for 'ShooterSpeed', and robot.py:1 puts 'Shooter Speed'"
     for key in ("Shooter Speed", "Arm Speed"):  # a dashboard may set the other
         assert list(find_unmatched_keys([source(put + got.format(key))])) == []
 

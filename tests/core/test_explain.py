@@ -65,9 +65,10 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "own",
         ),
         (
-            "class Ports:\n    LEFT = 0\na = wpilib.PWMSparkMax(0)\nb = wpilib.PWMSparkMax(Ports.LEFT)",
-            "PWM channel 0 is used already, since robot.py:4",
-            "Ports.LEFT is set in robot.py:3.",
+            "class Old:\n    LEFT = 7\nclass Ports:\n    LEFT = 0\n"
+            "a = wpilib.PWMSparkMax(0)\nb = wpilib.PWMSparkMax(Ports.LEFT)",
+            "PWM channel 0 is used already, since robot.py:6",
+            "Ports.LEFT is set in robot.py:5.",
         ),
         (
             "m = wpilib.PneumaticsModuleType.REVPH\na = wpilib.Solenoid(m, 4)\nb = wpilib.DoubleSolenoid(m, 3, 4)",

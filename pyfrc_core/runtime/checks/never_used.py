@@ -89,9 +89,9 @@ def find_unmatched_keys(files: Collection[Source]) -> Iterator[CodeWarning]:
                     places[call.func.attr[:3]].setdefault(alike, {}).setdefault(key, source.at(call))
     for alike, got in places["get"].items():
         put = places["put"].get(alike, {})
-        for key in got.keys() - put.keys() if put else ():
+        for key in sorted(got.keys() - put.keys()) if put else ():
             other, where = next(iter(put.items()))
-            text = f"nothing puts {key!r} on the dashboard; {where} puts {other!r}"
+            text = f"this asks the dashboard for {key!r}, and {where} puts {other!r}"
             yield CodeWarning(got[key], text, "Write the same key in both.")
 
 
