@@ -217,7 +217,7 @@ class _Walk:
         yield from self._within(self._root, "", (self._root,))
 
     def _within(self, directory: Path, prefix: str, above: tuple[Path, ...]) -> Iterator[tuple[str, Path]]:
-        for item in os.scandir(directory):
+        for item in list(os.scandir(directory)):  # read at once, and closed
             path = prefix + item.name
             if item.name.startswith(".") or path in _FILES_LEFT_OUT or is_excluded(path, self._exclude):
                 continue
