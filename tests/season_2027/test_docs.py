@@ -71,13 +71,6 @@ MODES = """
 """
 
 
-def test_the_robot_of_2027_from_2026(make_project: MakeProject) -> None:
-    blocks = re.findall(r"^```python\n# robot_2027/(\S+)\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
-    project = make_project(dict(blocks))
-    result = project.run("test", "--", "-v")
-    assert list(result.outcomes().values()) == ["PASSED"], result.output
-
-
 def test_the_keys_that_are_gone_and_new(make_project: MakeProject) -> None:
     rows = re.findall(r"^\| (`.*) \| (gone|new|`).*\|$", PAGE.partition("| key |")[2], re.MULTILINE)
     keys = {path: kind == "new" for names, kind in rows for path in re.findall(r"`([^`]+)`", names)}
