@@ -54,10 +54,9 @@ def isolation_option(what: str, *more: str, note: str = "") -> Callable[[Functio
     """
     return click.option(
         "--isolation",
-        type=click.Choice(["auto", "fork", "reuse", "spawn", *more]),
+        type=click.Choice(["auto", "fork", "reuse", *more]),
         help=f"The process in which each {what} runs. Default: auto, which chooses one of: fork, a copy of pyfrc's own "
-        "(Linux only); reuse, an earlier one, after a check that nothing of the robot before is left in it; "
-        f"spawn, a new one.{note}",
+        f"(Linux only); reuse, an earlier one, after a check that nothing of the robot before is left in it.{note}",
     )
 
 

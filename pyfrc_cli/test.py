@@ -80,7 +80,7 @@ def command(
     builtin: bool,
     jobs: int | Literal["auto"] | None,
     seed: int | None,
-    isolation: Literal["auto", "fork", "reuse", "spawn", "none"] | None,
+    isolation: Literal["auto", "fork", "reuse", "none"] | None,
     no_isolation: bool,
     coverage: bool,
     coverage_html: Path | None,

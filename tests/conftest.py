@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from roborio.local import Agents
 
     from pyfrc_core.config.sim_file import LoadedSimConfig
-    from pyfrc_core.processes.spawn import Interpreter
+    from pyfrc_core.processes.spawn import StartedProcess
 
 # What would make a run here differ from the user's: the outer pytest's settings, measurements, colours.
 _NOT_PASSED_ON = ("COVERAGE_", "PYTEST_", "COV_CORE_")
@@ -280,7 +280,7 @@ class RobotProject:
         program: str = "pyfrc",
         cold: bool = False,
         own_session: bool = False,
-    ) -> Interpreter:
+    ) -> StartedProcess:
         """Start ``pyfrc`` with these descriptors as its standard input, output and errors.
 
         :param own_session: whether it leads a session of its own, as at another terminal
@@ -292,7 +292,7 @@ class RobotProject:
             # With more processes, shrinking runs scripts that it does not need then: a third more processor time. What
             # is found is the same. Tests that are about the number pass it.
             environment["PYTHON_CPU_COUNT"] = "1"
-        popen: Callable[..., Interpreter] = subprocess.Popen if cold else _start_python
+        popen: Callable[..., StartedProcess] = subprocess.Popen if cold else _start_python
         return popen(
             [sys.executable, "-m", program, *map(str, args)],
             cwd=cwd or self.path,

@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import IO, TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pyfrc_core.processes.spawn import Interpreter
+    from pyfrc_core.processes.spawn import StartedProcess
 
 
 class StartedCommand:
@@ -21,7 +21,7 @@ class StartedCommand:
     :ivar stderr: its errors; None where they are among what it prints
     """
 
-    def __init__(self, process: Interpreter, stdout: IO[str], stderr: IO[str] | None) -> None:
+    def __init__(self, process: StartedProcess, stdout: IO[str], stderr: IO[str] | None) -> None:
         self._process = process
         self.stdout = stdout
         self.stderr = stderr
@@ -78,7 +78,7 @@ class StartedCommand:
 
 
 def start_command(
-    start: Callable[[Sequence[int]], Interpreter], stdin: int | None = None, apart: bool = False
+    start: Callable[[Sequence[int]], StartedProcess], stdin: int | None = None, apart: bool = False
 ) -> StartedCommand:
     """Start a command, and read what it prints.
 

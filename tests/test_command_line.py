@@ -246,8 +246,8 @@ def test_commands_are_completed(shell: str, make_project) -> None:
 
 @pytest.mark.parametrize("shell", SHELLS)
 def test_options_and_their_choices_are_completed(shell: str, make_project, tmp_path: Path) -> None:
-    printed = "\n".join(ask(make_project, shell, ["pyfrc", "test", "--isolation"], "sp"))
-    assert "spawn" in printed
+    printed = "\n".join(ask(make_project, shell, ["pyfrc", "test", "--isolation"], "re"))
+    assert "reuse" in printed
     assert "fork" not in printed
 
 

@@ -113,7 +113,7 @@ def functions_run(report: dict[str, Any]) -> set[str]:
     return {name for name, function in functions.items() if name and function["executed_lines"]}
 
 
-@pytest.mark.parametrize("isolation", sampled(["auto", "reuse", "spawn", "none"], "auto"))
+@pytest.mark.parametrize("isolation", sampled(["auto", "reuse", "none"], "auto"))
 def test_lines_in_threads_and_isolated_tests_count(project: RobotProject, isolation: str) -> None:
     tests = () if isolation != "none" else ("--", "-k", "teleop")
     report = measured(project, "test", "--isolation", isolation, *tests)
@@ -122,7 +122,7 @@ def test_lines_in_threads_and_isolated_tests_count(project: RobotProject, isolat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("isolation", sampled(["auto", "reuse", "spawn"], "auto"))
+@pytest.mark.parametrize("isolation", sampled(["auto", "reuse"], "auto"))
 def test_lines_that_only_a_fuzz_match_runs_count(project: RobotProject, isolation: str) -> None:
     report = measured(project, "fuzz", "--runs", "2", "-j", "2", "--isolation", isolation)
     assert functions_run(report) == {"in_a_thread", "in_a_notifier", "in_autonomous", "with_button_pressed"}

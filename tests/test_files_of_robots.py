@@ -67,7 +67,7 @@ def test_tests_at_the_same_time(make_project: MakeProject, name: str) -> None:
 
 @pytest.mark.parametrize(
     "isolation",
-    sampled(["fork", "reuse", "spawn"] if FORK_IS_SAFE else ["reuse", "spawn"], "fork" if FORK_IS_SAFE else "reuse"),
+    sampled(["fork", "reuse"] if FORK_IS_SAFE else ["reuse"], "fork" if FORK_IS_SAFE else "reuse"),
 )
 def test_either_isolation(make_project: MakeProject, isolation: str) -> None:
     project = make_project({"robot.py": robot("random"), "pyproject.toml": SHORT_MATCH})

@@ -393,7 +393,7 @@ EXITING = """
     [
         ("auto", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"),
         pytest.param(
-            "spawn", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit", marks=pytest.mark.slow
+            "reuse", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit", marks=pytest.mark.slow
         ),
         pytest.param(
             "auto",

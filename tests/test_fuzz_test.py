@@ -328,29 +328,6 @@ def test_the_shortest_way_to_a_failure_is_kept_and_replayed(make_project) -> Non
 
 
 @pytest.mark.slow
-def test_where_each_process_is_a_new_one_the_whole_match_is_kept(make_project) -> None:
-    project = make_project(
-        {
-            "robot.py": CHORD,
-            "tests/fuzz_test.py": "from pyfrc.tests.fuzz_test import *\n",
-            "pyproject.toml": """
-                [tool.pyfrc.test]
-                isolation = "spawn"
-                """,
-        }
-    )
-    result = project.run("test", "--seed", "3")
-    failure = re.search(r"robot\.py:13: RuntimeError: an untested combination [\d.]+", result.output)
-    assert failure is not None, result.output
-    assert "each is to be a new one here" in result.output
-    at = re.search(r"at ([\d.]+) s of a match", result.output)
-    assert at is not None
-    file = project.path / ".pyfrc/fuzz/seed-3.jsonl"
-    assert load_script(file).end_us == round(float(at[1]) * 1e6) + 20_000
-    assert failure[0] in project.run("replay", file).output
-
-
-@pytest.mark.slow
 def test_a_robot_without_a_fault_passes_and_leaves_nothing(make_project) -> None:
     project = make_project({"robot.py": EVERYTHING, "tests/pyfrc_test.py": "from pyfrc.tests import *\n"})
     result = project.run("test", "--", "-v")

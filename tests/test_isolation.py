@@ -285,24 +285,6 @@ def test_several_at_a_time_give_the_same_in_the_same_order(everything: RobotProj
 @pytest.mark.parametrize(
     ("isolation", "left_out"),
     [
-        # Each of its tests is a new interpreter: enough of them, not all.
-        pytest.param(
-            "spawn",
-            (
-                "test_parametrised",
-                "test_of_module",
-                "test_second_on",
-                "test_unexpectedly",
-                "test_skip",
-                "OldStyle",
-                "test_has",
-                "test_plain",
-                "test_warns",
-                "test_expected",
-                "test_talks_and_passes",
-            ),
-            marks=pytest.mark.slow,
-        ),
         # Used again, each is as good as new.
         pytest.param("reuse", (), marks=pytest.mark.slow),
         # Together in one process, one crash is everybody's, and so is what a module keeps.
@@ -816,7 +798,7 @@ def covered(result: Result) -> dict[str, str]:
     [
         pytest.param("fork", MEASURED_ROBOT, marks=needs_fork, id="fork"),
         pytest.param("auto", ROBOT_WITH_DEVICE_IN_CLASS, id="device-in-class", marks=pytest.mark.slow),
-        pytest.param("spawn", MEASURED_ROBOT, id="spawn", marks=pytest.mark.slow),
+        pytest.param("reuse", MEASURED_ROBOT, id="reuse", marks=pytest.mark.slow),
         pytest.param("none", MEASURED_ROBOT, id="none", marks=pytest.mark.slow),
     ],
 )

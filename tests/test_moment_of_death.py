@@ -34,7 +34,7 @@ def robot(death: str) -> str:
     return ROBOT.replace("DEATH", DEATHS[death][0])
 
 
-@pytest.mark.parametrize(("death", "isolation"), [("killed", "fork"), ("exit", "spawn"), ("killed", "reuse")])
+@pytest.mark.parametrize(("death", "isolation"), [("killed", "fork"), ("exit", "reuse")])
 def test_in_a_test(make_project: MakeProject, death: str, isolation: str) -> None:
     """In forked processes and in new ones."""
     project = make_project({"robot.py": robot(death), "tests/test_it.py": TEST})

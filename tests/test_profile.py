@@ -115,7 +115,7 @@ def test_percentiles_agree_with_a_stopwatch_in_the_robot(make_project: MakeProje
     "isolation",
     [
         pytest.param("fork", marks=needs_fork),
-        pytest.param("spawn", marks=pytest.mark.slow),
+        pytest.param("reuse", marks=pytest.mark.slow),
         pytest.param("none", marks=pytest.mark.slow),
     ],
 )

@@ -64,7 +64,7 @@ def test_all_settings_hold_for_a_program_deep_in_the_project(make_project: MakeP
             "pyproject.toml": '[tool.pyfrc]\nmain = "src/robots/practice.py"\nrobot_class = "MyRobot"\n',
         }
     )
-    for isolation in ("auto", "spawn"):
+    for isolation in ("auto", "reuse"):
         assert_finds_it(project, "--isolation", isolation)
 
 

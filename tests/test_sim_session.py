@@ -26,7 +26,7 @@ from spelling import spelled
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.processes.fork import FORK_IS_SAFE
-from pyfrc_core.processes.spawn import Interpreter
+from pyfrc_core.processes.spawn import StartedProcess
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import parse_script
 from pyfrc_core.sim import SimOptions, Simulation
@@ -399,10 +399,10 @@ def test_real_time_goes_on_by_itself(project: Project) -> None:
 @pytest.mark.skipif(not FORK_IS_SAFE, reason="it is the only way here, and so tested by all others")
 def test_where_processes_cannot_be_forked(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
     """The next one is started ahead, and takes over."""
-    started: list[Interpreter] = []
+    started: list[StartedProcess] = []
     start_host = processes.start_host
 
-    def start(*arguments: Any) -> Interpreter:
+    def start(*arguments: Any) -> StartedProcess:
         started.append(start_host(*arguments))
         return started[-1]
 

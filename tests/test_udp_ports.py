@@ -106,7 +106,7 @@ def library_project(make_project: MakeProject, taken: int) -> RobotProject:
     )
 
 
-@pytest.mark.parametrize("isolation", sampled(["fork", "reuse", "spawn", "none"], "fork", "reuse"))
+@pytest.mark.parametrize("isolation", sampled(["fork", "reuse", "none"], "fork", "reuse"))
 def test_a_library_gets_another_port_than_the_one_in_use(library_project: RobotProject, isolation: str) -> None:
     strict = ("--", "-W", "error", "-k", "test_one")
     result = library_project.run("test", "-j", "2", "--isolation", isolation, *strict)

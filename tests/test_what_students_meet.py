@@ -91,7 +91,7 @@ def test_a_robot_in_another_encoding_is_explained(
 def test_a_byte_order_mark_before_the_settings_does_no_harm(make_project: MakeProject) -> None:
     settings = "\ufeff[tool.pyfrc.test]\njobs = 1\n[tool.pytest.ini_options]\naddopts = '-v'\n"
     project = make_project({"robot.py": ROBOT, "pyproject.toml": settings, **TESTS})
-    result = project.run("test", "--isolation", "spawn")  # where two processes read them
+    result = project.run("test", "--isolation", "reuse")  # where two processes read them
     assert result.code == 0, result.output
     assert set(result.outcomes().values()) == {"PASSED"}  # so pytest has read -v in it
 

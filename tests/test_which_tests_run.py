@@ -48,7 +48,7 @@ def test_a_project_in_a_directory_with_any_name(make_project) -> None:
     for result in (
         project.run("coverage", "test", cwd=inside),
         project.run("coverage", "test", "--project", ODD),
-        project.run("profile", "test", "--project", ODD, "--isolation", "spawn"),
+        project.run("profile", "test", "--project", ODD, "--isolation", "reuse"),
         project.run("test", "--project", ODD, "--", f"{ODD}/tests/test_a.py::test_own", "--junitxml=report.xml"),
     ):
         assert result.code == 0, result.output

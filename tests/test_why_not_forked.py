@@ -131,7 +131,7 @@ def test_a_thread_that_the_robot_starts_on_import_is_named_with_its_line(make_pr
     (explained,), outcomes = run(project)
     assert "imports the robot again" in explained
     assert "robot.py:1 starts the thread 'frames', which runs vision_library.grab" in explained
-    assert outcomes == {"test_forked": "PASSED", "test_another": "PASSED"}
+    assert outcomes == {"test_forked": "FAILED", "test_another": "PASSED"}
 
 
 def test_a_device_in_the_robots_class_is_named(make_project: MakeProject) -> None:
@@ -144,7 +144,7 @@ def test_a_device_in_the_robots_class_is_named(make_project: MakeProject) -> Non
 def test_a_thread_of_a_test_file_is_named_with_its_line(make_project: MakeProject) -> None:
     tests = "    import vision_library\n" + TESTS.lstrip("\n")
     (explained,), outcomes = run(make_project({"robot.py": ROBOT, "tests/test_a.py": tests}))
-    assert "runs in an interpreter that imports the robot again" in explained
+    assert "imports the robot again" in explained
     assert "tests/test_a.py:1 starts the thread 'frames'" in explained.replace("\\", "/")
     assert outcomes == {"test_forked": "FAILED", "test_another": "PASSED"}
 

@@ -168,7 +168,9 @@ def _path_in(data: Any, error: Any) -> Path:
 
 
 def _hint(error: Any) -> str | None:
-    """Return the remedy for a number in quotes; None for other errors."""
+    """Return the remedy for a number in quotes, and for a value that there was once; None for other errors."""
+    if error["type"] == "literal_error" and error["input"] == "spawn":
+        return "spawn is no longer there. Write reuse: what a run leaves behind is put back or detected after each run."
     if error["type"] in _NO_NUMBER and isinstance(error["input"], str):
         number = error["input"].strip()
         if re.fullmatch(r"-?[0-9]{1,15}(\.[0-9]{1,15})?", number):

@@ -68,8 +68,8 @@ class TestSettings:
 
     #: How many tests run at the same time.
     jobs: Annotated[int, _Positive] | Literal["auto"] = "auto"
-    #: What each test that uses the robot runs in: a forked process, a new one, or this one.
-    isolation: Literal["auto", "fork", "reuse", "spawn", "none"] = "auto"
+    #: What each test that uses the robot runs in: a forked process, an earlier one, or this one.
+    isolation: Literal["auto", "fork", "reuse", "none"] = "auto"
     #: Seconds of computing without progress in robot time after which robot code counts as hanging. For code that
     #: waits, it is at least 10 s.
     hang_seconds: Seconds = 10.0

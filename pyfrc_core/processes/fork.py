@@ -30,7 +30,7 @@ def is_forked(isolation: str) -> bool:
     """
     if isolation == "fork" and not FORK_IS_SAFE:
         raise UsageError("this system cannot fork a process safely", remedy="Leave out --isolation fork.")
-    return FORK_IS_SAFE and isolation not in ("reuse", "spawn")
+    return FORK_IS_SAFE and isolation != "reuse"
 
 
 # Seconds between two looks at whether a process has ended while another one holds its pipe open. Decides nothing else.

@@ -10,10 +10,10 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .spawn import Interpreter
+    from .spawn import StartedProcess
 
 
-def kill_group(process: Interpreter) -> None:
+def kill_group(process: StartedProcess) -> None:
     """Kill a process that leads a group (POSIX: a session) of its own, and what remains of that group.
 
     On Windows, which has no such groups, only the children of a process that still runs can be found.

@@ -15,7 +15,7 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from functools import partial
 from itertools import count
@@ -54,7 +54,7 @@ class Interpreter:
 
     :param prepare: None: it does one piece of work
     :param keeps_output: whether what it prints is in files, and not where these say:
-    :param stdout, stderr: see `spawn.Start`
+    :param stdout, stderr, environment, ends_with_owner: see `spawn.Start`
     """
 
     def __init__(
@@ -64,6 +64,8 @@ class Interpreter:
         keeps_output: bool = False,
         stdout: int | IO[bytes] | None = subprocess.DEVNULL,
         stderr: int | IO[bytes] | None = subprocess.DEVNULL,
+        environment: Mapping[str, str] | None = None,
+        ends_with_owner: bool = True,
     ) -> None:
         self._temporary = temporary_directory("process")
         self._directory = Path(self._temporary.name)
@@ -73,7 +75,8 @@ class Interpreter:
             if keeps_output:
                 stdout, stderr = (files.enter_context(file.open("ab")) for file in _output_in(self._directory))
             call = partial(_serve, prepare, self._directory)
-            self._process = spawn.open_interpreter(spawn.Start(call, stdout, stderr))
+            how = spawn.Start(call, stdout, stderr, environment, ends_with_owner=ends_with_owner)
+            self._process = spawn.open_interpreter(how)
 
     def begin(self, work: Work, owned: bool = False) -> SpawnedWorker:
         """Begin a piece of work; the one before must be over.

@@ -19,12 +19,12 @@ from .worker import Work
 class Interpreters:
     """The interpreters of one command.
 
-    :param prepare: called in each before its first work; None: each does one piece of work
+    :param prepare: called in each before its first work
     :param ahead: how many to start now, for the first work
     :param keeps_output: whether their workers return what was printed
     """
 
-    def __init__(self, prepare: Prepare | None, ahead: int = 0, *, keeps_output: bool = False) -> None:
+    def __init__(self, prepare: Prepare, ahead: int = 0, *, keeps_output: bool = False) -> None:
         self._prepare, self._keeps_output = prepare, keeps_output
         #: What the first piece of work has left after which an interpreter was not used again, as far as it is known.
         self.reason = ""
@@ -43,7 +43,7 @@ class Interpreters:
         :param more: how many are known to follow
         """
         worker = self._begin(work)
-        if self.reason or self._prepare is None:
+        if self.reason:
             self._start_ahead(min(more, usable_processors()))
         return worker
 

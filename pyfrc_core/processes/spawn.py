@@ -1,4 +1,4 @@
-"""New interpreters, which import everything again: for processes that cannot or must not be forked."""
+"""Starts of new interpreters, which import everything again: for processes that cannot or must not be forked."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ popen: Callable[..., Any] = subprocess.Popen
 first_calls: list[Callable[[], object]] = []
 
 
-class Interpreter(Protocol):
+class StartedProcess(Protocol):
     """A process that was started; with methods of `subprocess.Popen`."""
 
     @property
@@ -90,7 +90,7 @@ class _Job:
     call: bytes
 
 
-def start(how: Start) -> Interpreter:
+def start(how: Start) -> StartedProcess:
     """Start a new interpreter."""
     process = open_interpreter(how)
     assert process.stdin is not None
@@ -105,7 +105,8 @@ def run_python(arguments: Sequence[str], stdout: IO[Any], environment: Mapping[s
     :param stdout: a stream with a file descriptor; what goes elsewhere is this process's
     :param environment: variables that differ from this process's
     """
-    process: Interpreter = popen([sys.executable, *arguments], stdout=stdout, env={**os.environ, **(environment or {})})
+    variables = {**os.environ, **(environment or {})}
+    process: StartedProcess = popen([sys.executable, *arguments], stdout=stdout, env=variables)
     try:
         return process.wait()
     except BaseException:

@@ -66,7 +66,7 @@ class Project:
 
     @property
     def isolation(self) -> str:
-        """Where robots run: in forks, in interpreters that are used again, or in new ones."""
+        """Where robots run: in forks, or in interpreters that are used again."""
         return self.chosen_isolation or self.settings.test.isolation
 
     @cached_property

@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 
 from ..config.settings import DEFAULT_SEED, TestSettings
 
-Isolation: TypeAlias = Literal["auto", "fork", "reuse", "spawn", "none"]
+Isolation: TypeAlias = Literal["auto", "fork", "reuse", "none"]
 Jobs: TypeAlias = int | Literal["auto"]
 
 #: The package of the ready-made tests; they use this one, which imports none of them.

@@ -94,15 +94,12 @@ class PyFrcPlugin(WatchedTests):
         *,
         project: Project | None = None,
         options: TestOptions | None = None,
-        imports_late: str = "",
         published: tuple[Opmode, ...] | RobotCodeError | None = None,
     ) -> None:
         self.project = project or Project(Path(robot_file).resolve())
         self.options = options or TestOptions.combined(self.project.settings.test)
         #: That of a process that runs a single test, and ends afterwards, so that no cleanup is needed.
         self.crash_log: CrashLog | None = None
-        #: Why each test's process imports the robot's modules itself; empty when a fork inherits them.
-        self.imports_late = imports_late
         #: The robot's opmodes, or why they are not known; None before the robot is asked.
         self.published = published
         self._former_logs: set[tuple[str, int]] = set()

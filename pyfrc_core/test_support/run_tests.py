@@ -6,23 +6,23 @@ import os
 import re
 import sys
 from collections.abc import Sequence
+from contextlib import ExitStack, closing
 from pathlib import Path
 
 import pytest
 
 from ..errors import PyfrcError, UsageError
-from ..processes.fork import is_forked
-from ..processes.prefork import PreforkedProcess
 from ..processes.reuse import Interpreters
 from ..project import Project
 from ..runtime.threads.fork_obstacles import reasons_not_to_fork
 from ..season import CURRENT
 from ..wording import counted, path_from
+from .isolation.interpreters import start_interpreters
 from .isolation.loop import IsolatedTests
 from .options import READY_MADE_DIRECTORY, READY_MADE_TESTS, TestOptions
 from .pytest_plugin import PyFrcPlugin
 from .remembered_passes import RememberedPasses
-from .summary import SummaryPlugin, warn_of_mistakes
+from .summary import SummaryPlugin
 from .uncollected import find_uncollected
 
 
@@ -104,42 +104,23 @@ def run_tests(
         if directory is not None:  # an error is reported once, and not by every test
             directory.mkdir(parents=True, exist_ok=True)
 
-    def session(imports_late: str = "") -> int:
-        plugin = PyFrcPlugin(
-            None, project.main_file, project.root, project=project, options=options, imports_late=imports_late
-        )
-        if not imports_late:
-            plugin.robot_class()  # an import error is reported once, and not by every test
-            if preforked is not None and (reasons := reasons_not_to_fork()):
-                status = preforked.take_over("; ".join(reasons))
-                warn_of_mistakes(project)  # the other process has not imported them
-                return status
-            if preforked is not None:
-                preforked.dismiss()  # as long as it lives, what this process writes to is copied
-        passes = RememberedPasses(project, options, pytest_args, builtin)
+    plugin = PyFrcPlugin(None, project.main_file, project.root, project=project, options=options)
+    plugin.robot_class()  # an import error is reported once, and not by every test
+    with ExitStack() as ending:
+        if interpreters is None and options.isolation == "auto" and reasons_not_to_fork():
+            interpreters = ending.enter_context(closing(start_interpreters(project)))
         plugins = [
             plugin,
             IsolatedTests(plugin, interpreters),
             SummaryPlugin(project, whole=not any(map(_selects, pytest_args))),
             _NoUnusedHypothesis(),
-            passes,
+            RememberedPasses(project, options, pytest_args, builtin),
             *([_ReadyMadeTests()] if builtin else []),
         ]
         here = Path.cwd()
         os.chdir(start)
-        try:
-            return int(pytest.main(args, plugins=[*plugins, _ChangesBack(here)]))
-        finally:
-            os.chdir(here)
-
-    preforked: PreforkedProcess | None = None
-    if options.isolation != "none" and is_forked(options.isolation):
-        preforked = PreforkedProcess(session)
-    try:
-        return session()
-    finally:
-        if preforked is not None:
-            preforked.dismiss()
+        ending.callback(os.chdir, here)
+        return int(pytest.main(args, plugins=[*plugins, _ChangesBack(here)]))
 
 
 #: What pytest would replace in a path, or take for a parameter or a test's name.

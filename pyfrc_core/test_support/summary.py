@@ -9,10 +9,9 @@ Reports are shortened on the terminal only: JUnit files and other reports contai
 from __future__ import annotations
 
 import copy
-import sys
 from collections.abc import Generator
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import pytest
 
@@ -103,12 +102,6 @@ def _take_device_warnings(stats: dict[str, list[Any]]) -> list[str]:
     if taken:
         stats["warnings"] = [each for each in stats["warnings"] if mark not in each.message]
     return list(dict.fromkeys(message.partition(mark)[2].partition("\n")[0] for message in taken))
-
-
-def warn_of_mistakes(project: Project, stream: TextIO = sys.stderr) -> None:
-    """Print the misspelled methods of the modules that this process has imported."""
-    for method in find_code_warnings(project):
-        print(f"warning: {method}", file=stream)
 
 
 def _explain_unrepeatable_devices(terminalreporter: Any) -> None:

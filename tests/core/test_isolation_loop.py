@@ -184,8 +184,6 @@ def test_more_interpreters_are_started_only_where_they_have_enough_to_do(plugin:
     assert [tests._worth_starting(some[:number]) for number in (0, 1, 5, 6, 7)] == [1, 1, 1, 2, 2]
     other: Any = Item("x", [], fixtures=())
     assert tests._worth_starting([other] * 6) == 1
-    plugin.options.isolation = "spawn"
-    assert tests._worth_starting(some) == 7
 
 
 def test_who_runs_the_tests_otherwise(plugin: Any) -> None:

@@ -31,7 +31,6 @@ from pyfrc_core.processes.exit import (
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork
 from pyfrc_core.processes.frames import decode, encode
 from pyfrc_core.processes.interpreter import spawn_worker
-from pyfrc_core.processes.prefork import PreforkedProcess
 from pyfrc_core.processes.worker import ForkedWorker, Send, Work, Worker, wait_for_any
 from pyfrc_core.project import Project
 from pyfrc_core.project.robot_files import RobotFiles
@@ -330,18 +329,6 @@ def test_a_fork_by_a_thread_that_ends_goes_on(begin: Begin) -> None:
     assert finish(workers[0]) == ["still there"]
     os.close(reading)
     os.close(writing)
-
-
-# -- a process from before ---------------------------------------------------------------------------------------------
-
-
-@only_forked
-def test_a_preforked_process_is_as_this_one_was() -> None:
-    state = ["before"]
-    preforked = PreforkedProcess(lambda reasons: 5 if state == ["before"] and reasons == "threads; devices" else 1)
-    state.append("after")
-    assert preforked.take_over("threads; devices") == 5
-    preforked.dismiss()
 
 
 # -- calls -------------------------------------------------------------------------------------------------------------

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import io
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from pyfrc_core.test_support import hangs, summary
+from pyfrc_core.test_support import hangs
 from pyfrc_core.test_support.reporting import bug_of
 
 
@@ -28,14 +27,6 @@ from pyfrc_core.test_support.reporting import bug_of
 )
 def test_what_failures_by_one_bug_have_in_common(headline: str | None, bug: str | None) -> None:
     assert bug_of(headline) == bug
-
-
-def test_mistakes_are_warnings_in_a_line_each(monkeypatch: pytest.MonkeyPatch) -> None:
-    project: Any = object()
-    monkeypatch.setattr(summary, "find_code_warnings", lambda given: ["one", "two"] if given is project else [])
-    stream = io.StringIO()
-    summary.warn_of_mistakes(project, stream)
-    assert stream.getvalue() == "warning: one\nwarning: two\n"
 
 
 class Hangs:

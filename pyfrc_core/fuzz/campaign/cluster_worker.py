@@ -13,9 +13,10 @@ import sys
 import tempfile
 import threading
 import traceback
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
+from functools import cache, partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,9 +24,11 @@ from typing import TYPE_CHECKING
 from distributed import Worker, WorkerPlugin, get_worker
 
 from ...errors import PyfrcError
-from ...processes.request_process import RequestProcess
+from ...processes.interpreter import Interpreter
+from ...processes.worker import Send
 
 if TYPE_CHECKING:
+    from ...processes.crash_report import CrashLog
     from ...project import Project
     from ..match.work import Result
     from ..oracle.failure import FuzzFailure
@@ -64,8 +67,8 @@ class ProjectOnWorker(WorkerPlugin):
         """Make the directory of this project, which Dask's own directory for temporary files contains."""
         self._lock = threading.Lock()
         self._closed = False
-        self._all: list[RequestProcess] = []
-        self._idle: list[RequestProcess] = []
+        self._all: list[Interpreter] = []
+        self._idle: list[Interpreter] = []
         self._directory = tempfile.TemporaryDirectory(
             prefix="pyfrc-", dir=worker.local_directory, ignore_cleanup_errors=True
         )
@@ -80,8 +83,8 @@ class ProjectOnWorker(WorkerPlugin):
         """End the processes and remove the directory."""
         with self._lock:
             self._closed = True
-            for process in self._all:
-                process.kill()
+            for interpreter in self._all:
+                interpreter.close()
         self._directory.cleanup()
 
     def play(self, task: bytes) -> bytes:
@@ -91,26 +94,29 @@ class ProjectOnWorker(WorkerPlugin):
         """
         if self._versions != self._expected:
             return pickle.dumps(PyfrcError(f"a worker has {self._versions}, this computer has {self._expected}"))
-        process = self._take()
-        try:
-            result: bytes = process.request(task)
-        except EOFError:
-            raise EOFError("a process that plays matches on a worker has ended") from None
+        interpreter = self._take()
+        worker = interpreter.begin(partial(_play, self._project, self._sent_from, task))
+        worker.wait()
+        results: list[bytes] = list(worker.messages())
+        if not results:
+            raise EOFError("a process that plays matches on a worker has ended")
+        worker.close()
         with self._lock:
-            self._idle.append(process)
-        return result
+            self._idle.append(interpreter)
+        return results[0]
 
-    def _take(self) -> RequestProcess:
+    def _take(self) -> Interpreter:
         with self._lock:
             if self._closed:
                 raise EOFError("the campaign has ended")
             if self._idle:
                 return self._idle.pop()
             temporary = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(self._temporary))
-            player = _MatchPlayer(self._project, self._sent_from)
-            process = RequestProcess(player, {**self._environment, **temporary})
-            self._all.append(process)
-            return process
+            # It ends with its standard input: the thread that starts it may end before this process.
+            environment = {**self._environment, **temporary}
+            interpreter = Interpreter(_Unchanged, environment=environment, ends_with_owner=False)
+            self._all.append(interpreter)
+            return interpreter
 
 
 def play_on_worker(plugin: str, task: bytes) -> bytes:
@@ -125,34 +131,39 @@ def play_on_worker(plugin: str, task: bytes) -> bytes:
 # -- in the process that plays the matches -----------------------------------------------------------------------------
 
 
-class _MatchPlayer:
-    """Plays one match at a time, with an executor that the first match opens.
+class _Unchanged:
+    """The state of an interpreter whose matches run in processes of their own: nothing of them is left in it."""
+
+    def restore(self) -> Sequence[str]:
+        return ()
+
+
+_open = ExitStack()
+
+
+@cache
+def _executor_of(project: Project) -> WorkExecutor:
+    """Return the executor for this project; the first match opens it."""
+    from .executors import open_match_executor
+
+    os.chdir(project.root)
+    return _open.enter_context(open_match_executor(project, jobs=1))
+
+
+def _play(project: Project, sent_from: Path, task: bytes, send: Send, log: CrashLog) -> None:
+    """Play one match, and send its pickled result, or the error of the project's code.
 
     :param project: the project on the worker
     :param sent_from: its root on the computer that has sent it
     """
-
-    def __init__(self, project: Project, sent_from: Path) -> None:
-        self._project = project
-        self._sent_from = sent_from
-        self._open = ExitStack()
-        self._executor: WorkExecutor | None = None
-
-    def __call__(self, task: bytes) -> bytes:
-        """Return the pickled result of a pickled task, or the error of the project's code."""
-        from .executors import open_match_executor
-
-        try:
-            if self._executor is None:
-                os.chdir(self._project.root)
-                self._executor = self._open.enter_context(open_match_executor(self._project, jobs=1))
-            left = [pickle.loads(task)]
-            ((_, result),) = self._executor.run(lambda: left.pop() if left else None)
-            return pickle.dumps(_with_paths_of_sender(result, str(self._project.root), str(self._sent_from)))
-        except PyfrcError as error:
-            return pickle.dumps(error)
-        except Exception:
-            return pickle.dumps(PyfrcError(f"a mistake in pyfrc itself, on a worker:\n{traceback.format_exc()}"))
+    try:
+        left = [pickle.loads(task)]
+        ((_, result),) = _executor_of(project).run(lambda: left.pop() if left else None)
+        send(pickle.dumps(_with_paths_of_sender(result, str(project.root), str(sent_from))))
+    except PyfrcError as error:
+        send(pickle.dumps(error))
+    except Exception:
+        send(pickle.dumps(PyfrcError(f"a mistake in pyfrc itself, on a worker:\n{traceback.format_exc()}")))
 
 
 def _with_paths_of_sender(result: Result, here: str, there: str) -> Result:

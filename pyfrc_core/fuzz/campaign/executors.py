@@ -283,8 +283,7 @@ class SpawnedMatchExecutor(LocalMatchExecutor):
 
     def __init__(self, project: Project, jobs: int, directory: Path) -> None:
         super().__init__(project, jobs, directory)
-        prepare = None if project.isolation == "spawn" else partial(prepare_interpreter, replace(project))
-        self._interpreters = Interpreters(prepare, jobs)
+        self._interpreters = Interpreters(partial(prepare_interpreter, replace(project)), jobs)
         survey = begin_call(self._interpreters, _all_lines, project, 0)
         try:
             with closing(survey):
@@ -319,8 +318,6 @@ def shrink_in_subprocess(project: Project, task: ShrinkTask) -> Shrunk | str:
 
     :returns: what came of it, or the end of a sentence that says why there is no shorter script
     """
-    if project.isolation == "spawn":
-        return "making it short takes hundreds of processes, and each is to be a new one here"
     try:
         with not_watched():
             shrunk: Shrunk = run_in_subprocess(partial(_shrink, task=task), project, "while a script was made shorter")

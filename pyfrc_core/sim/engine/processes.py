@@ -23,7 +23,7 @@ from ...processes.crash_report import moment_of, standstill_of
 from ...processes.fork import FORK_IS_SAFE
 from ...processes.groups import kill_group
 from ...processes.output_pipe import OutputPipe, Stamps
-from ...processes.spawn import Interpreter
+from ...processes.spawn import StartedProcess
 from ...processes.standstill import Standstill, loading_for
 from ...project.robot_files import RobotFiles
 from ...temporary import temporary_directory
@@ -50,7 +50,7 @@ class _Spare:
     """
 
     name: str
-    process: Interpreter
+    process: StartedProcess
     output: OutputPipe
     connection: Connection | None = None
 
@@ -86,7 +86,7 @@ class RobotProcesses:
             self._listener = Listener(("127.0.0.1", 0), authkey=self._key)
         self._number = 0
         self._launched_at = time.monotonic()
-        self._host: Interpreter | None = None
+        self._host: StartedProcess | None = None
         self._host_name = ""
         self._hosts = count(1)
         #: The host that was started ahead.
@@ -280,7 +280,7 @@ class RobotProcesses:
                 if isinstance(message, Exited):
                     self._exited(message.number, message.status)
 
-    def _wait_for(self, host: Interpreter, number: int) -> None:
+    def _wait_for(self, host: StartedProcess, number: int) -> None:
         """Report the robot's exit where it comes with the host's: always where nothing is forked."""
         status = host.wait()
         self._all_accepted()
@@ -367,7 +367,7 @@ def _thread(target: Callable[..., object], name: str, *arguments: Any) -> thread
     return thread
 
 
-def start_host(hosting: Hosting, output: int) -> spawn.Interpreter:
+def start_host(hosting: Hosting, output: int) -> spawn.StartedProcess:
     """Start a host.
 
     :param output: the descriptor of what the host prints into

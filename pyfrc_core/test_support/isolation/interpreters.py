@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 from ...errors import PyfrcError
 from ...processes.fork import is_forked
 from ...processes.reuse import Interpreters
-from ...processors import usable_processors
 from ..options import TestOptions
 
 if TYPE_CHECKING:
@@ -28,15 +27,12 @@ def opened_interpreters(project: Project, options: TestOptions) -> Iterator[Inte
     if options.isolation == "none" or is_forked(options.isolation):
         yield None
         return
-    with closing(start_interpreters(project, options)) as interpreters:
+    with closing(start_interpreters(project)) as interpreters:
         yield interpreters
 
 
-def start_interpreters(project: Project, options: TestOptions) -> Interpreters:
-    """Return the interpreters, of which some are started now: one if it will be used again, others as need be."""
-    if options.isolation == "spawn":
-        jobs = usable_processors() if options.jobs == "auto" else min(options.jobs, usable_processors())
-        return Interpreters(None, jobs, keeps_output=True)
+def start_interpreters(project: Project) -> Interpreters:
+    """Return the interpreters, of which one is started now."""
     interpreters = Interpreters(partial(_prepare, project.main_file), 1, keeps_output=True)
     interpreters.rehearse(partial(_import_robot, replace(project)))
     return interpreters

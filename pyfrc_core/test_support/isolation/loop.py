@@ -45,8 +45,7 @@ from .uncaptured import UncapturedOutput, uncaptured_output
 #: A test file that has anything of these in it may touch the HAL even without a fixture.
 _ROBOT_LIBRARIES = frozenset({"wpilib", "hal", "ntcore", "commands2", "magicbot"})
 
-_IMPORTS_LATE = "Each robot test imports the robot again, which is slower: on import, {}. Do that in robotInit."
-_NOT_FORKED = "Each robot test runs in an interpreter that imports the robot again, which is slower: on import, {}."
+_NOT_FORKED = "Each robot test imports the robot again, which is slower: on import, {}. Do that in robotInit."
 _NOT_AS_GOOD_AS_NEW = "A new interpreter for each test, because a test has left {}."
 
 
@@ -138,15 +137,13 @@ class IsolatedTests:
                 self._running[item] = forked_test(item, plugin, self._output)
             else:
                 if self._interpreters is None:
-                    self._interpreters = start_interpreters(plugin.project, plugin.options)
+                    self._interpreters = start_interpreters(plugin.project)
                 self._running[item] = spawned_test(item, plugin, self._interpreters, len(items) - 1 - position)
         self._finish(session, waiting, down_to=0)
         _tear_down_shared(session, previous, None)
 
     def _worth_starting(self, items: list[pytest.Item]) -> int:
-        """Return how many interpreters have enough to do, if tests use them again."""
-        if self._plugin.options.isolation == "spawn":
-            return len(items)
+        """Return how many interpreters have enough to do."""
         return max(1, sum(map(self._uses_robot, items)) // _TESTS_WORTH_A_START)
 
     def _end_interpreters(self, config: pytest.Config) -> None:
@@ -219,12 +216,9 @@ class IsolatedTests:
                 return False
         except UsageError as error:
             raise pytest.UsageError(str(error)) from None
-        if self._plugin.imports_late:
-            self._explain(config, _IMPORTS_LATE.format(self._plugin.imports_late))
-        else:
-            with contextlib.suppress(Exception):  # each test that needs it reports it
-                self._plugin.robot_class()
-                self._plugin.invariants  # noqa: B018
+        with contextlib.suppress(Exception):  # each test that needs it reports it
+            self._plugin.robot_class()
+            self._plugin.invariants  # noqa: B018
         reasons = "; ".join(reasons_not_to_fork())
         if not reasons:
             return True
