@@ -177,7 +177,7 @@ def command(
     if campaign.interrupted:
         click.echo("interrupted")
     if not campaign.findings:
-        hint("Nothing was found.")
+        hint("No failure that repeats was found." if campaign.hints.unsteady else "Nothing was found.")
         if campaign.progress.matches < _FEW and not campaign.interrupted:
             played = counted(campaign.progress.matches, "match proves", "matches prove")
             hint(f"But {played} little: pyfrc fuzz --time 600 plays for ten minutes.")

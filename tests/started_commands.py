@@ -34,6 +34,9 @@ class StartedCommand:
     ) -> None:
         self.kill()
         self.wait()
+        self._close()
+
+    def _close(self) -> None:
         for stream in filter(None, (self.stdout, self.stderr)):
             stream.close()
 
@@ -74,6 +77,7 @@ class StartedCommand:
                 at_end.callback(guard.cancel)
             at_end.callback(self.wait)
             printed = self.stdout.read()
+        self._close()
         return printed, "".join(errors)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from pyfrc_core.physics.create.try_tests import _not_needed
+from pyfrc_core.project.walk import SourceError, read_source
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="links and pipes that Windows has not")
 
@@ -57,6 +58,15 @@ def test_migrate(tmp_path: Path) -> None:
     done = migrate(tmp_path)
     places = [str(place) for each in done.report.by_hand() for place in each.places]
     assert sorted(places) == ["latin.py:1", "pipe.py", "tests/drive.py", "tests/old.py"]
+
+
+def test_a_comment_may_have_any_bytes_as_in_an_import(tmp_path: Path) -> None:
+    file = tmp_path / "robot.py"
+    file.write_bytes(b"speed = 1  # h\xf6chstens\n")
+    assert read_source(file) == "speed = 1  # h\ufffdchstens\n"
+    file.write_bytes(b"name = 'h\xf6chstens'\n")
+    with pytest.raises(SourceError, match=r"robot\.py:1: this line is not UTF-8"):
+        read_source(file)
 
 
 def test_a_copy_for_create_physics_has_no_pipes(tmp_path: Path) -> None:

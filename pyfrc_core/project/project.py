@@ -14,7 +14,7 @@ from ..config.findings import SettingsWarning, settings_error
 from ..config.settings import Settings, load_settings
 from ..season import CURRENT
 from ..wording import path_from
-from .robot_files import RobotFiles
+from .robot_files import RobotFiles, tests_beside
 from .walk import SourceError, python_files, text_to_search, why_unreadable
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ class Project:
     @property
     def test_directories(self) -> tuple[Path, Path]:
         """The possible directories of tests, in search order."""
-        return self.root / "tests", self.root.parent / "tests"
+        return self.root / "tests", tests_beside(self.root)
 
     @cached_property
     def invariant_files(self) -> tuple[Path, ...]:

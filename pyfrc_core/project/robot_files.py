@@ -27,6 +27,11 @@ def is_library(filename: str) -> bool:
     return filename.startswith((*_PYFRC, _PYTHON, "<frozen")) or any(part in filename for part in _NOT_OURS)
 
 
+def tests_beside(root: Path) -> Path:
+    """Return the directory of tests beside a project; for a project that is called so itself, the one in it."""
+    return (root if root.name.lower() == "tests" else root.parent) / "tests"
+
+
 class RobotFiles:
     """The source files of one robot project.
 
@@ -36,7 +41,7 @@ class RobotFiles:
     def __init__(self, root: Path) -> None:
         self.root = str(root) + os.sep
         self._tests = str(root / "tests") + os.sep
-        self._tests_beside = str(root.parent / "tests") + os.sep
+        self._tests_beside = str(tests_beside(root)) + os.sep
         self._known: dict[str, bool] = {}
 
     def is_robot_code(self, filename: str) -> bool:

@@ -5,8 +5,10 @@ What is left out cannot matter: version control, environments, caches of tools, 
 
 from __future__ import annotations
 
+import ast
 import os
 from collections.abc import Iterator
+from contextlib import suppress
 from importlib.util import decode_source
 from pathlib import Path
 
@@ -102,6 +104,10 @@ def read_source(file: Path) -> str:
             return text
     except (SyntaxError, UnicodeDecodeError):
         pass
+    if b"\0" not in content:
+        with suppress(SyntaxError, ValueError):  # in comments, an import lets any byte pass
+            ast.parse(content)
+            return content.decode("utf-8", "replace")
     wrong = why_not_utf8(content)
     if wrong is None:
         raise SourceError("this is not in the encoding that its first line names", file, "Save it as UTF-8.")

@@ -158,7 +158,7 @@ def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str], star
         args += ["--pyargs", *(f"{READY_MADE_TESTS}.{module}" for module in modules)]
     if directory is not None or builtin:
         return args
-    looked = " and ".join(str(path) for path in project.test_directories)
+    looked = " and ".join(dict.fromkeys(map(str, project.test_directories)))
     patterns = ("test_*.py", "*_test.py")
     remedies = list(find_uncollected(project.test_directories[0], set(), patterns))
     remedies.append(

@@ -14,6 +14,7 @@ import pytest
 import wpilib
 
 from pyfrc_core.errors import RobotCodeError, UsageError
+from pyfrc_core.project import Project
 from pyfrc_core.project.robot_files import RobotFiles
 from pyfrc_core.runtime.checks.failures import (
     as_robot_code_error,
@@ -249,3 +250,12 @@ def test_a_match_and_its_periods() -> None:
         ("teleop", 1e-6),
         None,
     ]
+
+
+def test_a_project_in_a_directory_called_tests(tmp_path: Path) -> None:
+    root = tmp_path / "tests"
+    files = RobotFiles(root)
+    assert files.is_robot_code(str(root / "robot.py"))
+    assert not files.is_robot_code(str(root / "tests" / "test_a.py"))
+    assert Project(root / "robot.py").test_directories == (root / "tests", root / "tests")
+    assert RobotFiles(tmp_path / "code").relative(str(tmp_path / "tests" / "a.py")) == str(Path("..", "tests", "a.py"))
