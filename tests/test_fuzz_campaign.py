@@ -258,25 +258,6 @@ def test_interpreters_that_are_used_again_find_the_same(make_project) -> None:
     assert found[0][0] == 1, found
 
 
-@pytest.mark.slow
-def test_where_processes_cannot_be_forked_new_ones_find_the_same(make_project) -> None:
-    robot = """
-        import wpilib
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                raise RuntimeError("no")
-        """
-    project = make_project({"robot.py": robot})
-    assert project.run("fuzz", "--runs", "1").code == 1
-    forked = kept(project)
-    shutil.rmtree(project.path / "tests")
-    project.write({"pyproject.toml": "[tool.pyfrc.test]\nisolation = 'spawn'\n"})
-    assert project.run("fuzz", "--runs", "1").code == 1
-    assert kept(project) == forked
-    assert forked
-
-
 # -- the command -----------------------------------------------------------------------------------------------------
 
 

@@ -10,6 +10,7 @@ from conftest import sampled
 
 import pyfrc
 from pyfrc_core.invariants.load import load_invariants
+from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import load_script
 
 RULES = "tests/rules.py"
@@ -103,25 +104,6 @@ def test_a_broken_rule_is_found_shrunk_explained_and_replayed(project) -> None:
     for command in ("replay", file), ("test",), ("fuzz", "--seed", "1", "--runs", "4"):
         repaired = project.run(*command)
         assert repaired.code == 0, repaired.output
-
-
-@pytest.mark.slow
-def test_the_same_finding_in_new_processes(project) -> None:
-    """A rule in a package of tests, with a neighbor that it imports; each match imports all of it."""
-    project.write(
-        {
-            "tests/__init__.py": "",
-            "tests/limits.py": "HIGHEST = 0.51\n",
-            RULES: "from .limits import HIGHEST\n" + rule("assert robot.elevator.height < HIGHEST"),
-            "pyproject.toml": SETTINGS + "    [tool.pyfrc.test]\n    isolation = 'spawn'\n",
-        }
-    )
-    script = '{"format": "pyfrc-input 1", "robot": "robot.py", "seed": 0, "end": 1}\n'
-    script += '{"t": 0, "set": {"mode": "autonomous"}}\n'
-    project.write({"up.jsonl": script})
-    result = project.run("fuzz", "--seed", "1", "--runs", "1")
-    assert (result.code, "HIGHEST is 0.51" in result.stdout) == (1, True), result.output
-    assert f"then {RULES}:6: the rule it_holds() is broken: " in project.run("replay", "up.jsonl").output
 
 
 def test_ready_made_and_own_tests_check_the_rules(project) -> None:
@@ -285,7 +267,20 @@ def test_the_decorator_returns_the_function_and_needs_no_wpilib(project) -> None
 
     assert pyfrc.invariant(holds) is holds
     project.write({RULES: "import sys\n" + rule("assert 'pytest' not in sys.modules")})
-    from pyfrc_core.project import Project
-
     (found,) = load_invariants(Project(project.path / "robot.py"))
     assert (found.name, found.parameters, found.place) == ("it_holds", ("robot", "hal_data"), f"{RULES}:5")
+
+
+def test_rules_in_a_package_of_tests_import_their_neighbors(project) -> None:
+    project.write(
+        {
+            "tests/__init__.py": "",
+            "tests/limits.py": "HIGHEST = 0.51\n",
+            RULES: "from .limits import HIGHEST\n" + rule("assert robot < HIGHEST", "def it_holds(robot):"),
+        }
+    )
+    (found,) = load_invariants(Project(project.path / "robot.py"))
+    found.function(0.5)
+    with pytest.raises(AssertionError):
+        found.function(0.52)
+    assert found.place == f"{RULES}:5"

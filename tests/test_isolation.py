@@ -560,7 +560,7 @@ def test_sigterm_ends_the_run_of_a_robot_with_a_device_in_a_class_variable(make_
             raise AssertionError("not to be run")
     """
     project = make_project({"robot.py": robot, "tests/test_terminated.py": tests})
-    result = project.run("test", "-j", "1")
+    result = project.run("test", "-j", "1", cold=True)  # so that the parent of a test is the command
     assert result.code == 143, result.output
     assert "KeyboardInterrupt" in result.output
     assert "not to be run" not in result.output

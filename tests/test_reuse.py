@@ -75,11 +75,12 @@ DEVICES = """
 
 
     class Constants:
-        MOTOR = wpilib.PWMSparkMax(5)
+        MOTOR = None
 
 
     class MyRobot(wpilib.TimedRobot):
         def robotInit(self):
+            Constants.MOTOR = wpilib.PWMSparkMax(5)
             self.ball = wpilib.Ultrasonic(1, 2)
             self.claw = wpilib.DoubleSolenoid(wpilib.PneumaticsModuleType.CTREPCM, 0, 1)
             self.light = wpilib.Solenoid(wpilib.PneumaticsModuleType.REVPH, 3)

@@ -22,9 +22,18 @@ from pyfrc_cli.main import COMMANDS, OTHER_NAMES
         ('[tool.pyfrc.match]\nteleop = "long"\n', 2, "tool.pyfrc.match.teleop = 'long': input should be a valid", ""),
         ("[tool.pyfrc.match]\n# s\nteleop = -1\n", 3, "tool.pyfrc.match.teleop = -1: ", "greater than 0"),
         ('[tool.pyfrc.test]\njobs = "many"\n', 2, "tool.pyfrc.test.jobs = 'many': ", "'auto'"),
-        ('[tool.pyfrc.test]\nisolation = "full"\n', 2, "tool.pyfrc.test.isolation = 'full': ", "'spawn'"),
+        ('[tool.pyfrc.test]\nisolation = "full"\n', 2, "tool.pyfrc.test.isolation = 'full': ", "'reuse'"),
+        ('[tool.pyfrc.test]\nisolation = "spawn"\n', 2, "tool.pyfrc.test.isolation = 'spawn': ", "Write reuse"),
     ],
-    ids=["unknown-key", "unknown-top-key", "wrong-type", "out-of-range", "neither-of-two", "not-a-choice"],
+    ids=[
+        "unknown-key",
+        "unknown-top-key",
+        "wrong-type",
+        "out-of-range",
+        "neither-of-two",
+        "not-a-choice",
+        "no-choice-any-more",
+    ],
 )
 def test_a_wrong_setting_is_told_with_its_line(
     make_project: MakeProject, settings: str, line: int, message: str, remedy: str
