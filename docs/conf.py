@@ -46,6 +46,9 @@ html_title = f"pyfrc {release}"
 html_copy_source = False
 html_show_copyright = False
 html_show_sphinx = False
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_js_files = ["copy.js"]
 
 
 #: `pyfrc` re-exports names: the comments of these modules' constants are in the modules that define them.

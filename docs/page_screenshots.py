@@ -36,7 +36,8 @@ def save(page: Page, name: str) -> None:
     colors = sorted(picture.getcolors(picture.width * picture.height) or (), reverse=True)[:256]
     palette = Image.new("P", (1, 1))
     palette.putpalette([part for _, color in colors for part in color])
-    picture.quantize(palette=palette, dither=Image.Dither.NONE).save(IMAGES / f"{name}.png", optimize=True)
+    picture = picture.quantize(palette=palette, dither=Image.Dither.NONE)
+    picture.convert("RGB").save(IMAGES / f"{name}.webp", lossless=True, quality=100, method=6)
 
 
 def run_for(server: Served, seconds: float) -> None:

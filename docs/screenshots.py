@@ -74,7 +74,8 @@ class Photographer:
         whole = ImageGrab.grab(xdisplay=self.display)
         window = whole.crop((left, top, left + width, top + height))
         # Few colours: a repository is no place for large files.
-        window.quantize(128, dither=Image.Dither.NONE).save(IMAGES / f"{name}.png", optimize=True)
+        picture = window.quantize(128, dither=Image.Dither.NONE).convert("RGB")
+        picture.save(IMAGES / f"{name}.webp", lossless=True, quality=100, method=6)
 
     def close(self) -> None:
         self.window.close()

@@ -65,13 +65,30 @@ def test_they_list_everything_that_is_public(build: tuple[subprocess.CompletedPr
     assert [name for name in names if name not in entries] == []
 
 
-def test_the_pages_need_no_network(build: tuple[subprocess.CompletedProcess[str], Path]) -> None:
-    pages = list(build[1].rglob("*.html"))
+def test_each_page_loads_without_a_network_in_a_hundred_kilobytes(
+    build: tuple[subprocess.CompletedProcess[str], Path],
+) -> None:
+    """With its styles, scripts and pictures, as a server compresses them."""
+    pages = sorted(build[1].rglob("*.html"))
     assert len(pages) > 20
     for page in pages:
         text = page.read_text("utf-8")
-        assert re.findall(r"<(?:script|img|iframe)[^>]+src=\"(?:https?:)?//[^\"]+", text) == []
-        assert re.findall(r"<link[^>]+href=\"(?:https?:)?//[^\"]+", text) == []
+        files = re.findall(r"<(?:script|img|iframe)[^>]+src=\"([^\"]+)|<link[^>]+stylesheet[^>]+href=\"([^\"]+)", text)
+        parts = [page, *(page.parent / (script or style).partition("?")[0] for script, style in files)]
+        sizes = {part.name: len(zlib.compress(part.read_bytes())) for part in parts}  # a file: nothing is elsewhere
+        assert sum(sizes.values()) <= 100_000, (page, sizes)
+        assert "copy.js" in sizes
+
+
+def test_links_between_the_pages_lead_somewhere(build: tuple[subprocess.CompletedProcess[str], Path]) -> None:
+    texts = {page: page.read_text("utf-8") for page in build[1].rglob("*.html")}
+    for page, text in texts.items():
+        for target in re.findall(r"<a [^>]*href=\"([^\"]+)", text):
+            name, _, anchor = target.partition("#")
+            if not re.match(r"\w+:", target):
+                file = (page.parent / name).resolve() if name else page
+                assert file.exists(), (page, target)
+                assert not anchor or f'id="{anchor}"' in texts[file], (page, target)
 
 
 def test_make_builds_them_the_same_way() -> None:
