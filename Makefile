@@ -2,11 +2,11 @@
 # What each target does is in make.py, which also runs where there is no make.
 PYTHON ?= python3
 VENV ?= .venv
-# Which of the extras in pyproject.toml has the tools for pyfrc's tests.
+# Which dependency group of pyproject.toml has the tools for pyfrc's tests.
 DEV ?= dev
-RUN := @$(PYTHON) make.py --venv $(VENV) --extra $(DEV)
+RUN := @$(PYTHON) make.py --venv $(VENV) --group $(DEV)
 
-.PHONY: demo test test-2027 test-like-windows test-like-macos templates-2027 mutants check check-platforms check-page docs install clean
+.PHONY: demo test test-2027 test-like-windows test-like-macos templates-2027 mutants check check-platforms check-page docs dist install clean
 
 demo:  ## create a robot project in demo/, run its tests, deploy it to a virtual robot, change it, roll back
 	$(RUN) demo
@@ -38,6 +38,9 @@ check-platforms:  ## check the types as on Windows and on macOS
 docs:  ## build the documentation with the API reference in build/docs
 	$(RUN) docs
 
+dist:  ## build the wheel and the source distribution in build/dist, and check them; ARGS: the tag of a release
+	$(RUN) dist $(ARGS)
+
 install:  ## create the environment only
 	$(RUN) install
 
@@ -50,4 +53,4 @@ node_modules/.package-lock.json: package.json package-lock.json
 	touch $@
 
 clean:
-	rm -rf $(VENV) demo build/docs
+	rm -rf $(VENV) demo build

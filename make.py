@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import runpy
 import shlex
 import shutil
 import signal
@@ -34,18 +35,20 @@ class Environment:
         windows = sys.platform == "win32"
         return str(self.directory / ("Scripts" if windows else "bin") / (f"{name}.exe" if windows else name))
 
-    def install(self, extra: str) -> None:
+    def install(self, group: str) -> None:
         """Install pyfrc, unless that was done since pyproject.toml has changed; create the environment if necessary.
 
-        :param extra: the extra of pyproject.toml to install; empty for none
+        :param group: the dependency group of pyproject.toml to install; empty for none
         """
         self._create()
-        done = [self.directory / name for name in (["installed", f"installed-{extra}"] if extra else ["installed"])]
+        done = [self.directory / name for name in (["installed", f"installed-{group}"] if group else ["installed"])]
         if done[-1].exists() and done[-1].stat().st_mtime >= (ROOT / "pyproject.toml").stat().st_mtime:
             return
-        what = "pyfrc, WPILib and the tools for pyfrc's tests" if extra else "pyfrc and WPILib"
+        what = "pyfrc, WPILib and the tools for pyfrc's tests" if group else "pyfrc and WPILib"
         print(f"Installing {what} in {self.directory}, from the network: this may take a few minutes.", flush=True)
-        self.run("pip", "install", "--quiet", "--editable", f".[{extra}]" if extra else ".")
+        if group:  # older ones know no groups
+            self.run("pip", "install", "--quiet", "--upgrade", "pip>=25.1")
+        self.run("pip", "install", "--quiet", "--editable", ".", *(["--group", group] if group else []))
         for file in done:
             file.touch()
 
@@ -138,6 +141,16 @@ def docs(environment: Environment, arguments: Sequence[str]) -> None:
     environment.run("sphinx", "-q", "-E", "-W", "--keep-going", "docs", "build/docs")
 
 
+def dist(environment: Environment, arguments: Sequence[str]) -> None:
+    """Build the wheel and the source distribution in build/dist, and check them."""
+    version = runpy.run_path("pyfrc_core/_version.py")["__version__"]
+    if arguments and list(arguments) != [f"v{version}"]:
+        sys.exit(f"The tag is {' '.join(arguments)}, and the version in pyfrc_core/_version.py is {version}.")
+    shutil.rmtree("build/dist", ignore_errors=True)
+    environment.run("build", "--outdir", "build/dist")
+    environment.run("twine", "check", "--strict", *sorted(map(str, Path("build/dist").iterdir())))
+
+
 def templates_2027(environment: Environment, arguments: Sequence[str]) -> None:
     """Make templates/2027 from the templates of 2026 with pyfrc migrate."""
     run([environment.python, "tests/make_2027.py", *arguments])
@@ -163,6 +176,7 @@ TASKS: dict[str, Callable[[Environment, Sequence[str]], None]] = {
             check,
             check_platforms,
             docs,
+            dist,
             templates_2027,
             mutants,
             install,
@@ -172,7 +186,7 @@ TASKS: dict[str, Callable[[Environment, Sequence[str]], None]] = {
 
 
 #: Those that take arguments.
-WITH_OPTIONS = ("test", "test-like-windows", "test-like-macos", "templates-2027", "mutants")
+WITH_OPTIONS = ("dist", "test", "test-like-windows", "test-like-macos", "templates-2027", "mutants")
 
 
 def main(words: Sequence[str]) -> None:
@@ -182,20 +196,20 @@ def main(words: Sequence[str]) -> None:
         prog="make.py", description=f"tasks:\n{listed}", formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--venv", default=".venv", help="the directory of the environment (%(default)s)")
-    parser.add_argument("--extra", default="dev", help="the extra of pyproject.toml with the tools (%(default)s)")
+    parser.add_argument("--group", default="dev", help="the group of pyproject.toml with the tools (%(default)s)")
     parser.add_argument("task", choices=TASKS, metavar="TASK")
     parser.add_argument(
         "arguments",
         nargs=argparse.REMAINDER,
         metavar="...",
-        help="for the tests: options of pytest; for templates-2027: --patches; for mutants: --help",
+        help="for the tests: options of pytest; for dist: the tag; for templates-2027: --patches; for mutants: --help",
     )
     options = parser.parse_args(words)
     if options.arguments and options.task not in WITH_OPTIONS:
         parser.error(f"{options.task} takes no arguments")
     os.chdir(ROOT)
     environment = Environment(Path(options.venv))
-    environment.install("" if options.task == "demo" else options.extra)
+    environment.install("" if options.task == "demo" else options.group)
     TASKS[options.task](environment, options.arguments)
 
 

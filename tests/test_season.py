@@ -25,8 +25,9 @@ PYPROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_te
 
 def requirement(name: str) -> Requirement:
     """Return what pyproject.toml asks for."""
-    project = PYPROJECT["project"]
-    every = [*project["dependencies"], *(each for extra in project["optional-dependencies"].values() for each in extra)]
+    project, groups = PYPROJECT["project"], PYPROJECT["dependency-groups"]
+    more = [*project["optional-dependencies"].values(), *groups.values()]
+    every = [*project["dependencies"], *(each for extra in more for each in extra if isinstance(each, str))]
     return next(found for found in map(Requirement, every) if found.name == name)
 
 

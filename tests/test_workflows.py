@@ -71,7 +71,7 @@ def unknown_options(arguments: list[str], known: set[str]) -> set[str]:
 
 
 def test_there_are_workflows_for_the_tests_and_the_gate() -> None:
-    assert [workflow.name for workflow in WORKFLOWS] == ["gate.yml", "test.yml"]
+    assert [workflow.name for workflow in WORKFLOWS] == ["gate.yml", "publish.yml", "test.yml"]
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
