@@ -72,7 +72,7 @@ def command(
         click.secho(f"The trace differs from the recorded one, first at {where.now:.2f} s:", fg=color)
         click.echo(f"  {where.path} was {json.dumps(where.recorded)}, is {json.dumps(where.replayed)}")
     elif result.equal:
-        hint("The trace equals the recorded one.")
+        hint("The trace equals the recorded one. It has the values of hal_data, and not those of NetworkTables.")
     elif result.equal is not None:
         click.echo("The trace differs from the recorded one.")
     # A difference may come from devices that do not repeat: then it is no failure of this robot program.

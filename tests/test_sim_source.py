@@ -13,13 +13,13 @@ from sim_robots import PATIENCE
 from web_pages import served_source
 
 from pyfrc_core.project import Project
-from pyfrc_core.sim.engine.changes import Change, ReportSignal, RunBegan
+from pyfrc_core.sim.engine.changes import Change, ChangeCursor, ChangeFeed, ReportSignal, RunBegan
 from pyfrc_core.sim.engine.field import field_of
 from pyfrc_core.sim.engine.output_log import OutputCursor, OutputLog
 from pyfrc_core.sim.engine.past_run import Happened, PastRun
 from pyfrc_core.sim.engine.scene import Scene
 from pyfrc_core.sim.engine.snapshot import Snapshot, Status
-from pyfrc_core.sim.engine.source import Abilities, ChangeFeed, FedReader, Source
+from pyfrc_core.sim.engine.source import Abilities, Source
 from pyfrc_core.sim.engine.value_history import ValueHistory
 from pyfrc_core.sim.ui.web import page_client
 
@@ -47,10 +47,10 @@ class Elsewhere:
     def output_cursor(self) -> OutputCursor:
         return self.output.cursor()
 
-    def change_cursor(self) -> FedReader:
+    def change_cursor(self) -> ChangeCursor:
         return self.hal.cursor()
 
-    def network_cursor(self) -> FedReader:
+    def network_cursor(self) -> ChangeCursor:
         return self.network.cursor()
 
     def attach(self) -> Elsewhere:

@@ -71,8 +71,8 @@ class FakeRobot:
         times = dict.fromkeys(
             ("reached", "average", "packet_seconds", "worst_packet_seconds", "worst_loop_seconds", "distance"), 0.0
         )
-        nothing["base"], nothing["lines"] = dict(self.inputs), ()
-        nothing["network_base"], nothing["network_lines"] = {}, ()
+        nothing["base"], nothing["changes"] = dict(self.inputs), ()
+        nothing["network_base"], nothing["network_changes"] = {}, ()
         self.outbox.append(
             Update(
                 time_us=self.now_us, mode="disabled", station=StationState(), time_state=self.time,

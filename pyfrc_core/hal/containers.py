@@ -305,6 +305,14 @@ class ValueList(LiveList):
             raise self._wrong(index)
         return index + length if index < 0 else index
 
+    def check(self, index: Any, value: object) -> tuple[int, Any]:
+        """Return the position and the value of a write, without writing.
+
+        :raises PyfrcError: when the list has no such entry, or it cannot have this value
+        """
+        position = self._position(index)
+        return position, self._kind.check(value, join(self._path, position))
+
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
             return self._load()[index]
@@ -314,8 +322,7 @@ class ValueList(LiveList):
         if isinstance(index, slice):
             self._set_slice(index, value)
             return
-        position = self._position(index)
-        self._put(position, self._kind.check(value, join(self._path, position)))
+        self._put(*self.check(index, value))
         if self._changed is not None:
             self._changed()
 

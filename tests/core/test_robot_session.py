@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -114,7 +113,7 @@ def test_a_session_begins_with_all_values_and_ends_when_it_is_left(play: Play) -
     seen = play(job=PAUSED)
     ready, update = seen.sent
     assert isinstance(ready, Ready)
-    assert (update.time_us, update.mode, update.carried_out, update.lines, update.steps) == (0, "disabled", 0, (), ())
+    assert (update.time_us, update.mode, update.carried_out, update.changes, update.steps) == (0, "disabled", 0, (), ())
     assert update.base["pwm[7].value"] == 0
     assert seen.waits == []
 
@@ -136,8 +135,8 @@ def test_steps_are_packets_and_what_the_robot_does_in_them_is_a_line(play: Play)
         (20_000, 1),
         (80_000, 2),
     ]
-    lines = [json.loads(line) for each in seen.updates for line in each.lines]
-    assert [(each["t"], each["set"]["pwm[7].value"]) for each in lines] == [
+    found = [change for each in seen.updates for change in each.changes]
+    assert [(each.time, each.values["pwm[7].value"]) for each in found] == [
         (0.02, 0.0),
         (0.04, pytest.approx(0.25, abs=0.01)),
         (0.08, 0.5),
@@ -213,8 +212,8 @@ def test_a_replay_is_reported_only_where_code_has_changed(play: Play, world: Wor
     play(periodic=periodic, job={**PAUSED, "script": inputs, "forward_to_us": 100_000, "reports_replay": True})
     reports = [each for each in world.sent if isinstance(each, Replayed)]
     assert [each.time_us for each in reports] == [40_000, 80_000]
-    lines = [json.loads(line) for each in reports for line in each.lines]
-    values = [(each["t"], each["set"].get("pwm[7].value"), each["set"].get("fpga_button")) for each in lines]
+    found = [change for each in reports for change in each.changes]
+    values = [(each.time, each.values.get("pwm[7].value"), each.values.get("fpga_button")) for each in found]
     assert values == [(0.0, 0.0, False), (0.02, 0.5, None), (0.04, None, True)]
     assert (world.last.time_us, world.last.mode) == (100_000, "teleop")
     assert world.last.base is not None

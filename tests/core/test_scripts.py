@@ -73,6 +73,9 @@ def test_a_script_is_read_as_it_was_written(tmp_path: Path) -> None:
         (['{"format": "pyfrc-input 1", "end": 1, "story": [1]}'], 'a.jsonl:1: "story" must be a list of texts'),
         ([json.dumps(HEADER), "[]"], "a.jsonl:2: each line must be a JSON object"),
         ([json.dumps(HEADER), "{"], "a.jsonl:2: not valid JSON"),
+        ([json.dumps(HEADER), "[" * 100_000], "a.jsonl:2: not an input script"),
+        ([json.dumps(HEADER), '{"t": 1' + "0" * 10_000 + "}"], "a.jsonl:2: not an input script"),
+        ([json.dumps(HEADER), '{"t": 1.5, "set": {}}'], "a.jsonl:2: 1.5 s is after the end of the script, at 1 s"),
         ([json.dumps(HEADER), '{"t": 1, "set": {"a": NaN}}'], "a.jsonl:2: NaN is no number that can be written"),
         ([json.dumps(HEADER), '{"t": "1"}'], 'a.jsonl:2: "t" must be a time in seconds, not "1"'),
         ([json.dumps(HEADER), '{"t": 1}'], 'a.jsonl:2: "set" is missing: an object of what is written'),
@@ -212,6 +215,17 @@ def test_a_script_that_does_not_fit_the_robot_names_its_line(run: RobotRun) -> N
     with pytest.raises(ScriptError) as caught:
         Player(parse({"t": 0, "set": {"nothing": 1}}), run)
     assert str(caught.value).startswith("a.jsonl:2: there is no key 'nothing'")
+    for wrong, message in (
+        ({"dio[": True}, "cannot read"),
+        ({"dio[4].valu": True}, r"there is no key 'valu' in dio\[4\]"),
+        ({"dio[44].value": True}, ""),
+        ({"dio[4].value": "up"}, r"dio\[4\]\.value: "),
+        ({"mode": "teleoperated"}, "there is no mode 'teleoperated'"),
+        ({"joysticks[0].axes[1]": 2}, r"joysticks\[0\]\.axes\[1\]: "),
+        ({"nt:/wrong": 1.5, "nt:string:/wrong": "text"}, "/wrong is double, and cannot be 'text'"),
+    ):
+        with pytest.raises(ScriptError, match=rf"^a\.jsonl:2: {message}"):
+            Player(parse({"t": 0, "set": wrong}), run).start()
     player = Player(parse({"t": 0.05, "set": {"dio[17].value": False}}), run)
     with pytest.raises(ScriptError, match=r"^a\.jsonl:2: this robot has no dio\[17\]"):
         player.play()

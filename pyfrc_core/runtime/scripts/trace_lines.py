@@ -1,4 +1,4 @@
-"""The lines of a trace: JSON, one line for each packet that changed something.
+"""What changed in one packet, and its line in a trace, which is JSON.
 
 pydantic_core writes them, since a trace has hundreds of megabytes an hour. It writes the shortest digits of a number,
 as `json` does, though not always in the same form: 0.00001 is 1e-05 with `json`.
@@ -8,13 +8,38 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 #: The key of a line's values that do not repeat.
 UNREPEATABLE = "unrepeatable"
 
-#: What a line has before its time.
-_TIME = '{"t":'
+
+@dataclass(frozen=True)
+class Change:
+    """What changed in one packet.
+
+    :param time: robot time, in seconds
+    :param values: the new values by their paths, as in `Snapshot.values`
+    :param gone: the paths that no longer exist
+    :param unrepeatable: the paths of those values that do not repeat exactly in another run
+    """
+
+    time: float
+    values: Mapping[str, Any]
+    gone: tuple[str, ...] = ()
+    unrepeatable: frozenset[str] = frozenset()
+
+
+def lines_of(change: Change) -> tuple[str, str]:
+    """Return what the hash of a trace covers of a change, empty for values that do not repeat; and its whole line."""
+    if not change.unrepeatable:
+        line = trace_line(change.time, change.values, change.gone)
+        return line, line
+    marked = {path: value for path, value in change.values.items() if path in change.unrepeatable}
+    others = {path: value for path, value in change.values.items() if path not in marked}
+    line = trace_line(change.time, others, change.gone)
+    return line if others or change.gone else "", with_unrepeatable(line, marked)
 
 
 def trace_line(now: float, changed: Mapping[str, object], gone: Collection[str] = ()) -> str:
@@ -33,19 +58,6 @@ def trace_line(now: float, changed: Mapping[str, object], gone: Collection[str] 
 def with_unrepeatable(line: str, marked: Mapping[str, object]) -> str:
     """Return a line with values that do not repeat, by path."""
     return f'{line[:-1]},"{UNREPEATABLE}":{_to_json(marked)}}}'
-
-
-def line_time(line: str) -> float:
-    """Return the time of a line, which is its first item, without reading the values after it."""
-    return float(line[len(_TIME) : line.index(",")])
-
-
-def hashed_part(line: str) -> str:
-    """Return what the hash covers of a line; empty if the line has only values that do not repeat."""
-    if f'"{UNREPEATABLE}"' not in line:
-        return line
-    change = repeatable_part(json.loads(line))
-    return "" if change is None else trace_line(change["t"], change["set"], change.get("gone", ()))
 
 
 def repeatable_part(change: dict[str, object]) -> dict[str, Any] | None:

@@ -1,25 +1,16 @@
-"""Every change of `hal_data` and of NetworkTables in a session, at each reader's own pace.
-
-The changes themselves are the lines of the recording's trace. A session has one run after the other:
-going back in time and new code each begin another. Each run knows the next one, and a reader the run that it is at: so
-runs are kept as long as a reader has not finished them, and no longer.
-"""
+"""Every change of `hal_data` and of NetworkTables in a session, at each reader's own pace."""
 
 from __future__ import annotations
 
-import json
 import threading
-from collections.abc import Iterator, Mapping
+from collections import deque
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from itertools import islice
-from types import MappingProxyType
 from typing import Any
+from weakref import WeakSet
 
-from ...errors import UsageError
-from ...runtime.scripts.trace_lines import UNREPEATABLE
+from ...runtime.scripts.trace_lines import Change as Change
 from .history import History
-from .messages import Update
-from .recording import Recording
 
 
 class ReportSignal(threading.Condition):
@@ -60,150 +51,92 @@ class RunBegan:
     new_code: bool = False
 
 
-@dataclass(frozen=True)
-class Change:
-    """What changed in one packet.
-
-    :param time: robot time, in seconds
-    :param values: the new values by their paths, as in `Snapshot.values`
-    :param gone: the paths that no longer exist
-    """
-
-    time: float
-    values: Mapping[str, Any]
-    gone: tuple[str, ...] = ()
-
-
-def change_of(line: str) -> Change:
-    """Return the change that a line of a trace describes."""
-    change = json.loads(line)
-    found = change["set"] | change.get(UNREPEATABLE, {})
-    return Change(change["t"], frozen(found), tuple(change.get("gone", ())))
-
-
 def frozen(value: object) -> Any:
-    """Return the same value, unchangeable."""
+    """Return the same value, with tuples in place of lists."""
     if isinstance(value, (list, tuple)):
-        return tuple(frozen(each) for each in value)
+        return tuple(map(frozen, value))
     if isinstance(value, dict):
-        return MappingProxyType({key: frozen(each) for key, each in value.items()})
+        return {key: frozen(each) for key, each in value.items()}
     return value
 
 
-class RunChanges:
-    """One run's place in the session.
-
-    :param lines: the trace until now, which grows; the first lines may be those of the run before
-    """
-
-    def __init__(self, number: int, lines: History[str]) -> None:
-        self.number, self.lines = number, lines
-        #: The number of lines from the run before.
-        self.first = len(lines)
-        #: None as long as the robot has not come up.
-        self.began: RunBegan | None = None
-        self.next: RunChanges | None = None
-
-    def begin(self, time: float, values: Mapping[str, object], new_code: bool = False) -> None:
-        """Note what the run begins with; only the first call counts."""
-        if self.began is None:
-            self.began = RunBegan(self.number, time, frozen(values), new_code)
-
-
 class ChangeCursor:
-    """One reader's place among the changes. Use it from one thread at a time.
+    """One reader's place among the changes. Use it from one thread at a time."""
 
-    :param run: the run to begin with, from the start of its lines
-    :param lock: held while lines or runs are added
-    """
-
-    def __init__(self, run: RunChanges, lock: threading.Condition) -> None:
-        self._run, self._lock = run, lock
-        self._line = 0
-        self._has_begun = False
+    def __init__(self) -> None:
+        #: What it has not read yet.
+        self.entries: deque[RunBegan | Change] = deque()
 
     def read(self, most: int | None = None) -> list[RunBegan | Change]:
         """Return what has happened since the last call, in order; empty when there is nothing new.
 
         :param most: return at most this many entries, and the rest with the next calls
         """
-        found: list[RunBegan | Change] = []
-        with self._lock:
-            for entry in self._entries():
-                found.append(entry)
-                if len(found) == most:
-                    break
-        return found
-
-    def _entries(self) -> Iterator[RunBegan | Change]:
-        """Yield what comes next; each entry counts as read when it is yielded."""
-        while True:
-            run = self._run
-            yield from self._lines_until(run.first)
-            if run.began is not None:
-                if not self._has_begun:
-                    self._has_begun = True
-                    yield run.began
-                yield from self._lines_until(len(run.lines))
-            if run.next is None:
-                return
-            self._run, self._line, self._has_begun = run.next, run.next.first, False
-
-    def _lines_until(self, end: int) -> Iterator[Change]:
-        if self._line < end:
-            for _, line in islice(self._run.lines.since(self._line), end - self._line):
-                self._line += 1
-                yield change_of(line)
+        count = len(self.entries) if most is None else min(most, len(self.entries))
+        return [self.entries.popleft() for _ in range(count)]
 
 
-class ChangeStreams:
-    """Both streams of changes, which begin their runs together.
+class ChangeFeed:
+    """Passes changes on to readers, each at its own pace. May be used from any thread.
 
-    :param recording: the recording of the first run
-    :param lock: held while anything is added
-    :param network: whether changes of NetworkTables are reported
+    A reader gets what is added after it was made, for as long as its owner keeps it.
     """
 
-    def __init__(self, recording: Recording, lock: threading.Condition, network: bool) -> None:
-        self._lock = lock
-        self._hal = RunChanges(0, recording.lines)
-        self._network = RunChanges(0, recording.network_lines) if network else None
+    def __init__(self) -> None:
+        self._readers: WeakSet[ChangeCursor] = WeakSet()
 
-    def begin_run(self, number: int, recording: Recording) -> None:
-        """Note that another process of the robot was launched."""
-        hal = RunChanges(number, recording.lines)
-        self._hal.next = hal
-        self._hal = hal
-        if self._network is not None:
-            network = RunChanges(number, recording.network_lines)
-            self._network.next = network
-            self._network = network
-
-    def begin_anew(self) -> None:
-        """Note that the run begins at its start, with other code: its changes have everything."""
-        self._hal.begin(0.0, {}, new_code=True)
-        if self._network is not None:
-            self._network.begin(0.0, {}, new_code=True)
-
-    def begin(self, update: Update) -> None:
-        """Note what the run begins with, if this update is its first."""
-        if update.base is None:
-            return
-        now = update.time_us / 1_000_000
-        # Where changes came before the base, they begin with a change that holds all values.
-        self._hal.begin(*((0.0, {}) if update.lines else (now, update.base)))
-        if self._network is not None:
-            self._network.begin(*((0.0, {}) if update.network_lines else (now, update.network_base)))
+    def add(self, entry: RunBegan | Change) -> None:
+        """Add what has happened."""
+        for reader in tuple(self._readers):
+            reader.entries.append(entry)
 
     def cursor(self) -> ChangeCursor:
-        """Return a reader of the changes of `hal_data`."""
-        return ChangeCursor(self._hal, self._lock)
+        """Return a reader of its own."""
+        reader = ChangeCursor()
+        self._readers.add(reader)
+        return reader
 
-    def network_cursor(self) -> ChangeCursor:
-        """Return a reader of the changes of NetworkTables.
 
-        :raises UsageError: when they are not reported
+class RecordedFeed(ChangeFeed):
+    """The changes of one run after the other, which are recorded: a reader gets those of the present run, too.
+
+    :param changes: what the first run has done
+    """
+
+    def __init__(self, changes: History[Change]) -> None:
+        super().__init__()
+        self.launch(changes)
+
+    def launch(self, changes: History[Change]) -> None:
+        """Note that another process of the robot was launched, which may never come up.
+
+        :param changes: what it has done, from its start; the first ones may be known from the run before
         """
-        if self._network is None:
-            raise UsageError("this simulation does not report NetworkTables", remedy="Set SimOptions.network_values.")
-        return ChangeCursor(self._network, self._lock)
+        self._changes, self._kept = changes, len(changes)
+        self._began: RunBegan | None = None
+
+    def report(
+        self, number: int, time_us: int, base: Mapping[str, Any] | None, changes: Collection[Change], is_new_code: bool
+    ) -> None:
+        """Pass on what the robot's process has reported.
+
+        :param number: that of the run
+        :param base: all values, where `changes` do not continue those before
+        :param is_new_code: whether it replays its inputs from the start with changed code
+        """
+        if self._began is None and (base is not None or (is_new_code and changes)):
+            # Where changes came before the base, they begin with a change that holds all values.
+            at, values = (0.0, {}) if changes else (time_us / 1_000_000, frozen(base))
+            self._began = RunBegan(number, at, values, is_new_code)
+            self.add(self._began)
+        for change in changes:
+            self.add(change)
+
+    def cursor(self) -> ChangeCursor:
+        """Return a reader of its own."""
+        reader = super().cursor()
+        past: list[RunBegan | Change] = [change for _, change in self._changes]
+        if self._began is not None:
+            past.insert(self._kept, self._began)
+        reader.entries.extend(past)
+        return reader

@@ -77,7 +77,7 @@ def choices_of(
     by_itself = _values_after(first.steps)
     chosen = {
         target: value
-        for target, value in _values_after([*recording.script().steps, *writes]).items()
+        for target, value in _values_after([*recording.inputs().steps, *writes]).items()
         if _is_choice(target) and not (target in by_itself and by_itself[target] == value)
     }
     commands: list[Command] = [Write(chosen)] if chosen else []

@@ -11,6 +11,7 @@ from typing import Any
 
 from ...project import Project
 from ...runtime.scripts.script import InputScript, Step
+from ...runtime.scripts.trace_lines import Change
 from .commands import ChosenMode, Command, TimeState
 from .options import SimOptions
 from .scene import Line, Point, Pose, Tag, Target, Text
@@ -65,17 +66,27 @@ class Job:
     reports_replay: bool = False
 
 
-@dataclass(frozen=True)
-class Replayed:
-    """How far the robot has come on its way to the moment that it goes on from.
+@dataclass(frozen=True, kw_only=True)
+class Report:
+    """What the robot did since the last report.
 
     :param time_us: robot time
-    :param lines: what it did since the last report, if that is not known: new lines of the trace, as in `Update`
+    :param base: all values of `hal_data`, where `changes` do not continue those sent before
+    :param changes: the new changes of `hal_data`
+    :param network_base: all values of NetworkTables, together with `base`; see `robot_side.traces`
+    :param network_changes: the new changes of NetworkTables
     """
 
     time_us: int
-    lines: tuple[str, ...] = ()
-    network_lines: tuple[str, ...] = ()
+    base: Mapping[str, Any] | None = None
+    changes: tuple[Change, ...] = ()
+    network_base: Mapping[str, Any] | None = None
+    network_changes: tuple[Change, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Replayed(Report):
+    """How far the robot has come on its way to the moment that it goes on from. Known changes are left out."""
 
 
 @dataclass(frozen=True)
@@ -93,18 +104,13 @@ class Ready:
     notes: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class Update:
+@dataclass(frozen=True, kw_only=True)
+class Update(Report):
     """What has changed since the last one.
 
-    :param time_us: robot time
     :param time_state: the state of time
     :param carried_out: the number of commands that were carried out, including those of the `Job`
     :param recorded: how many of them are in the recorded steps; a command in a pause is recorded when time goes on
-    :param base: all values of `hal_data`, where `lines` do not continue those sent before
-    :param lines: the new lines of the trace (see `pyfrc_core.runtime.scripts.trace`)
-    :param network_base: all values of NetworkTables, together with `base`; see `robot_side.traces`
-    :param network_lines: the new changes of NetworkTables, in the form of `lines`
     :param trail: the robot's places since the last update
     :param distance: the whole distance that it has driven, in feet
     :param mode_seconds: the time that it has been in each mode
@@ -112,7 +118,6 @@ class Update:
     :param drawings: the user's drawings, if they have changed; `targets`, `choosers` and `opmodes` likewise
     """
 
-    time_us: int
     mode: str
     station: StationState
     time_state: TimeState
@@ -126,10 +131,6 @@ class Update:
     overruns: int
     worst_loop_seconds: float
     robot: Pose | None
-    base: Mapping[str, Any] | None
-    lines: tuple[str, ...]
-    network_base: Mapping[str, Any]
-    network_lines: tuple[str, ...]
     trail: tuple[Point, ...]
     distance: float
     mode_seconds: Mapping[str, float]

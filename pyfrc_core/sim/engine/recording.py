@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from heapq import merge
 from importlib.metadata import version
@@ -16,10 +16,10 @@ from ...runtime.robot_time import to_us
 from ...runtime.scripts.script import InputScript, Step, trace_beside
 from ...runtime.scripts.sensors import released
 from ...runtime.scripts.trace import FORMAT
-from ...runtime.scripts.trace_lines import hashed_part, line_time
+from ...runtime.scripts.trace_lines import Change, lines_of
 from ...text_files import write_whole
 from .history import History, entries
-from .messages import StationState, Update
+from .messages import Report, StationState, Update
 
 _AT = attrgetter("at_us")
 
@@ -37,18 +37,25 @@ class Recording:
         #: The last steps, from the one with the number `_changing_from`, which may still change.
         self._changing: tuple[Step, ...] = ()
         self._changing_from = 0
-        #: The trace until now: one line for each packet that changed something.
-        self.lines: History[str] = History()
-        #: The changes of NetworkTables until now, if they are reported.
-        self.network_lines: History[str] = History()
+        #: What the robot did until now: the changes of each packet, and those of NetworkTables, if they are reported.
+        self.changes: History[Change] = History()
+        self.network_changes: History[Change] = History()
         self._stations: History[StationState] = History()
         #: The end of the recording, in microseconds of robot time.
         self.length_us = 0
         #: Whether another program has yet to replay the inputs, so that what it does there is not known.
         self.is_open = False
 
-    def add(self, update: Update) -> None:
-        """Add what has happened since the last update."""
+    def add(self, report: Report) -> None:
+        """Add what has happened since the last report."""
+        for change in report.changes:
+            self.changes.append(to_us(change.time), change)
+        for change in report.network_changes:
+            self.network_changes.append(to_us(change.time), change)
+        if isinstance(report, Update):
+            self._add_inputs(report)
+
+    def _add_inputs(self, update: Update) -> None:
         self.is_open = False
         # What was chosen while time stood comes after that moment, as in the script.
         chosen_us = update.time_us + (update.time_us == self.length_us and self._stations.last is not None)
@@ -56,24 +63,19 @@ class Recording:
         for step in self._changing[: update.steps_from - self._changing_from]:
             self._steps.append(step.at_us, step)
         self._changing, self._changing_from = update.steps, update.steps_from
-        self.add_lines(update.lines, update.network_lines)
         if self._stations.last != update.station:
             self._stations.append(chosen_us, update.station)
 
-    def add_lines(self, lines: Iterable[str], network_lines: Iterable[str]) -> None:
-        """Add what the robot did, as in `Update`."""
-        for line in lines:
-            self.lines.append(to_us(line_time(line)), line)
-        for line in network_lines:
-            self.network_lines.append(to_us(line_time(line)), line)
-
     def script(self) -> InputScript:
         """Return the robot's inputs, with the hash of what it did, if that is known."""
-        return replace(self._script_until(self.length_us + 1), trace=self.digest())
+        return replace(self.inputs(), trace=self.digest())
 
-    def _script_until(self, time_us: int) -> InputScript:
-        """Return the inputs until a moment, at most until one microsecond after the recording's end."""
-        time_us = min(time_us, self.length_us + 1)
+    def inputs(self, until_us: int | None = None) -> InputScript:
+        """Return the robot's inputs, without a hash.
+
+        :param until_us: an earlier end, in microseconds of robot time
+        """
+        time_us = self.length_us + 1 if until_us is None else min(until_us, self.length_us + 1)
         earlier = [step for step in self.past.steps if step.at_us <= time_us]
         steps = takewhile(lambda step: step.at_us <= time_us, chain(entries(self._steps), self._changing))
         return replace(
@@ -90,13 +92,13 @@ class Recording:
         if not self._known:
             return None
         digest = hashlib.sha256()
-        for line in entries(self.lines):
-            digest.update(hashed_part(line.rstrip("\n")).encode())
+        for change in entries(self.changes):
+            digest.update(lines_of(change)[0].encode())
         return digest.hexdigest()
 
     def until(self, time_us: int) -> Recording:
         """Return a recording of the part until a moment, which can grow from there."""
-        past = self._script_until(time_us)
+        past = self.inputs(time_us)
         values = {target: value for step in past.steps for target, value in step.writes.items()}
         if free := released(values):  # the run that goes on from there has no log
             past = replace(past, steps=(*past.steps, Step(min(time_us + 1, past.end_us), free)))
@@ -104,14 +106,14 @@ class Recording:
         part.length_us = time_us
         part.is_open = self.is_open
         if not self.is_open:
-            part.lines = self.lines.until(time_us)
-            part.network_lines = self.network_lines.until(time_us)
+            part.changes = self.changes.until(time_us)
+            part.network_changes = self.network_changes.until(time_us)
         part._stations = self._stations.until(time_us)
         return part
 
     def again(self) -> Recording:
         """Return a recording of the same inputs for a changed robot program, which may do something else."""
-        again = Recording(self.script(), known=False)
+        again = Recording(self.inputs(), known=False)
         again.length_us = self.length_us
         again.is_open = True
         again._stations = self._stations.until(self.length_us + 1)
@@ -124,11 +126,13 @@ class Recording:
 
     def save(self, file: Path) -> None:
         """Write the input script, and beside it the trace, where it is known."""
-        self.script().save(file)
-        if self._known:
-            write_whole(trace_beside(file), self._trace())
+        script = self.script()
+        script.save(file)
+        if script.trace is not None:
+            write_whole(trace_beside(file), self._trace(script.trace))
 
-    def _trace(self) -> Iterator[str]:
+    def _trace(self, digest: str) -> Iterator[str]:
         yield json.dumps({"format": FORMAT}) + "\n"
-        yield from entries(self.lines)
-        yield json.dumps({"sha256": self.digest()}) + "\n"
+        for change in entries(self.changes):
+            yield lines_of(change)[1] + "\n"
+        yield json.dumps({"sha256": digest}) + "\n"

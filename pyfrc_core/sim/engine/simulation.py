@@ -17,12 +17,12 @@ from ...processes.output_pipe import Stamps
 from ...project import Project
 from ...runtime.robot_time import PACKET_US, to_us
 from ...runtime.scripts.script import InputScript
-from .changes import ChangeCursor, ChangeStreams, ReportSignal
+from .changes import ChangeCursor, RecordedFeed, ReportSignal
 from .commands import Command, PendingCommands, TimeState
 from .controls import Controls, Driver
 from .field import field_of, robot_at, start_named
 from .first_script import choices_of, first_recording, releases_after
-from .messages import Failed, Job, Message, Ready, Replayed, Update
+from .messages import Failed, Job, Message, Ready, Replayed, Report, Update
 from .options import SimOptions
 from .output_log import OutputCursor, OutputLog
 from .past_run import PastRun
@@ -75,7 +75,9 @@ class Simulation(Controls, SimulationSource):
         self._sending = threading.RLock()
         #: The moment that the robot's process replays to before it goes on.
         self._forward_us = 0
-        self._streams = ChangeStreams(self._recording, self.reports, self.options.network_values)
+        self._hal, self._network = (
+            RecordedFeed(changes) for changes in (self._recording.changes, self._recording.network_changes)
+        )
         self._output = OutputLog()
         #: Called with all that robots print, and with their tracebacks, from this object's threads.
         self.echo: Callable[[str], object] = lambda text: None
@@ -125,12 +127,16 @@ class Simulation(Controls, SimulationSource):
         :raises UsageError: when this simulation is not recorded
         """
         self._check_recorded()
-        return self._streams.cursor()
+        with self.reports:
+            return self._hal.cursor()
 
     def network_cursor(self) -> ChangeCursor:
         """Return a reader of all changes of NetworkTables, as `change_cursor` does of `hal_data`."""
         self._check_recorded()
-        return self._streams.network_cursor()
+        if not self.options.network_values:
+            raise UsageError("this simulation does not report NetworkTables", remedy="Set SimOptions.network_values.")
+        with self.reports:
+            return self._network.cursor()
 
     def wait_for(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
         """Wait until a condition is true, and return whether it is.
@@ -294,8 +300,8 @@ class Simulation(Controls, SimulationSource):
             self._builder = SnapshotBuilder()
             self._reported_at = monotonic()
             self._status = status_at_start(self._status, forward_to_us)
-            if options.recording:
-                self._streams.begin_run(self._status.starts, recording)
+            self._hal.launch(recording.changes)
+            self._network.launch(recording.network_changes)
             self._launch = self._processes.launch(job)
             self.reports.notify_all()
 
@@ -326,7 +332,8 @@ class Simulation(Controls, SimulationSource):
             if isinstance(message, Update):
                 self._take_in(message)
             elif isinstance(message, Replayed):
-                self._follow_replay(message)
+                self._record(message)
+                self._status = replace(self._status, replayed=message.time_us / 1_000_000)
             elif isinstance(message, Ready):
                 self._tags = message.tags
                 self.field = replace(self.field, tags=message.tags)
@@ -373,24 +380,22 @@ class Simulation(Controls, SimulationSource):
             self._status = replace(self._status, note=note)
             self.reports.notify_all()
 
-    def _follow_replay(self, replayed: Replayed) -> None:
-        self._recording.add_lines(replayed.lines, replayed.network_lines)
-        if replayed.lines:
-            self._streams.begin_anew()
-        self._status = replace(self._status, replayed=replayed.time_us / 1_000_000)
-
     def _take_in(self, update: Update) -> None:
         if self.options.recording:
-            if self._recording.is_open and update.lines:
-                self._streams.begin_anew()
-            self._recording.add(update)
-            self._streams.begin(update)
+            self._record(update)
         else:
             self._recording.length_us = update.time_us
         self._time = update.time_state
         self._pending.settle(update.carried_out, update.recorded)
         self._snapshot = self._builder.snapshot_after(update, self.field)
         self._status = status_after(self._status, update, self._recording.length_us)
+
+    def _record(self, report: Report) -> None:
+        """Add what the robot did to the recording, and pass it on to readers."""
+        number, is_new_code = self._status.starts, self._recording.is_open
+        self._recording.add(report)
+        self._hal.report(number, report.time_us, report.base, report.changes, is_new_code)
+        self._network.report(number, report.time_us, report.network_base, report.network_changes, is_new_code)
 
     def _check_recorded(self) -> None:
         if not self.options.recording:

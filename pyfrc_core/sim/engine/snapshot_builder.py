@@ -7,7 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from .changes import change_of, frozen
+from .changes import frozen
 from .messages import Update
 from .scene import Field, Point, Scene
 from .snapshot import Snapshot, Status
@@ -87,7 +87,7 @@ def _values(before: Snapshot, update: Update) -> dict[str, Any]:
     if update.base is not None:
         return dict(frozen(update.base))
     values = before.values.copy()
-    for change in map(change_of, update.lines):
+    for change in update.changes:
         values.update(change.values)
         for path in change.gone:
             values.pop(path, None)

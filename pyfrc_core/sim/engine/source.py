@@ -4,7 +4,7 @@
 
 - `abilities` says what can be done to it. The page hides the driver station, the joysticks and going back where there
   is nothing to drive, and plays what is over.
-- What changes goes through two `ChangeFeed`s, one for `hal_data` and one for NetworkTables:
+- What changes goes through two `changes.ChangeFeed`s, one for `hal_data` and one for NetworkTables:
   ``feed.add(RunBegan(1, 0.0, {}))``, then ``feed.add(Change(time, {path: value}, gone))`` in the order of time. Paths
   are as in `Snapshot.values`; those of NetworkTables begin with `messages.VALUE`, ``nt:/SmartDashboard/kP``, and
   `messages.TYPE` with the same name is the topic's type. Structs come as their parts (`structs.Structs`).
@@ -19,14 +19,13 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Literal, Protocol
 
 from ...project import Project
-from .changes import Change, ReportSignal, RunBegan
+from .changes import ChangeCursor, ReportSignal
 from .output_log import OutputCursor
 from .past_run import PastRun
 from .scene import Field
@@ -51,13 +50,6 @@ class Abilities:
     writes: bool = False
     over: bool = False
     replays: bool = False
-
-
-class ChangeReader(Protocol):
-    """One reader's place among the changes."""
-
-    def read(self, most: int | None = None) -> list[RunBegan | Change]:
-        """Return what has happened since the last call, in order, at most this many entries."""
 
 
 class Writer(Protocol):
@@ -117,10 +109,10 @@ class Source(Protocol):
     def output_cursor(self) -> OutputCursor:
         """Return a reader of what the robot prints."""
 
-    def change_cursor(self) -> ChangeReader:
+    def change_cursor(self) -> ChangeCursor:
         """Return a reader of all changes of `hal_data`."""
 
-    def network_cursor(self) -> ChangeReader:
+    def network_cursor(self) -> ChangeCursor:
         """Return a reader of all changes of NetworkTables, of the mode and of the robot's place."""
 
     def attach(self) -> Writer | None:
@@ -141,37 +133,3 @@ class SimulationSource:
     when: datetime | None = None
     recorded: PastRun | None = None
     branches: tuple[PastRun, ...] = ()
-
-
-class ChangeFeed:
-    """Passes changes on to readers, each at its own pace. May be used from any thread.
-
-    A reader gets what is added after it was made.
-    """
-
-    def __init__(self) -> None:
-        self._readers: tuple[FedReader, ...] = ()
-
-    def add(self, entry: RunBegan | Change) -> None:
-        """Add what has happened."""
-        for reader in self._readers:
-            reader.entries.append(entry)
-
-    def cursor(self) -> FedReader:
-        """Return a reader of its own."""
-        reader = FedReader()
-        self._readers = (*self._readers, reader)
-        return reader
-
-
-class FedReader:
-    """A `ChangeReader`. Use it from one thread at a time."""
-
-    def __init__(self) -> None:
-        #: What it has not read yet.
-        self.entries: deque[RunBegan | Change] = deque()
-
-    def read(self, most: int | None = None) -> list[RunBegan | Change]:
-        """Return what has happened since the last call, in order, at most this many entries."""
-        count = len(self.entries) if most is None else min(most, len(self.entries))
-        return [self.entries.popleft() for _ in range(count)]

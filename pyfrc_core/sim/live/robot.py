@@ -17,7 +17,7 @@ from ...project import Project
 from ...season import CURRENT
 from ...wpi import network_client
 from ...wpi.network_news import Connected, Gone, Lost, Received
-from ..engine.changes import ReportSignal
+from ..engine.changes import ChangeCursor, ChangeFeed, ReportSignal
 from ..engine.choosers import choosers_in
 from ..engine.field import field_of
 from ..engine.messages import NO_CONNECTION
@@ -25,7 +25,7 @@ from ..engine.output_log import OWN, OutputCursor, OutputLog
 from ..engine.past_run import PastRun
 from ..engine.scene import Scene
 from ..engine.snapshot import Snapshot, Status
-from ..engine.source import Abilities, ChangeFeed, FedReader
+from ..engine.source import Abilities
 from .addresses import RobotAddresses
 from .runs import RobotRuns
 from .search import reasons
@@ -136,11 +136,11 @@ class LiveRobot:
         """Return a reader of what the robot prints."""
         return self._output.cursor()
 
-    def change_cursor(self) -> FedReader:
+    def change_cursor(self) -> ChangeCursor:
         """Return a reader of the runs; a robot does not say more of `hal_data`."""
         return self._hal.cursor()
 
-    def network_cursor(self) -> FedReader:
+    def network_cursor(self) -> ChangeCursor:
         """Return a reader of all changes of NetworkTables and of the mode."""
         return self._network.cursor()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ...project import Project
-from ..engine.changes import ReportSignal
+from ..engine.changes import ChangeCursor, ChangeFeed, ReportSignal
 from ..engine.choosers import choosers_in
 from ..engine.field import field_of
 from ..engine.messages import MODE, POSE
@@ -13,7 +13,7 @@ from ..engine.output_log import OutputCursor, OutputLog
 from ..engine.past_run import PastRun
 from ..engine.scene import Point, Pose, Scene
 from ..engine.snapshot import Snapshot, Status
-from ..engine.source import Abilities, ChangeFeed, FedReader
+from ..engine.source import Abilities
 from ..engine.value_history import MISSING
 from .align import moment_of
 from .open import OpenedLog
@@ -65,11 +65,11 @@ class LogSource:
         """Return a reader of nothing: what was printed is in `recorded`."""
         return OutputLog().cursor()
 
-    def change_cursor(self) -> FedReader:
+    def change_cursor(self) -> ChangeCursor:
         """Return a reader of nothing: all changes are in `recorded`."""
         return ChangeFeed().cursor()
 
-    def network_cursor(self) -> FedReader:
+    def network_cursor(self) -> ChangeCursor:
         """Return a reader of nothing, likewise."""
         return ChangeFeed().cursor()
 

@@ -308,7 +308,7 @@ class Session:
         steps = () if self._recorder is None else self._recorder.steps_from(steps_from)
         overruns, worst_us = run.overruns_until_now()
         drawings, vision, opmodes = self._renderer.drawings(), self._targets_seen(), self._station.opmodes()
-        network_base, network_lines = self._traces.take_network(run.clock.now, base is not None)
+        changes, network_changes = self._traces.take(run.clock.now)
         update = Update(
             time_us=run.clock.now_us - self._beyond_us,
             mode=station.mode_name(),
@@ -325,9 +325,9 @@ class Session:
             worst_loop_seconds=worst_us / 1_000_000,
             robot=self._robot_pose(),
             base=base,
-            lines=self._traces.take(),
-            network_base=network_base,
-            network_lines=network_lines,
+            changes=changes,
+            network_base=None if base is None else self._traces.network_values,
+            network_changes=network_changes,
             trail=tuple(self._path.points),
             distance=self._path.distance,
             mode_seconds={mode: packets * PACKET_US / 1_000_000 for mode, packets in self._mode_packets.items()},
@@ -379,8 +379,8 @@ class Session:
 
     def _report_replay(self) -> None:
         clock = self._run.clock
-        _, network_lines = self._traces.take_network(clock.now)
-        self._connection.send(Replayed(clock.now_us, self._traces.take(), network_lines))
+        changes, network_changes = self._traces.take(clock.now)
+        self._connection.send(Replayed(time_us=clock.now_us, changes=changes, network_changes=network_changes))
         self._sent_at = wall()
 
     def _mark_position(self) -> None:

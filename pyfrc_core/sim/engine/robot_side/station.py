@@ -126,7 +126,7 @@ class Station:
         return ""
 
     def put(self, target: str, value: object) -> None:
-        """Write an input. A joystick's control is written when the robot receives its data.
+        """Write an input. A joystick's control is checked at once, and written when the robot receives its data.
 
         A button that is pressed and released before the next packet is pressed for one packet, or the robot would miss
         a short press, and all the more in slow motion.
@@ -135,6 +135,8 @@ class Station:
         if control is None:
             self._write(target, value)
             return
+        controls, number = self._run.hal_data.locate(target)
+        controls.check(number, value)
         taps = {each: packets for each, packets in self.state.taps.items() if each != target}
         is_neutral = value == NEUTRAL[control[2]]
         if is_neutral and target in self._pressed:
@@ -143,7 +145,6 @@ class Station:
             self._write(target, value)
             if not is_neutral and control[2] != "axes":
                 self._pressed.add(target)
-        # Kept after the write, which fails for a wrong value; a value that is not delivered now is checked later.
         self.state = replace(self.state, sticks={**self.state.sticks, target: value}, taps=taps)
 
     def _disable(self) -> None:

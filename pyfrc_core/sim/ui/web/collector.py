@@ -25,10 +25,8 @@ if TYPE_CHECKING:
 
 #: How often to look when nothing is reported, and the shortest interval of looks, in wall seconds.
 _LONGEST, _SHORTEST = 0.1, 0.008
-#: The most changes that are read at once, since reading them keeps the simulation from going on.
-_MOST_CHANGES = 256
-#: The most such reads in one look.
-_MOST_READS = 4
+#: The most changes that are read in one look, so that the page does not wait for all of a long replay.
+_MOST_CHANGES = 1024
 _BUTTONS = tuple(f"joysticks[{number}].buttons" for number in range(6))
 
 
@@ -147,17 +145,12 @@ class Collector:
         return changes or state != before or self._shown != shown
 
     def _read_changes(self) -> bool:
-        """Read the changes until now, but not for longer than the page can wait; return whether there are any."""
-        found = False
-        for _ in range(_MOST_READS):
-            hal, network = self._hal.read(_MOST_CHANGES), self._network.read(_MOST_CHANGES)
-            self.runs.take("hal", hal, self._look_at_hal)
-            self.runs.take("network", network, self._look_at_network)
-            found = found or bool(hal or network)
-            self._has_more = len(hal) == _MOST_CHANGES or len(network) == _MOST_CHANGES
-            if not self._has_more:
-                break
-        return found
+        """Read the changes until now, and return whether there are any."""
+        hal, network = self._hal.read(_MOST_CHANGES), self._network.read(_MOST_CHANGES)
+        self.runs.take("hal", hal, self._look_at_hal)
+        self.runs.take("network", network, self._look_at_network)
+        self._has_more = len(hal) == _MOST_CHANGES or len(network) == _MOST_CHANGES
+        return bool(hal or network)
 
     def _state_of(self, snapshot: Snapshot | None, status: Status) -> State:
         source = self._source
