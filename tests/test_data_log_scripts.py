@@ -7,11 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from wpiutil import DataLogWriter
-from wpiutil.log import DoubleLogEntry
-
-from pyfrc_core.runtime.scripts.inputs_file import load_inputs
-from pyfrc_core.runtime.scripts.script import ScriptError
 
 ROBOT = """
     import ntcore
@@ -109,25 +104,3 @@ def test_the_log_of_the_simulator_replays_to_the_same_outputs(arguments: tuple[s
     result = project.run("replay", "match.wpilog", "--trace", "replayed.jsonl")
     assert result.code == 0, result.output
     assert outputs(project.path / "replayed.jsonl") == outputs(project.path / "recorded.trace.jsonl")
-
-
-def test_a_log_without_a_driver_station_is_refused(make_project) -> None:
-    project = make_project(robot())
-    log = DataLogWriter(str(project.path / "turns.wpilog"))
-    DoubleLogEntry(log, "/turns").append(1.0, 20_000)
-    log.flush()
-    log.stop()
-    result = project.run("replay", "turns.wpilog")
-    assert result.code == 2
-    assert "turns.wpilog: this data log has no data of a driver station" in result.output
-    assert "startDataLog" in result.output
-
-
-@pytest.mark.parametrize("content", [b"", b"no log", b'{"format": "pyfrc-input 1", "end": 1}', b"WPILOG\x00\x01\xff"])
-def test_what_is_no_log_is_refused(content: bytes, tmp_path: Path) -> None:
-    file = tmp_path / "match.wpilog"
-    file.write_bytes(content)
-    with pytest.raises(ScriptError, match="data log"):
-        load_inputs(file)
-    with pytest.raises(ScriptError, match="there is no file"):
-        load_inputs(tmp_path / "other.wpilog")

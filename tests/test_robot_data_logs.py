@@ -148,14 +148,6 @@ def test_time_that_is_turned_back(fork: bool | None, make_project) -> None:
     assert sorted(len(turns(log)) for log in logs) == [25, 50, 151]
 
 
-@pytest.mark.slow
-def test_the_simulators_own_log_of_a_robot_that_ends_its_process(make_project) -> None:
-    made = make_project(robot("os._exit(3) if count == 333 else self.motor.set(count % 100 / 100)"))
-    made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "20", "--wpilog", "run.wpilog")
-    motor = records(made.path / "run.wpilog")["/hal_data/pwm[0].value"]
-    assert motor[-1] == (332 * 20_000, pytest.approx(0.32, abs=0.01))
-
-
 TESTS = """
     import pytest
 

@@ -98,7 +98,7 @@ def test_what_cannot_be_written_is_said_before_anything_runs(option: str, make_p
     if option == "--picture":
         pytest.importorskip("PIL")
     made = make_project({"robot.py": "raise Exception('this has run')", "taken": "no directory"})
-    result = made.run("sim", "--ui", "none", "--seconds", "1", option, "taken/run.png")
+    result = made.run_here("sim", "--ui", "none", "--seconds", "1", option, "taken/run.png")
     assert result.code == 2, result.output
     assert result.first_error.startswith(f"{option} {Path('taken/run.png')} cannot be written: ")
     assert "this has run" not in result.output
@@ -113,7 +113,7 @@ def test_what_cannot_be_written_is_said_before_anything_runs(option: str, make_p
     ],
 )
 def test_ends_before_the_beginning(arguments: list[str], told: str, make_project) -> None:
-    result = make_project(FILES).run("sim", "--ui", "none", *arguments)
+    result = make_project(FILES).run_here("sim", "--ui", "none", *arguments)
     assert (result.code, result.first_error) == (2, told), result.output
 
 
@@ -128,35 +128,6 @@ def test_what_was_driven_is_written_however_it_ends(name: str, make_project) -> 
     assert "wrote run.wpilog" in sim.read
     assert (made.path / "run.jsonl").is_file()
     assert list(made.temporary.iterdir()) == []
-
-
-@pytest.mark.season_2026
-@pytest.mark.slow
-def test_the_data_log_of_a_robot_that_dies_at_once(make_project) -> None:
-    """What WPILib holds back for one large write is lost with the process."""
-    from wpiutil.log import DataLogReader
-
-    robot = """
-        import os
-
-        import wpilib
-
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                self.motor, self.packets = wpilib.PWMSparkMax(0), 0
-
-            def teleopPeriodic(self):
-                self.packets += 1
-                self.motor.set(self.packets % 100 / 100)
-                if self.packets == 500:
-                    os._exit(3)
-    """
-    made = make_project({"robot.py": robot})
-    result = made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "20", "--wpilog", "run.wpilog")
-    assert (result.code, "wrote run.wpilog" in result.stdout) == (1, True), result.output
-    records = DataLogReader(str(made.path / "run.wpilog"))
-    assert max(record.getTimestamp() for record in records if not record.isControl()) > 8_000_000
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no file is too large there")

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from loops import for_each
 from sim_robots import FILES
 
 from pyfrc_core.errors import UsageError
@@ -105,8 +106,8 @@ def test_a_part_of_a_script(project) -> None:
     assert "distance driven: 5.1 ft" in result.stdout
 
 
-@pytest.mark.parametrize(
-    ("arguments", "told"),
+@for_each(
+    "arguments, told",
     [
         (["--script", "drive.jsonl", "--seconds", "9"], "drive.jsonl: --seconds 9 is after the script's end, at 3 s"),
         (["--script", "nowhere.jsonl"], "there is no file nowhere.jsonl"),
@@ -119,7 +120,7 @@ def test_a_part_of_a_script(project) -> None:
 )
 def test_wrong_usage(arguments: list[str], told: str, project) -> None:
     project.write({"drive.jsonl": SCRIPT, "cut.jsonl": SCRIPT.strip()[:-10]})
-    result = project.run("sim", "--ui", "none", *arguments)
+    result = project.run_here("sim", "--ui", "none", *arguments)
     assert result.code == 2, result.output
     assert told in result.first_error
 

@@ -16,7 +16,7 @@ from pyfrc_core.config.findings import SettingsWarning
 from pyfrc_core.errors import PyfrcError, UsageError
 from pyfrc_core.project import Project
 from pyfrc_core.sim.engine.field import field_of
-from pyfrc_core.sim.engine.robot_side.april_tags import tags_of
+from pyfrc_core.sim.engine.robot_side.robot_process import tags_of
 from pyfrc_core.sim.engine.scene import Field, Line, LineStyle, Pose, Scene, Shape, Tag, Target, Text, TextStyle
 from pyfrc_core.sim.ui.picture import draw_picture
 

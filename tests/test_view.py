@@ -102,23 +102,17 @@ def test_logs_of_the_same_name_are_told_apart_by_their_directories(make_project:
 
 
 def test_what_cannot_be_shown_is_said_in_a_sentence(make_project: Any) -> None:
-    made = make_project({"photo.png": "no log", "match.hoot": "CTRE"})
+    made = make_project({"photo.png": "no log"})
     a_match().save(made.path / "match.wpilog")
     (made.path / "cut.wpilog").write_bytes(a_match().data[:-2])
-    result = made.run("view", "photo.png")
-    assert result.code == 1
-    assert "photo.png: this is text, not a log" in result.output
-    result = made.run("view", "match.wpilog", "match.hoot")
-    assert result.code == 1
-    assert "owlet" in result.output
-    result = made.run("view", "gone.wpilog")
-    assert result.code == 2
-    result = made.run("view", "match.wpilog", "--offset", "1")
-    assert result.code == 2
-    assert result.first_error == "--offset is given 1 time, for 0 logs beside the first one"
-    result = made.run("view", "match.wpilog", "--page", "a.html", "--port", "8000")
-    assert result.code == 2
-    assert result.first_error == "--page writes a file, and serves no page"
+    for arguments, code, message in (
+        (("photo.png",), 1, "photo.png: this is text, not a log"),
+        (("gone.wpilog",), 2, "there is no file gone.wpilog"),
+        (("match.wpilog", "--offset", "1"), 2, "--offset is given 1 time, for 0 logs beside the first one"),
+        (("match.wpilog", "--page", "a.html", "--port", "8000"), 2, "--page writes a file, and serves no page"),
+    ):
+        result = made.run_here("view", *arguments)
+        assert (result.code, result.first_error) == (code, message)
     result = made.run("view", "cut.wpilog", "match.wpilog", "--page", "a.html")
     assert result.code == 0
     assert "cut.wpilog: it is cut at byte" in result.output
@@ -129,12 +123,12 @@ def test_a_page_does_not_overwrite_a_log_that_it_shows(make_project: Any) -> Non
     a_match().save(made.path / "match.wpilog")
     log = (made.path / "match.wpilog").read_bytes()
     for name in ("match.wpilog", f"../{made.path.name}/match.wpilog"):
-        result = made.run("view", "match.wpilog", "--page", name)
+        result = made.run_here("view", "match.wpilog", "--page", name)
         assert result.code == 2, result.output
         assert "cannot be written: this command reads it" in result.output
     assert (made.path / "match.wpilog").read_bytes() == log
     outside = made.path.parent / "none" / "a.html"
-    result = made.run("view", "match.wpilog", "--page", outside)
+    result = made.run_here("view", "match.wpilog", "--page", outside)
     assert (result.code, result.first_error) == (
         2,
         f"--page {outside} cannot be written: there is no directory {outside.parent}",

@@ -59,14 +59,14 @@ class PageFile:
         :param failure: the failure, if it is none that the simulation knows
         :raises UsageError: when the file cannot be written
         """
-        from .ui.web.recorded_page import RunTitle, recorded_page
+        from .ui.web.recorded_page import recorded_page
 
         collector = self._collector if self._front_end is None else self._front_end.collector
         if collector is None or (source.snapshot is None and source.status.failure is None):
             return False
         collector.close()
         try:
-            write_whole(self.file, [recorded_page(source, collector, RunTitle(self._what, failure))])
+            write_whole(self.file, [recorded_page(source, collector, self._what, failure)])
         except OSError as error:
             raise UsageError(f"--page {self.file} cannot be written: {error.strerror}") from None
         return True

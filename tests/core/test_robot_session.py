@@ -202,6 +202,23 @@ def test_inputs_are_written_and_wrong_ones_are_noted(play: Play) -> None:
     assert written["joysticks[0].axes[1]"] == 0.5
 
 
+def test_a_wrong_joystick_value_is_refused_while_the_robot_is_disabled(play: Play) -> None:
+    seen = play(
+        *(
+            commands.Write({target: value})
+            for target, value in (("joysticks[0].axes[1]", "up"), ("joysticks[0].axes[99]", 0.5))
+        ),
+        commands.Write({"joysticks[0].axes[1]": 2}),
+        commands.Enable(True),
+        commands.Resume(packets=2),
+        job=PAUSED,
+    )
+    notes = [note for each in seen.updates for note in each.notes]
+    assert [note.partition(" = ")[0] for note in notes] == [f"joysticks[0].axes[{axis}]" for axis in (1, 99, 1)]
+    assert "expected a number from -1 to 1, not 'up' (str)" in notes[0]
+    assert (seen.last.mode, seen.last.station.sticks) == ("teleop", {})
+
+
 def test_a_replay_is_reported_only_where_code_has_changed(play: Play, world: World) -> None:
     inputs = InputScript((Step(20_000, {"mode": "teleop"}), Step(40_000, {"fpga_button": True})), 100_000)
 

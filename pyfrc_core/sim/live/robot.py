@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import socket
 import threading
-from collections.abc import Callable, Mapping
+from collections import defaultdict
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime
+from functools import partial
 from time import monotonic
 from types import MappingProxyType
 
@@ -28,13 +31,14 @@ from ..engine.snapshot import Snapshot, Status
 from ..engine.source import Abilities
 from .addresses import RobotAddresses
 from .runs import RobotRuns
-from .search import reasons
 from .tuning import Tuner, checked_write
 
 #: How often to look at what was received, and how often at least to report that time has passed, in wall seconds.
 _LOOK_SECONDS, _TIME_SECONDS = 0.02, 0.1
 #: How long a robot may take to respond before the reasons are looked for, in wall seconds.
 _PATIENCE_SECONDS = 2.0
+#: How long to wait for names and connections of a search, in wall seconds.
+_SEARCH_SECONDS = 4.0
 #: How long to wait before the next connection to a console, in wall seconds.
 _BETWEEN_SECONDS = 2.0
 
@@ -300,3 +304,34 @@ class LiveRobot:
 def _shown(server: tuple[str, int]) -> str:
     host, port = server
     return f"{host}:{port}"
+
+
+def reasons(servers: Sequence[tuple[str, int]]) -> str:
+    """Return what each address does instead of serving NetworkTables, as one sentence.
+
+    A connection is tried to each once, while the client of NetworkTables goes on.
+    """
+    found = dict.fromkeys(servers, f"no response within {_SEARCH_SECONDS:g} s")
+    threads = [threading.Thread(target=partial(_try, server, found), daemon=True) for server in servers]
+    for thread in threads:
+        thread.start()
+    for thread in threads:  # all began at the same time; those whose names take longer are left alone
+        thread.join(_SEARCH_SECONDS + 1)
+    together = defaultdict(list)
+    for (host, port), why in dict(found).items():
+        together[why].append(_shown((host, port)))
+    return "; ".join(f"{', '.join(shown)}: {why}" for why, shown in together.items())
+
+
+def _try(server: tuple[str, int], found: dict[tuple[str, int], str]) -> None:
+    try:
+        with socket.create_connection(server, _SEARCH_SECONDS):
+            found[server] = "a program responds, but not with NetworkTables"
+    except (socket.gaierror, UnicodeError):
+        found[server] = "the name is not known here"
+    except TimeoutError:
+        pass
+    except ConnectionRefusedError:
+        found[server] = "a computer is there, but no robot program runs on it"
+    except OSError as error:
+        found[server] = (error.strerror or str(error)).lower()

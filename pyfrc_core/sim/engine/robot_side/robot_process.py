@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import math
 import os
 import sys
 import threading
@@ -14,8 +15,10 @@ from types import ModuleType
 from typing import Any
 
 from ....compat.unrepeatable import explain_unrepeatable
+from ....config.sim import SimConfig
 from ....errors import PyfrcError
 from ....physics.engine import load_physics
+from ....physics.pose import METRES_PER_FOOT
 from ....processes.channel import Connection
 from ....processes.crash_report import CrashLog
 from ....processes.exit import before_sudden_exit
@@ -30,18 +33,21 @@ from ....runtime.patches.data_logs import LogPlace
 from ....runtime.patches.install import patches
 from ....runtime.robot import RobotRun
 from ....runtime.seeds import seed_generators
-from ....wpi import robots
+from ....season import CURRENT
+from ....wpi import fields, robots
 from ..extensions import LOADABLE, WINDOW
 from ..messages import Failed, Job, Ready, WindowClosed
 from ..program_files import keep_no_bytecode_of_new_code
+from ..scene import Tag
 from ..snapshot import Failure
-from .april_tags import tags_of
 from .console import Console
 from .session import Ended, Session
 from .wpilog import WpiLog
 
 #: Code in these directories counts as a library.
 _INSTALLED = ("site-packages", "dist-packages")
+#: AprilTags are drawn where the field's size differs from theirs by less than this, in feet.
+_SAME_SIZE = 1.0
 
 
 def run_robot(job: Job, connection: Connection, log: CrashLog, stamp: str) -> None:
@@ -162,3 +168,16 @@ def _libraries(project: Project) -> Iterator[str]:
         file = getattr(module, "__file__", None) if isinstance(module, ModuleType) else None
         if file is not None and any(part in file for part in _INSTALLED) and not project.files.is_project_file(file):
             yield name
+
+
+def tags_of(config: SimConfig) -> tuple[Tag, ...]:
+    """Return the AprilTags, where WPILib's library of them is installed."""
+    field = config.field
+    for known in fields.tagged_fields(str(field.season or CURRENT.year)):
+        length, width = known.length / METRES_PER_FOOT, known.width / METRES_PER_FOOT
+        if math.dist((length, width), (field.w, field.h)) < _SAME_SIZE:
+            return tuple(
+                Tag(tag.number, tag.x / METRES_PER_FOOT, field.h - tag.y / METRES_PER_FOOT, -tag.angle)
+                for tag in known.tags
+            )
+    return ()

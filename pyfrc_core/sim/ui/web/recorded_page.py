@@ -7,7 +7,7 @@ import re
 import sys
 import sysconfig
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,26 +30,16 @@ _OF_USE = ("version", "plots", "pins", "fieldLayers", "fieldRobot", "coordinates
 _SUGGESTED = 3
 
 
-@dataclass(frozen=True)
-class RunTitle:
-    """What a page says about its run.
-
-    :param what: the command that ran it
-    :param failure: the failure, if it is none that the simulation knows
-    """
-
-    what: str
-    failure: Failure | None = None
-
-
-def recorded_page(source: Source, collector: Collector, title: RunTitle) -> str:
+def recorded_page(source: Source, collector: Collector, what: str, seen: Failure | None = None) -> str:
     """Return the page of a run that is over.
 
     :param collector: has followed the source, and has ended
+    :param what: the command that ran it
+    :param seen: the failure, if it is none that the simulation knows
     """
     while collector.look():  # what came after its last look
         pass
-    failure = title.failure or collector.state.status.failure
+    failure = seen or collector.state.status.failure
     shown = replace(
         collector.state.status,
         state="failed" if failure is not None else "paused",
@@ -57,14 +47,14 @@ def recorded_page(source: Source, collector: Collector, title: RunTitle) -> str:
         network_address=None,
         responding=True,
     )
-    if title.failure is not None:
-        collector.marks.add(title.failure.time, "failure", title.failure.headline)
-        collector.console.say(f"failed: {title.failure.headline}", title.failure.time, "error")
+    if seen is not None:
+        collector.marks.add(seen.time, "failure", seen.headline)
+        collector.console.say(f"failed: {seen.headline}", seen.time, "error")
     branches = tuple(branch for branch in collector.runs.branches if not branch.is_former)
     collector.state = replace(collector.state, status=shown, branches=branches, wants_to_run=False)
     clean = cleaner(collector.root)
     run: dict[str, Any] = {
-        "hello": _cleaned(_hello(source, collector, title), clean),
+        "hello": _cleaned(_hello(source, collector, what), clean),
         **collector.runs.packed(clean),
         "branches": [
             branch.plain()
@@ -76,7 +66,7 @@ def recorded_page(source: Source, collector: Collector, title: RunTitle) -> str:
     return single_file("A recorded run - pyfrc", gzip.compress(json_text(run).encode(), 9, mtime=0))
 
 
-def _hello(source: Source, collector: Collector, title: RunTitle) -> dict[str, Any]:
+def _hello(source: Source, collector: Collector, what: str) -> dict[str, Any]:
     found = {**greeting(source, 1, True), **UpdateBuilder(collector, "").update(1)}
     name = source.project.sim_config.field.image
     image = None if name is None else field_picture(source.project.root, name)[0]
@@ -87,7 +77,7 @@ def _hello(source: Source, collector: Collector, title: RunTitle) -> dict[str, A
     found["project"] |= {"root": ""}
     when = source.when or datetime.now().astimezone()
     found["source"] |= {
-        "title": title.what,
+        "title": what,
         "when": when.isoformat(timespec="minutes"),
         **asdict(Abilities(source.abilities.kind, over=True)),
     }
