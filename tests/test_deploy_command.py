@@ -22,15 +22,6 @@ from driver_stations import deploy_on_field, driver_station
 from roborio import Proxy, Roborio, require_roborio
 from skips import missing_programs, require
 
-from pyfrc_core.deploy.robot_checks import image_problem
-from pyfrc_core.deploy.targets.roborio import ROBORIO
-
-#: As the tool of today has it.
-START_COMMAND = (
-    "env LD_LIBRARY_PATH=/usr/local/frc/lib/ "
-    "/usr/local/bin/python3 -u -O -m robotpy --main /home/lvuser/py/robot.py run"
-)
-
 NewRobot = Callable[..., Roborio]
 
 ROBOT = """\
@@ -120,44 +111,6 @@ def test_a_deploy_prints_one_line_per_phase_and_the_program_runs(robot: Roborio,
     assert (robot.disk / "etc/natinst/share/ni-rt.ini").read_text().count("\n;StartupDLLs") == 1
 
 
-@pytest.mark.slow
-def test_a_deploy_from_a_checkout_records_the_commit(robot: Roborio, make_project) -> None:
-    require("which commit was deployed", missing_programs("git"))
-    project = make_project(program())
-    git = ["git", "-C", str(project.path), "-c", "user.name=x", "-c", "user.email=x@example.org"]
-    for arguments in (["init", "-q", "-b", "main"], ["add", "robot.py"], ["commit", "-qm", "it works"]):
-        subprocess.run([*git, *arguments], check=True)
-    project.write({"robot.py": ROBOT.format(number=2)})
-    assert deploy(project, robot).code == 0
-    commit = subprocess.run([*git, "rev-parse", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
-    info = events(deploy(project, robot, "--json", command="deploy-info"))[-1]
-    assert info["deploy_json"]["git-hash"] == commit
-    assert info["deploy_json"]["git-branch"] == "main"
-    shown = deploy(project, robot, command="deploy-info").stdout
-    assert f"{commit[:7]} on main, with uncommitted changes" in shown
-    assert f"release {info['current']}, running" in shown
-
-
-@pytest.mark.slow
-def test_the_plan_is_shown_and_nothing_is_done(robot: Roborio, make_project) -> None:
-    project = make_project({**program(), "old.py": "", "same.py": "X = 1\n"})
-    assert deploy(project, robot).code == 0
-    (project.path / "old.py").unlink()
-    project.write({**program(2), "new.py": ""})
-    result = deploy(project, robot, "--dry-run")
-    assert result.code == 0, result.output
-    assert "+ new.py\n~ robot.py\n- old.py\n1 to add, 1 to change, 1 to remove; " in result.stdout
-    assert events(deploy(project, robot, "--dry-run", "--json"))[-1]["plan"] == {
-        "added": ["new.py"],
-        "changed": ["robot.py"],
-        "removed": ["old.py"],
-        "files_to_send": 1 if not (project.path / "new.py").stat().st_size else 2,
-        "bytes_to_send": (project.path / "robot.py").stat().st_size,
-    }
-    assert sorted(file.name for file in (robot.home / "py").glob("*.py")) == ["old.py", "robot.py", "same.py"]
-    assert "number 1" in code_on(robot)
-
-
 def test_for_tools_every_line_is_json(robot: Roborio, make_project) -> None:
     project = make_project({**program(), "tests/test_it.py": "def test_it(): print('words')\n"})
     result = project.run("deploy", "--robot", robot.where, "--json")
@@ -192,162 +145,10 @@ def test_a_program_that_dies_is_shown_with_its_traceback_and_the_way_back(robot:
     assert "number 1" in code_on(robot)
 
 
-@pytest.mark.slow
-def test_at_a_terminal_the_way_back_is_offered(robot: Roborio, make_project) -> None:
-    project = make_project(program(1))
-    assert deploy(project, robot).code == 0
-    project.write(program(2, DIES))
-    args = ["deploy", "--skip-tests", "--robot", robot.where]
-    code, shown = run_at_terminal(project, args, [("Go back to release 1?", "y")])
-    assert code == 3, shown
-    assert "release 1 runs again" in shown
-    assert "number 1" in code_on(robot)
-
-
-@pytest.mark.slow
-def test_a_first_program_that_dies_has_nothing_to_go_back_to(robot: Roborio, make_project) -> None:
-    project = make_project(program(1, DIES))
-    result = deploy(project, robot, "--auto-rollback")
-    assert result.code == 3
-    assert "There is no earlier program to go back to" in result.stderr
-
-
-@pytest.mark.slow
-def test_the_program_of_another_tool_is_kept_for_a_rollback(robot: Roborio, make_project) -> None:
-    robot.put("home/lvuser/py/robot.py", ROBOT.format(number=77))
-    robot.put("home/lvuser/py/deploy.json", '{"deploy-user": "kim", "deploy-host": "pit", "deploy-date": "yesterday"}')
-    robot.put("home/lvuser/robotCommand", START_COMMAND + "\n")
-    project = make_project(program())
-    shown = deploy(project, robot, command="deploy-info").stdout
-    assert "program    deployed by another tool" in shown
-    assert "by           kim on pit" in shown
-    result = deploy(project, robot)
-    assert result.code == 0, result.output
-    assert "the program of another tool is kept as release 1" in result.stdout
-    shown = deploy(project, robot, command="deploy-info").stdout
-    assert "release 1   yesterday, kim on pit, left by another tool" in shown
-    result = deploy(project, robot, "--rollback")
-    assert result.code == 0, result.output
-    assert "number 77" in code_on(robot)
-
-
-@pytest.mark.slow
-def test_what_is_carried_over_under_another_name_or_not_at_all_is_named(robot: Roborio, make_project) -> None:
-    project = make_project(program())
-    assert deploy(project, robot).code == 0
-    robot.put("home/lvuser/py/logs/match.csv", "precious")
-    robot.run("mkfifo", "-m", "600", "/home/lvuser/py/pipe")
-    (project.path / "logs").write_text("a file")
-    result = deploy(project, robot)
-    assert result.code == 0, result.output
-    assert "which is kept as 'logs.release-1'" in result.stdout
-    assert "not carried over (pipes, sockets, devices): 'pipe'" in result.stdout
-    assert (robot.home / "py/logs.release-1/match.csv").read_text() == "precious"
-
-
-@pytest.mark.slow
-def test_undeploying_has_to_be_meant(robot: Roborio, make_project) -> None:
-    project = make_project(program())
-    assert deploy(project, robot).code == 0
-    result = deploy(project, robot, command="undeploy")
-    assert (result.code, "--yes" in result.stderr) == (2, True)
-    code, shown = run_at_terminal(project, ["undeploy", "--robot", robot.where], [("Continue?", "n")])
-    assert (code, "nothing was removed" in shown) == (1, True)
-    assert "number 1" in code_on(robot)
-    result = deploy(project, robot, "--yes", "--json", command="undeploy")
-    assert (result.code, events(result)[-1]["removed"]) == (0, True)
-    assert not (robot.home / "py").exists()
-    assert not (robot.home / "robotCommand").exists()
-    assert "program    none" in deploy(project, robot, command="deploy-info").stdout
-
-
 # -- what is looked at before ------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
-def test_a_failing_test_prevents_the_deploy_unless_the_user_confirms(robot: Roborio, make_project) -> None:
-    project = make_project({**program(), "tests/test_it.py": "def test_it(): raise ValueError('crooked')\n"})
-    result = project.run("deploy", "--robot", robot.where)
-    assert result.code == 1
-    assert "crooked" in result.stdout
-    assert "not deployed: the tests failed" in result.stderr
-    assert "--skip-tests" in result.stderr
-    assert not (robot.home / "py").exists()
-    for answer, expected in (("n", 1), ("y", 0)):
-        args = ["deploy", "--robot", robot.where]
-        code, shown = run_at_terminal(project, args, [("Deploy anyway?", answer)])
-        assert code == expected, shown
-    assert "number 1" in code_on(robot)
-
-
-@pytest.mark.slow
-def test_a_program_that_cannot_be_imported_is_not_deployed(robot: Roborio, make_project) -> None:
-    project = make_project(program(1, "\nimport no_such_library\n"))
-    result = deploy(project, robot)
-    assert result.code == 1
-    assert "robot.py:8" in result.stderr
-    assert "no_such_library" in result.stderr
-    assert not (robot.home / "py").exists()
-
-
-@pytest.mark.slow
-def test_without_tests_the_ready_made_ones_are_suggested(robot: Roborio, make_project) -> None:
-    project = make_project(program())
-    result = project.run("deploy", "--robot", robot.where)
-    assert result.code == 0, result.output
-    assert "no tests" in result.stdout
-    assert "--builtin" in result.stdout
-    result = project.run("deploy", "--robot", robot.where, "--builtin")
-    assert result.code == 0, result.output
-    assert " passed in " in result.stdout
-
-
-@pytest.mark.slow
-def test_another_main_file_has_to_be_meant(robot: Roborio, make_project) -> None:
-    project = make_project({"our_robot.py": ROBOT.format(number=5)})
-    result = deploy(project, robot, "--main", "our_robot.py")
-    assert result.code == 1
-    assert "--nonstandard" in result.stderr
-    result = deploy(project, robot, "--main", "our_robot.py", "--nonstandard")
-    assert result.code == 0, result.output
-    assert "/home/lvuser/py/our_robot.py run" in (robot.home / "robotCommand").read_text()
-    robot.said("we are number 5")
-
-
 # -- what can be wrong with a robot ------------------------------------------------------------------------------------
-
-OURS = version("wpilib")
-
-
-#: Each problem with its sentence and the beginning of its remedy.
-PROBLEMS = [
-    ({"wpilib": "2026.1.1"}, f"the robot has wpilib 2026.1.1, this computer has {OURS}", "--no-version-check"),
-    ({"password": "secret"}, "refuses lvuser with an empty password", "passwd -d lvuser"),
-    ({"image": None}, "this is not a roboRIO", "--robot HOST"),
-    ({"python": None}, "there is no Python on the robot", "pyfrc sync; then at the robot: pyfrc deploy"),
-    ({"wpilib": None}, "there is no wpilib", "at the robot: pyfrc deploy"),
-    ({"image": "FRC_roboRIO_2024_v2.1"}, "the robot's image is of 2024", "roboRIO Imaging Tool"),
-    ({"image": "FRC_roboRIO_2026_v1.1"}, "the robot's image is 2026_v1.1", "image 2026_v1.2"),
-    ({"disk_size": "700k"}, "the robot's disk is full", "Remove what the project does not need"),
-]
-
-
-@pytest.mark.parametrize(
-    ("how", "what", "remedy"), sampled(PROBLEMS, PROBLEMS[0]), ids=["-".join(how) for how, _, _ in PROBLEMS]
-)
-def test_problems_of_a_robot_are_reported_with_remedies(how, what, remedy, new_robot, make_project) -> None:
-    robot = new_robot(**how)
-    project = make_project({**program(), "noise.txt": os.urandom(500_000).hex() if "disk_size" in how else ""})
-    result = deploy(project, robot, "--large")
-    assert result.code == 1, result.output
-    assert what in result.stderr
-    assert remedy in result.stderr
-    assert "Traceback" not in result.output
-    assert not (robot.home / "py").exists()
-
-
-def test_the_second_model_s_image_is_accepted() -> None:
-    assert image_problem("FRC_roboRIO2_2026_v1.2", OURS, ROBORIO) is None
 
 
 @pytest.fixture
@@ -384,50 +185,6 @@ def test_the_ssh_agents_keys_are_offered_with_the_option(new_robot, make_project
         agent.terminate()
         agent.wait()
         agent.stdout.close()
-
-
-@pytest.mark.slow
-def test_the_users_keys_are_offered_to_no_robot_otherwise(new_robot, make_project, user_keys: Path) -> None:
-    """Nor is the agent asked for them; nor is anything read from ~/.ssh."""
-    robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
-    home = user_keys / "home"
-    (home / ".ssh").mkdir(parents=True)
-    (user_keys / "right").rename(home / ".ssh/id_ed25519")
-    with socket.socket(socket.AF_UNIX) as agent:
-        agent.bind(str(user_keys / "agent"))
-        agent.listen()
-        agent.setblocking(False)
-        names = {"HOME": str(home), "SSH_AUTH_SOCK": str(user_keys / "agent")}
-        result = make_project(program()).run("deploy", "--skip-tests", "--robot", robot.where, env=names)
-        assert result.code == 1
-        assert "the robot lets lvuser in only with a key, and none was offered" in result.stderr
-        assert "--identity FILE" in result.stderr
-        with pytest.raises(BlockingIOError):
-            agent.accept()
-
-
-@pytest.mark.slow
-def test_a_changed_host_key_is_refused_until_it_is_accepted(robot: Roborio, make_project) -> None:
-    project = make_project(program())
-    assert deploy(project, robot).code == 0
-    robot.power_off()
-    robot.new_host_key()
-    robot.power_on()
-    result = deploy(project, robot)
-    assert result.code == 1
-    assert "the robot's key has changed" in result.stderr
-    option = result.stderr.split()[-2:]
-    assert option[0] == "--accept-host-key"
-    accepted = deploy(project, robot, *option, "--robot-name", "practice")
-    assert accepted.code == 0
-    assert "a new key, now pinned for" in accepted.stdout
-    info = deploy(project, robot, command="deploy-info")
-    assert info.code == 0, info.output
-    assert "its key is known (practice)" in info.stdout
-    assert "name       practice" in info.stdout
-    facts = events(deploy(project, robot, "--json", command="deploy-info"))[-1]
-    assert facts["robot_name"] == "practice"
-    assert facts["host_key"].startswith("SHA256:")
 
 
 def test_a_lost_connection_is_reported_and_the_next_deploy_works(robot: Roborio, make_project) -> None:

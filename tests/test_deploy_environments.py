@@ -1,4 +1,7 @@
-"""Environments on the robot: after any interruption, the program that starts is complete, with its packages."""
+"""Environments on the robot: made, shared, kept for the releases that need them, and removed.
+
+Power cuts are in `core/test_agent_power_cuts`, cut connections in `test_deploy_installs`.
+"""
 
 from __future__ import annotations
 
@@ -8,19 +11,17 @@ import io
 import os
 import subprocess
 import sys
-from collections import defaultdict
 from collections.abc import Generator, Mapping
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile, ZipInfo
 
 import pytest
-from conftest import sampled
-from roborio.local import ROBOT_PY, Agents, Disk, LocalRobot, Processes, directory_in_memory, project_of
+from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_memory, project_of
 
 from pyfrc_core.deploy.agent.robot_paths import Lock
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
-from pyfrc_core.deploy.errors import DeployError, OtherComputerError, RefusedError
+from pyfrc_core.deploy.errors import OtherComputerError, RefusedError
 from pyfrc_core.deploy.manifest import Entry, Manifest
 from pyfrc_core.deploy.targets import ControllerKind
 from pyfrc_core.deploy.targets.roborio import ROBORIO
@@ -117,7 +118,7 @@ def started(robot: LocalRobot) -> tuple[Files, Files] | None:
     place = robot.paths.of(python).parents[1]
     if place.is_symlink():
         place = place.parent / place.readlink()
-    assert (place / "environment.json").is_file() or place.name in ("venv", "taken-1", "local"), "an incomplete one"
+    assert (place / "environment.json").is_file() or place.name in ("venv", "local"), "an incomplete one"
     (packages,) = place.glob("lib/python3*/site-packages")
     return program, {file.relative_to(packages).as_posix(): file.read_bytes() for file in packages.rglob("*.py")}
 
@@ -283,107 +284,3 @@ def test_memory(directory: Path, packages: Packages) -> None:
     session.close()
     assert peak < 40_000_000
     assert {each.name.partition(".")[0] for each in robot.home.rglob("*.pyc")} == {"small"}
-
-
-#: By controller and scenario, the disks on which a deploy after an interruption was seen to work.
-_WENT_ON: dict[tuple[str, str], set[Disk]] = defaultdict(set)
-
-
-class Scenario:
-    """A robot before an installation and a deploy, both of which are interrupted anywhere.
-
-    :param name: ``first``: nothing is there; ``update``; ``theirs``: another tool's environment and program
-    """
-
-    def __init__(
-        self, controller: ControllerKind, name: str, directory: Path, packages: Packages, agents: Agents
-    ) -> None:
-        self._directory, self._packages, self._agents = directory, packages, agents
-        self._before = new_robot(directory / "before", controller)
-        self.project = project_of(directory / "new", NEW)
-        if name == "update":
-            install(self._before, agents, packages, FIRST)
-            deploy(self._before, agents, project_of(directory / "old", OLD), FIRST)
-        elif name == "theirs":
-            (their_packages(self._before) / "theirs.py").write_text("C = 1\n")
-            deploy(self._before, agents, project_of(directory / "old", OLD), None)
-        self.old, self.new = started(self._before), (NEW, packages.content[SECOND])
-        self._installed = self._before.copy(directory / "installed")
-        install(self._installed, agents, packages, SECOND)
-        self.installing = self._installed.channel
-        whole = self._installed.copy(directory / "robot")
-        deploy(whole, agents, self.project, SECOND)
-        assert started(whole) == self.new
-        self.deploying = whole.channel
-        self._went_on = _WENT_ON[controller.name, name]
-
-    def check_installation(self, **cut: int | bool) -> None:
-        """Interrupt the installation, look, then install and deploy."""
-        robot = self._before.copy(self._directory / "robot")
-        with contextlib.suppress(DeployError):
-            install(robot, self._agents, self._packages, SECOND, **cut)
-        assert started(robot) == self.old, f"after {cut}"
-        self._go_on(robot, f"after {cut}, and another deploy")
-
-    def check_deploy(self, **cut: int | bool) -> bool:
-        """Interrupt the deploy, look, then deploy again. Return whether the new program was in place already."""
-        robot = self._installed.copy(self._directory / "robot")
-        with contextlib.suppress(DeployError):
-            deploy(robot, self._agents, self.project, SECOND, **cut)
-        found = started(robot)
-        assert found in (self.old, self.new), f"after {cut}"
-        self._go_on(robot, f"after {cut}, and another deploy")
-        return found == self.new
-
-    def _go_on(self, robot: LocalRobot, when: str) -> None:
-        """Install and deploy. Many interruptions leave the same on the disk: what is done there is seen once."""
-        disk = robot.disk()
-        if disk in self._went_on:
-            return
-        self._went_on.add(disk)
-        install(robot, self._agents, self._packages, SECOND)
-        deploy(robot, self._agents, self.project, SECOND)
-        assert started(robot) == self.new, when
-        assert not (robot.home / ".pyfrc/wheels").exists()
-
-
-SCENARIOS = [(controller, name) for controller in (ROBORIO, SYSTEMCORE) for name in ("first", "update", "theirs")]
-
-
-@pytest.fixture
-def scenario(controller: ControllerKind, name: str, directory: Path, packages: Packages, agents: Agents) -> Scenario:
-    return Scenario(controller, name, directory, packages, agents)
-
-
-def on_each(number: str, by_day: int, by_night: int) -> pytest.MarkDecorator:
-    """One scenario with some interruptions by day, each with all of them by night."""
-    night = [pytest.param(*each, by_night, marks=pytest.mark.slow) for each in SCENARIOS]
-    return pytest.mark.parametrize(
-        ("controller", "name", number),
-        [(SYSTEMCORE, "update", by_day), *night],
-        ids=lambda each: each.name if isinstance(each, ControllerKind) else str(each),
-    )
-
-
-@on_each("places", 5, 50)
-def test_connections_cut(scenario: Scenario, places: int) -> None:
-    """Through the installation and the deploy, in both directions: 200 times in all, by night."""
-    for number in range(places):
-        for way in ("to", "from"):
-            total = getattr(scenario.installing, f"bytes_{way}_robot")
-            scenario.check_installation(**{f"cut_{way}_robot": total * number // places})
-            total = getattr(scenario.deploying, f"bytes_{way}_robot")
-            scenario.check_deploy(**{f"cut_{way}_robot": total * number // places})
-
-
-@pytest.mark.parametrize("loses", sampled([False, True], True), ids=["killed", "without power"])
-@on_each("each", 40, 1)
-def test_agents_killed_before_steps_on_the_disk(scenario: Scenario, each: int, loses: bool) -> None:
-    assert scenario.installing.steps is not None
-    assert scenario.deploying.steps is not None
-    for step in range(1, scenario.installing.steps + 1, each):
-        scenario.check_installation(last_step=step, loses=loses)
-    outcomes = [
-        scenario.check_deploy(last_step=step, loses=loses) for step in range(1, scenario.deploying.steps + 1, each)
-    ]
-    assert outcomes == sorted(outcomes), "once the new program is in place it stays there"

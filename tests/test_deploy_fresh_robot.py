@@ -5,16 +5,18 @@ from __future__ import annotations
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from loops import for_each
 from roborio import Roborio, require_roborio
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot
 
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.facts import RobotFacts
-from pyfrc_core.deploy.robot_checks import PREPARE, refuse_unfit_robot
+from pyfrc_core.deploy.robot_checks import NO_CHECK, PREPARE, refuse_installation, refuse_unfit_robot
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.doctor import CheckResult
 from pyfrc_core.doctor.check_result import hint, ok
@@ -88,29 +90,6 @@ def test_a_robot_with_python_alone_has_nothing_of_other_languages(robot: LocalRo
     assert look_at(robot).other_languages == ()
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("patient_doctor")
-def test_a_deploy_suggests_removing_java_until_it_is_removed(make_project) -> None:
-    require_roborio()
-    project = make_project({"robot.py": ROBOT_PY})
-    with Roborio(wpilib=OURS) as robot:
-        robot.put("home/lvuser/Robot.jar", "content")
-        robot.put("home/lvuser/robotCommand", "true\n")
-        deploy = ["deploy", "--skip-tests", "--robot", robot.where, "--dry-run"]
-        (line,) = (each for each in project.run(*deploy).stdout.splitlines() if "Java" in each)
-        remove = f"To remove it: pyfrc undeploy --robot {robot.where} --java-cpp"
-        assert line == f"  Java or C++ takes disk space and memory on the robot (/home/lvuser/Robot.jar). {remove}"
-        (ready, java) = doctor(project, robot)
-        assert (ready.status, ready.text) == (
-            "ok",
-            f"Python 3.14.0, wpilib {OURS}, image FRC_roboRIO_2026_v1.2",
-        )
-        assert (java.status, java.remedy) == ("hint", REMOVE)
-        assert f"  {java.text}. {remove}" == line
-        assert project.run("undeploy", "--java-cpp", "--yes", "--robot", robot.where).code == 0
-        assert "Java" not in project.run(*deploy).stdout
-
-
 # --- without Python
 
 
@@ -148,19 +127,39 @@ def test_a_robot_without_python(image: str, first: str, make_project) -> None:
 # --- with Python
 
 
-@pytest.mark.parametrize(
-    "wrong",
+@for_each(
+    "wrong, said, what_to_do",
     [
-        {"not_controller": "there is no frcKillRobot.sh on it"},
-        {"wpilib": None},
-        {"python": "3.9.1"},
-        {"wpilib": "2026.1.1"},
-        {"image": "FRC_roboRIO_2025_v2.0"},
-        {"image": "FRC_roboRIO2_2026_v1.1"},
+        (
+            {"not_controller": "there is no frcKillRobot.sh on it"},
+            "this is not a roboRIO: there is no frcKillRobot.sh on it",
+            "Check the address, or name the robot with --robot HOST. For a new roboRIO: Image it with",
+        ),
+        ({"wpilib": None}, "there is no wpilib for Python on the robot", PREPARE),
+        (
+            {"python": "3.9.1"},
+            f"the robot has Python 3.9.1, but wpilib {OURS} is for Python 3.14 there",
+            "Image it with",
+        ),
+        (
+            {"wpilib": "2026.1.1"},
+            f"the robot has wpilib 2026.1.1, this computer has {OURS}: what passes here may fail there",
+            f'Use the same version on both: robotpy_version = "{OURS}"',
+        ),
+        (
+            {"image": "FRC_roboRIO_2025_v2.0"},
+            f"the robot's image is of 2025 (2025_v2.0), but wpilib {OURS} needs the image of 2026",
+            "Image it with the roboRIO Imaging Tool of this season (image 2026_v1.2)",
+        ),
+        (
+            {"image": "FRC_roboRIO2_2026_v1.1"},
+            "the robot's image is 2026_v1.1, but this season's image is 2026_v1.2",
+            "Image it with the roboRIO Imaging Tool",
+        ),
+        ({"image": None}, "the robot's image is unknown (None)", "Image it with the roboRIO Imaging Tool"),
     ],
-    ids=lambda wrong: "-".join(map(str, *wrong.items())),
 )
-def test_the_doctor_reports_what_a_deploy_would_refuse(wrong: dict[str, Any]) -> None:
+def test_the_doctor_reports_what_a_deploy_would_refuse(wrong: dict[str, Any], said: str, what_to_do: str) -> None:
     facts = replace(READY, **wrong)
     with pytest.raises(RefusedError) as refused:
         refuse_unfit_robot(facts, ROBORIO, "10.12.34.2", check_versions=True)
@@ -169,10 +168,27 @@ def test_the_doctor_reports_what_a_deploy_would_refuse(wrong: dict[str, Any]) ->
     assert finding.text == refused.value.message
     assert finding.remedy is not None
     assert str(refused.value.remedy).startswith(finding.remedy)
+    assert finding.text == said
+    assert finding.remedy.startswith(what_to_do)
+    certain = "not_controller" in wrong or wrong.get("wpilib", "") is None
+    assert str(refused.value.remedy).endswith(NO_CHECK) is not certain
+    if not certain:
+        refuse_unfit_robot(facts, ROBORIO, "10.12.34.2", check_versions=False)
+
+
+def test_only_what_an_installation_does_not_solve_prevents_it() -> None:
+    connection: Any = SimpleNamespace(controller=ROBORIO, address="10.12.34.2")
+    refuse_installation(connection, READY)
+    refuse_installation(connection, replace(READY, wpilib=None))
+    for wrong in ({"image": "FRC_roboRIO_2025_v2.0"}, {"python": "3.9.1"}):  # the system's Python stays
+        with pytest.raises(RefusedError) as refused:
+            refuse_installation(connection, replace(READY, **wrong))
+        assert str(refused.value.remedy).endswith(NO_CHECK)
 
 
 def test_a_robot_that_is_ready() -> None:
-    refuse_unfit_robot(READY, ROBORIO, "10.12.34.2", check_versions=True)
+    for image in ("FRC_roboRIO_2026_v1.2", "FRC_roboRIO2_2026_v1.2"):
+        refuse_unfit_robot(replace(READY, image=image), ROBORIO, "10.12.34.2", check_versions=True)
     (finding,) = check_robot_facts(READY, ROBORIO, None)
     assert finding.status == "ok"
 

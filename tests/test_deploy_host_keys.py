@@ -228,15 +228,11 @@ def line(host: str, key: HostKey) -> str:
     return f"{host} {key.kind} {base64.b64encode(key.blob).decode()}\n"
 
 
-@pytest.mark.parametrize("pinned", OF_TEAM[:-1], ids=str)
-def test_a_file_from_before_when_each_address_had_its_line(pinned: Address, tmp_path: Path) -> None:
+def test_lines_that_are_not_pyfrcs_own_stay(tmp_path: Path) -> None:
     (tmp_path / KNOWN_HOSTS).parent.mkdir()
-    (tmp_path / KNOWN_HOSTS).write_text("# ours\n" + line(pinned.host, ONE) + line("127.0.0.1", UNKNOWN))
-    for address in OF_TEAM:
-        assert at(tmp_path, address).check(ONE).new_for is None
-        refused(at(tmp_path, address), UNKNOWN)
-    at(tmp_path).check(TWO, accepted=TWO.fingerprint)
-    assert (tmp_path / KNOWN_HOSTS).read_text().startswith("# ours\n" + line(pinned.host, ONE))
+    (tmp_path / KNOWN_HOSTS).write_text("# ours\n" + line("127.0.0.1", UNKNOWN))
+    at(tmp_path).check(ONE)
+    assert (tmp_path / KNOWN_HOSTS).read_text().startswith("# ours\n" + line("127.0.0.1", UNKNOWN))
 
 
 def test_a_directory_in_place_of_the_file(tmp_path: Path) -> None:
@@ -302,6 +298,9 @@ def test_an_invalid_line_is_reported_with_its_number(bad: str, tmp_path: Path) -
     file.parent.mkdir()
     file.write_text(f"# mine\n\n{bad}\n", "utf-8")
     with pytest.raises(HostKeyError, match=r"\.pyfrc/known_hosts:3: .*\n.*Remove the line"):
+        HostKeys(tmp_path)
+    file.write_bytes(b"10.12.34.2 ssh-ed25519 \xff\n")
+    with pytest.raises(HostKeyError, match="known_hosts:1: this line is not a host key"):
         HostKeys(tmp_path)
 
 

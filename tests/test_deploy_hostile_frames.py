@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import struct
 import threading
 import tracemalloc
@@ -227,6 +228,8 @@ def test_many_errors_printed() -> None:
 # -- the fields of each response ---------------------------------------------------------------------------------------
 
 WRONG: list[Any] = [1.5, float("nan"), -1, 1 << 70, 10**4000, [], {}, True, "text", [1], [[]], {"a": 1}]
+#: Fields with a default, which a robot may leave out.
+OPTIONAL = {"no program_age", "no remains", "no ran", "no ended"}
 #: Files on the robot have these: they may hold anything, and are shown as it is possible.
 FROM_FILES = {"deploy_json", "command", "deploy", "packages"}
 
@@ -268,6 +271,8 @@ def test_facts_with_a_wrong_field(controller: ControllerKind, monkeypatch: pytes
     monkeypatch.setattr(FakeRobot, "controller", controller)
     count = 0
     for what, facts in variants(FACTS):
+        if what in OPTIONAL:
+            continue
         message = protocol_error(FakeRobot(of_json({"done": facts})))
         assert message.startswith(NOT_THE_AGENT), what
         count += 1
@@ -276,7 +281,7 @@ def test_facts_with_a_wrong_field(controller: ControllerKind, monkeypatch: pytes
 
 def test_a_release_with_a_wrong_field() -> None:
     for what, release in variants(FACTS["releases"][0]):
-        if what not in ("no main", "no from", "no debug"):  # an old record may lack them
+        if what not in OPTIONAL:
             message = protocol_error(FakeRobot(of_json({"done": {**FACTS, "releases": [release]}})))
             assert message.startswith(NOT_THE_AGENT), what
 
@@ -288,8 +293,6 @@ def project(tmp_path: Path) -> Manifest:
 
 def test_a_response_to_a_deploy_with_an_invalid_field(project: Manifest) -> None:
     for what, deployed in variants(DEPLOYED):
-        if what in ("no release", "no previous", "no taken"):
-            continue
         reply = wire.message_frame({"need": []}) + of_json({"done": deployed})
         message = protocol_error(FakeRobot(HELLO, reply), lambda robot: robot.deploy(project, REQUEST))
         assert message.startswith(NOT_THE_AGENT), what
@@ -326,6 +329,20 @@ def test_a_phase_that_is_not_known_is_one_of_a_later_agent(project: Manifest) ->
     robot = AgentClient.start(FakeRobot(HELLO, reply))
     assert robot.deploy(project, REQUEST, lambda phase, done, total: phases.append(phase)).release == 2
     assert phases == ["\\x1b[2Jpolish"]
+
+
+def test_what_is_sent_is_counted_only_until_the_robot_says_what_it_has(tmp_path: Path) -> None:
+    """What is sent may still be on its way. Of a sign of life that says something else, nothing is shown."""
+    project = project_of(tmp_path, {"robot.py": "", "a.bin": os.urandom(300_000)})
+    odd, alive = ({"alive": each} for each in (True, {"phase": "receive", "count": 5, "of": 9}))
+    signs = b"".join(map(wire.message_frame, (odd, alive)))
+    robot = FakeRobot(HELLO, wire.message_frame({"need": ["a.bin"]}), wire.message_frame(odd), signs)
+    robot._then = iter([wire.message_frame({"done": DEPLOYED})])
+    seen: list[tuple[str, int, int]] = []
+    AgentClient.start(robot).deploy(project, REQUEST, lambda *step: seen.append(step))
+    (first, total), *others = [(done, total) for phase, done, total in seen if phase == "send"]
+    assert (0 < first < total, total, len(others)) == (True, 300_000, 1)
+    assert seen[2:] == [("receive", 5, 9)]
 
 
 def test_a_duplicate_response(project: Manifest) -> None:

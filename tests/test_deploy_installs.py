@@ -13,15 +13,11 @@ from pathlib import Path
 
 import pytest
 from conftest import RobotProject, new_project, sampled
-from laptops import IS_ROBORIO, WPILIB, Laptop, blank_computer, prepared_computer, write_python
+from laptops import IS_ROBORIO, Laptop, blank_computer, prepared_computer, write_python
 from package_index import PackageIndex, package_index
 from roborio import PATIENCE, Proxy
 from roborio.computer import Computer
 
-from pyfrc_core.deploy.robot_checks import PREPARE
-from pyfrc_core.doctor.robot import RobotSearch
-from pyfrc_core.doctor.steps import Step
-from pyfrc_core.project import find_project
 from pyfrc_core.season import CURRENT
 
 ROBOT = """
@@ -141,60 +137,6 @@ def test_what_todays_tool_has_installed_is_kept_for_the_releases_that_use_it(
         assert (robot.home / "robotCommand").read_text(encoding="utf-8") == start
 
 
-@pytest.mark.season_2026
-@nightly
-def test_what_todays_tool_has_installed_is_used_if_it_is_what_the_lock_wants(
-    laptop: Laptop, project: RobotProject
-) -> None:
-    project.write({"robot.py": PLAIN.format(number=1)})
-    with prepared_computer() as robot:
-        laptop.sync()
-        assert "install " not in laptop.deploy(robot)
-        robot.said("plain program 1")
-        assert not (robot.home / ".pyfrc/environments").exists()
-
-
-@nightly
-def test_todays_tool_after_ours_and_ours_again(blank: Computer, laptop: Laptop) -> None:
-    """It replaces code and start command, and has its packages where it installs them."""
-    laptop.sync(spinner="1.0")
-    laptop.deploy(blank)
-    blank.said("program 1 with spinner 1.0")
-    blank.run("rm", f"{blank.home_directory}/py")
-    printed = r"Robot program starting\ntheirs\nRobot program startup complete"
-    code = f"import time\nprint('{printed}', flush=True)\ntime.sleep(1000)\n"
-    blank.put(f"{blank.home_directory}/py/robot.py", code)
-    python = blank.controller.layout.python
-    if not IS_ROBORIO:  # there, it installs a Python of its own
-        made = f"exec $(ls -d {blank.home_directory}/.pyfrc/pythons/*/bin/python3) -m venv --without-pip {python[:-12]}"
-        blank.run("/bin/sh", "-c", made)
-    start = f"{python} -u -O {blank.home_directory}/py/robot.py\n"
-    blank.put(f"{blank.home_directory}/robotCommand", start, mode=0o755)
-    laptop.deploy(blank)
-    blank.said("program 1 with spinner 1.0")
-    back = laptop.run(blank, "deploy", "--rollback", "2")
-    assert back.code == 0, back.output
-    blank.said("theirs")
-    assert (blank.home / "robotCommand").read_text(encoding="utf-8") == start
-    assert laptop.run(blank, "deploy", "--rollback", "1").code == 0
-
-
-@nightly
-def test_a_blank_robot_without_a_lock_or_without_the_files(
-    blank: Computer, laptop: Laptop, project: RobotProject
-) -> None:
-    refused = laptop.run(blank, "deploy", "--skip-tests")
-    assert refused.code == 1
-    assert refused.first_error.endswith(f"there is no Python on the robot ({blank.controller.python})")
-    assert "with internet: pyfrc sync; then at the robot: pyfrc deploy" in refused.stderr
-    laptop.sync(spinner="1.0")
-    next(laptop.packages.glob("wpilib-*.whl")).write_bytes(b"")
-    refused = laptop.run(blank, "deploy", "--skip-tests")
-    assert refused.code == 1
-    assert f"wpilib {WPILIB} for the robot has another content than the lock says" in refused.first_error
-    assert list(blank.home.iterdir()) == []
-
-
 @nightly
 def test_a_full_disk_is_said_before_anything_is_installed(laptop: Laptop) -> None:
     laptop.sync(spinner="1.0")
@@ -232,20 +174,6 @@ def test_a_cut_connection_leaves_the_robot_as_it_was(
             robot.said("plain program 1")
             remains = [*robot.home.glob(".pyfrc/pythons/.new*"), *robot.disk.glob("usr/local/pyfrc/*")]
             assert remains == []
-
-
-@pytest.mark.usefixtures("patient_doctor")
-@nightly
-def test_the_doctor_knows_the_next_step(blank: Computer, laptop: Laptop, project: RobotProject) -> None:
-    def next_step() -> tuple[Step, str] | None:
-        search = RobotSearch(find_project(project.path), blank.where)
-        search.findings()
-        return search.missing_step()
-
-    laptop.sync(spinner="1.0")
-    assert next_step() == (Step.PACKAGES, PREPARE)
-    laptop.deploy(blank)
-    assert next_step() == (Step.DRIVE, "")
 
 
 @pytest.mark.season_2026
@@ -288,38 +216,3 @@ def test_two_first_installations_at_once(blank: Computer, laptop: Laptop, projec
         assert first.wait() == 0, printed + errors
     assert "0 packages of 3 sent" in printed
     assert not (blank.disk / "usr/local/pyfrc/installing").exists()
-
-
-@pytest.mark.season_2026
-@nightly
-def test_nothing_is_installed_on_an_image_of_another_season(laptop: Laptop) -> None:
-    laptop.sync(spinner="1.0")
-    with blank_computer(image="FRC_roboRIO_2025_v2.0") as robot:
-        refused = laptop.run(robot, "deploy", "--skip-tests")
-        assert refused.code == 1
-        assert "the robot's image is of 2025 (2025_v2.0)" in refused.first_error
-        assert not (robot.disk / "usr/local/bin/python3").is_symlink()
-
-
-@nightly
-def test_two_laptops_with_one_lock_give_the_same_packages(
-    laptop: Laptop, project: RobotProject, tmp_path: Path, index: PackageIndex, python: Path
-) -> None:
-    """Byte for byte, and under the same name; the second one has a cache of its own."""
-    project.write({"robot.py": PLAIN.format(number=1)})
-    seen = []
-    for each in (laptop, Laptop(tmp_path / "other", project, index, python)):
-        each.sync(spinner="1.0")
-        with blank_computer() as robot:
-            each.deploy(robot)
-            place = robot.home / ".pyfrc/environments"
-            seen.append(
-                {
-                    file.relative_to(place).as_posix(): file.read_bytes()
-                    for file in place.rglob("*")
-                    if file.is_file() and not file.is_symlink() and file.suffix != ".pyc"
-                }
-            )
-        shutil.rmtree(project.path / ".pyfrc")  # the next robot has another key
-    assert seen[0] == seen[1]
-    assert len(seen[0]) > 5

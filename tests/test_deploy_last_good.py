@@ -87,27 +87,6 @@ def test_the_newest_that_ran_although_an_older_one_was_watched_for_longer(
         assert session.rollback().release.number == 2
 
 
-def test_the_robot_knows_which_program_it_has_seen_run(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
-    """Only the same files, started by the same command, count, and only if the last watched start was not an end."""
-
-    def has_run(text: str = "", runs: bool = True, debug: bool = False, in_place: bool = False) -> bool:
-        project = project_of(tmp_path / "project", {"robot.py": f"{ROBOT_PY}{text}"})
-        with contextlib.closing(robot.start(agents, runs=runs)) as session:
-            session.deploy(project, DeployRequest("robot.py", {}, debug=debug, in_place=in_place))
-            session.restart()
-            return session.watch(1.0).has_run
-
-    assert [has_run(), has_run(), has_run("# 2\n"), has_run("# 2\n")] == [False, True, False, True]
-    assert [has_run("# 2\n", debug=True), has_run("# 2\n", debug=True)] == [False, True], "another command"
-    (robot.home / "py/robot.py").write_text("raise SystemExit")
-    assert [has_run("# 2\n", debug=True), has_run("# 2\n", debug=True)] == [False, True], "changed by the program"
-    assert [has_run("# 3\n", in_place=True, debug=True), has_run("# 3\n", debug=True)] == [False, True]
-    assert [has_run("# 3\n", runs=False, debug=True), has_run("# 3\n", debug=True)] == [True, False], "it ended"
-    with contextlib.closing(robot.start(agents)) as session:
-        session.restart()
-        assert not session.watch(1.0).has_run, "its files were not compared"
-
-
 def test_a_release_that_ran_stays_known_as_such_and_in_place_it_becomes_another_program(
     robot: LocalRobot, agents: Agents, deploy: DeployAndWatch, tmp_path: Path
 ) -> None:

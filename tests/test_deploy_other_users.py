@@ -57,18 +57,6 @@ def test_a_directory_that_cannot_be_moved_is_refused_before_anything_is_changed(
     assert deploy(roborio, tmp_path, 1).taken == 1
 
 
-@pytest.mark.slow
-def test_files_without_permission_do_not_prevent_a_deploy(roborio: Roborio, tmp_path: Path) -> None:
-    deploy(roborio, tmp_path, 1)
-    roborio.run("mkdir", "/home/lvuser/py/photos")
-    roborio.put("home/lvuser/py/photos/robot.jpg", "a picture", owner=ADMIN)
-    roborio.put("home/lvuser/py/secret.txt", "a word", owner=ADMIN, mode=0o600)
-    for number in range(2, 7):
-        assert deploy(roborio, tmp_path, number).release == number
-    assert "NUMBER = 6" in (roborio.home / "py/robot.py").read_text()
-    assert len(list((roborio.home / ".pyfrc/releases").glob("*.json"))) == 3
-
-
 def undeploy(roborio: Roborio) -> bool:
     with SshConnection(roborio.host, roborio.port, "lvuser") as connection:
         robot = AgentClient.start(connection)
@@ -131,12 +119,6 @@ def test_special_files_are_not_carried_over(roborio: Roborio, tmp_path: Path) ->
     assert deploy(roborio, tmp_path, 2).skipped == ("pipe",)
     assert (roborio.home / "py/log.txt").read_text() == "a log"
     assert deploy(roborio, tmp_path, 3).skipped == ()
-
-
-def test_a_flag_for_debugging_that_another_user_has_set(roborio: Roborio, tmp_path: Path) -> None:
-    roborio.run("touch", "/tmp/frcdebug")
-    deploy(roborio, tmp_path, 1, start=True)
-    roborio.said("Robot program startup complete")
 
 
 def test_a_process_that_reads_a_file_is_not_a_robot_program(roborio: Roborio, tmp_path: Path) -> None:

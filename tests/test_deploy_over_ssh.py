@@ -16,7 +16,6 @@ from roborio.local import LocalRobot, project_of
 from roborio.ssh import SshConnection
 from systemcore import Systemcore, require_systemcore
 
-from pyfrc_core.deploy.agent.disk import free_bytes
 from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest, Watched
 from pyfrc_core.deploy.connection import connect
 from pyfrc_core.deploy.discovery import Address
@@ -123,12 +122,6 @@ def test_a_program_is_deployed_and_runs(computer: Computer, tmp_path: Path) -> N
     computer.said("this is first")
 
 
-def test_facts_of_a_roborio(roborio: Roborio) -> None:
-    with agent(roborio) as robot:
-        assert (robot.facts.python, robot.facts.wpilib) == ("3.14.0", "2026.2.2")
-        assert (robot.facts.image, robot.facts.wastes_memory) == ("FRC_roboRIO_2026_v1.2", True)
-
-
 def test_the_administrator_deploys_for_the_program_s_user(roborio: Roborio, tmp_path: Path) -> None:
     deploy(roborio, program(tmp_path, "first"), user="admin")
     assert roborio.run("find", "/home/lvuser", "!", "-user", "lvuser").stdout == ""
@@ -153,15 +146,6 @@ def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
         watched = started(robot)
         assert watched.started
         assert watched.traceback is None
-
-
-@pytest.mark.slow
-def test_a_crash_in_c_code_is_named(computer: Computer, tmp_path: Path) -> None:
-    """WPILib's own runner enables the fault handler; the look-alikes' stand-in does not."""
-    crash = "import faulthandler, os; faulthandler.enable(); os.kill(os.getpid(), 11)"
-    with agent(computer) as robot:
-        robot.deploy(program(tmp_path, "bad", f"def __init__(self): {crash}"), DeployRequest("robot.py", {}))
-        assert started(robot).fatal_error == "Segmentation fault"
 
 
 @pytest.mark.parametrize("phase", sampled(["start", "send", "switch"], "switch"))
@@ -224,63 +208,6 @@ def test_a_full_disk(kind: Kind, tmp_path: Path) -> None:
             assert "this is small" in started(robot).output
 
 
-@pytest.mark.parametrize("releases", sampled([2, 3], 2))
-def test_with_no_byte_free(kind: Kind, releases: int, tmp_path: Path) -> None:
-    """Not even the name of the computer that holds the lock can be written."""
-    with kind(disk_size="4m") as computer:
-        disk = LocalRobot(computer.disk, computer.controller)
-        programs = {}
-        for number in range(1, releases + 1):
-            new = program(tmp_path, f"number {number}", **{"data.bin": random.Random(number).randbytes(400_000)})
-            programs[number] = {entry.path: entry.file.read_bytes() for entry in new.entries}
-            with agent(computer) as robot:
-                robot.deploy(new, DeployRequest("robot.py", {}))  # its late writes are not carried over yet
-        logs = f"{computer.home_directory}/logs.bin"
-        fill = f"cat /dev/zero > {logs}; dd if=/dev/zero bs=1 count=4096 >> {logs}"
-        computer.run("sh", "-c", fill, user=computer.user)
-        with agent(computer) as robot:
-            assert free_bytes(computer.home) == 0
-            assert robot.rollback().release.number == releases - 1
-            assert started(robot).started
-            assert disk.startable() == programs[releases - 1]
-        if releases > 2:
-            computer.run("sh", "-c", f"{fill}.2", user=computer.user)
-            deploy(computer, program(tmp_path, "another"))
-            assert b"this is another" in disk.startable()["robot.py"]
-        computer.run("sh", "-c", f"{fill}.3", user=computer.user)
-        with agent(computer) as robot:
-            assert robot.undeploy()
-        assert not (computer.home / ".pyfrc/releases").exists()
-
-
-def test_a_kill_script_that_cannot_stop_the_program(roborio: Roborio, tmp_path: Path) -> None:
-    kill_script = "usr/local/frc/bin/frcKillRobot.sh"
-    first, second = (program(tmp_path, name) for name in ("first", "second"))
-    with agent(roborio) as robot:
-        robot.deploy(first, DeployRequest("robot.py", {}))
-        assert started(robot).started
-        works = (roborio.disk / kill_script).read_text()
-        roborio.put(kill_script, works + "exit 1\n", owner=0, mode=0o755)
-        robot.deploy(second, DeployRequest("robot.py", {}))
-        assert started(robot).started, "what counts is that it has stopped it"
-        roborio.put(kill_script, "", owner=0, mode=0o644)
-        with pytest.raises(
-            RefusedError, match=r"frcKillRobot.sh cannot be executed: .*Permission denied\n  Switch the robot off"
-        ):
-            robot.restart()
-        (roborio.disk / kill_script).unlink()
-        with pytest.raises(RefusedError, match=r"there is no .*frcKillRobot.sh on the robot"):
-            robot.restart()
-
-
-def test_a_systemctl_that_needs_a_password(tmp_path: Path) -> None:
-    require_systemcore()
-    with Systemcore(sudo=False) as computer, agent(computer) as robot:
-        robot.deploy(program(tmp_path, "first"), DeployRequest("robot.py", {}))
-        with pytest.raises(RefusedError, match=r"systemctl has failed: sudo: .*\n  Switch the robot off and on again"):
-            robot.restart()
-
-
 def test_after_a_crash_loop_the_next_program_starts(systemcore: Systemcore, tmp_path: Path) -> None:
     """systemd refuses to start a service again that was started five times within ten seconds."""
     with agent(systemcore) as robot:
@@ -294,25 +221,6 @@ def test_after_a_crash_loop_the_next_program_starts(systemcore: Systemcore, tmp_
         assert systemcore.run("/usr/local/bin/systemctl", "start", "robot").returncode == 1
         robot.rollback()
         assert started(robot).started
-
-
-def test_a_program_that_does_not_end_when_it_is_asked_to(systemcore: Systemcore, tmp_path: Path) -> None:
-    body = "import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN)"
-    with agent(systemcore) as robot:
-        robot.deploy(program(tmp_path, "deaf", body), DeployRequest("robot.py", {}))
-        assert started(robot).started
-        robot.deploy(program(tmp_path, "second"), DeployRequest("robot.py", {}))
-        assert started(robot).started
-        assert not robot.program_survived, "systemd has ended it"
-
-
-def test_without_a_readable_journal_the_process_decides(systemcore: Systemcore, tmp_path: Path) -> None:
-    (systemcore.disk / "usr/local/bin/journalctl").unlink()
-    with agent(systemcore) as robot:
-        robot.deploy(program(tmp_path, "first"), DeployRequest("robot.py", {}))
-        robot.restart()
-        watched = robot.watch(PATIENCE, unheard=0.5)
-        assert (watched.verdict, watched.output) == ("unheard", "")
 
 
 def test_a_changed_password_is_asked_for_once_and_counts_for_the_whole_command(tmp_path: Path) -> None:

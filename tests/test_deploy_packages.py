@@ -10,7 +10,6 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
-from at_terminal import run_at_terminal
 from packaging.requirements import Requirement
 from roborio import Roborio, require_roborio
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
@@ -331,41 +330,3 @@ def test_a_missing_package_is_named_while_the_old_program_runs_on(roborio: Robor
     assert roborio.said("startup complete").count("startup complete") == before, "it was not restarted"
     roborio.put(f"{SITE}/commands2/__init__.py", "")
     assert deploy(project, roborio).code == 0
-
-
-@pytest.mark.slow
-def test_deploying_all_the_same(roborio: Roborio, make_project) -> None:
-    project = make_project({"robot.py": ROBOT.format(imports="import commands2")})
-    code, shown = run_at_terminal(
-        project,
-        ["deploy", "--skip-tests", "--robot", roborio.where],
-        [("no package robotpy-commands-v2. Deploy anyway?", "y")],
-    )
-    assert code == 3, shown  # it has ended at once
-    project.write({"robot.py": ROBOT.format(imports="import commands2 as c")})
-    done = deploy(project, roborio, "--no-version-check")
-    assert done.code == 3, done.output
-    assert "warning: robot.py:2: import commands2" in done.stdout
-
-
-@pytest.mark.slow
-def test_the_robots_python_is_the_seasons(roborio: Roborio, make_project) -> None:
-    customize = roborio.disk / SITE / "sitecustomize.py"
-    customize.write_text(customize.read_text().replace("(3, 14,", "(3, 99,"))
-    project = make_project({"robot.py": ROBOT.format(imports="")})
-    refused = deploy(project, roborio)
-    assert refused.code == 1
-    assert f"the robot has Python 3.99.0, but wpilib {OURS} is for Python 3.14 there" in refused.output
-    assert not (roborio.home / ".pyfrc").exists()
-    assert deploy(project, roborio, "--no-version-check").code == 0
-
-
-@pytest.mark.slow
-def test_a_file_that_the_robots_python_cannot_compile(roborio: Roborio, make_project) -> None:
-    project = make_project({"robot.py": ROBOT.format(imports="import arm"), "arm.py": "SPEED = 1\n"})
-    assert deploy(project, roborio).code == 0
-    project.write({"arm.py": "SPEED = 1\nprint 'fast'\n"})
-    refused = deploy(project, roborio, "--no-version-check")
-    assert refused.code == 1
-    assert "arm.py:2" in refused.output
-    assert (roborio.home / "py/arm.py").read_text() == "SPEED = 1\n"

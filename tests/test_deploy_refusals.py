@@ -10,8 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
-from at_terminal import run_at_terminal
-from conftest import RobotProject, add_settings
+from conftest import RobotProject
 from roborio import Roborio, require_roborio
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
@@ -54,22 +53,6 @@ def test_a_python_that_is_too_old(project: RobotProject, look_alike: Roborio) ->
     assert any("the robot's Python 3.8 is too old" in text for text in found), found
 
 
-@pytest.mark.slow
-def test_a_home_that_cannot_be_written(project: RobotProject, look_alike: Roborio) -> None:
-    belongs = "{0} on the robot belongs to another user, and lvuser cannot write to it\n"
-    give = "Give it to lvuser, as admin on the robot: chown -R lvuser {0}"
-    for deployed in (False, True):
-        os.chown(look_alike.home, 0, 0)
-        assert refusal(project, look_alike) == (belongs + give).format("/home/lvuser")
-        os.chown(look_alike.home, 500, 500)
-        if not deployed:
-            assert project.run("deploy", "--skip-tests", "--robot", look_alike.where).code == 0
-            project.write({"more.py": ""})
-    releases = look_alike.home / ".pyfrc/releases"
-    os.chown(releases, 0, 0)
-    assert refusal(project, look_alike) == (belongs + give).format("/home/lvuser/.pyfrc/releases")
-
-
 def test_other_problems_of_the_disk(tmp_path: Path) -> None:
     missing, directory = tmp_path / "missing", tmp_path / "directory"
     directory.mkdir()
@@ -101,29 +84,3 @@ def test_a_file_that_becomes_a_pipe_while_it_is_sent(robot: LocalRobot, agents: 
     ):
         client.deploy(manifest, DeployRequest("robot.py", {}))
     assert robot.startable() is None
-
-
-@pytest.mark.slow
-def test_private_files_are_not_uploaded_without_a_question(project: RobotProject, look_alike: Roborio) -> None:
-    project.write({".gitignore": "tba_key.txt\n", "tba_key.txt": "12345"})
-    (project.path / "settings").symlink_to(".gitignore")
-    what = (
-        "files would be uploaded that seem to be private: "
-        "settings (leads to .gitignore, which is not uploaded itself), tba_key.txt (.gitignore names it as a secret)"
-    )
-    assert refusal(project, look_alike) == (
-        f"error: not deployed: {what}\n"
-        "Under [tool.pyfrc.deploy] in pyproject.toml, leave them out with exclude = [...], "
-        "or upload them with private = [...]."
-    )
-    deploy = ["deploy", "--skip-tests", "--robot", look_alike.where]
-    dry = project.run(*deploy, "--dry-run")
-    assert (dry.code, f"warning: {what}" in dry.output) == (0, True)
-    code, _ = run_at_terminal(project, deploy, [("Deploy anyway?", "n")])
-    assert (code, (look_alike.home / "py").exists()) == (1, False)
-    code, _ = run_at_terminal(project, deploy, [("Deploy anyway?", "y")])
-    assert (code, (look_alike.home / "py/tba_key.txt").read_text()) == (0, "12345")
-    add_settings(project.path, '[tool.pyfrc.deploy]\nexclude = ["settings"]\nprivate = ["*_key.txt"]\n')
-    result = project.run(*deploy)
-    assert result.code == 0, result.output
-    assert not (look_alike.home / "py/settings").exists()

@@ -48,6 +48,7 @@ def test_remedies_name_the_robot_as_it_was_typed(typed: list[str], robot: str) -
     assert str(result.exception) == f"it fails\n  {expected}"
     note, warning, error = map(json.loads, result.stdout.splitlines())
     assert error["remedy"] == expected
+    assert [each["event"] for each in (note, warning, error)] == ["note", "warning", "error"]
     assert note["text"] == warning["text"] == f"see pyfrc console{robot}"
 
 

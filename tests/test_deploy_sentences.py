@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
 import io
+import json
 import subprocess
+import threading
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import paramiko
@@ -12,19 +19,23 @@ import pytest
 from conftest import MakeProject
 from skips import missing_programs, require
 
-from pyfrc_core.deploy import local_checks, login
+from pyfrc_core.deploy import installing, local_checks, login, session
 from pyfrc_core.deploy.discovery import Address
-from pyfrc_core.deploy.errors import ConnectionFailedError, RefusedError
-from pyfrc_core.deploy.facts import Plan
+from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError, RefusedError
+from pyfrc_core.deploy.facts import Deployed, DeployRequest, Plan
 from pyfrc_core.deploy.host_keys import HostKey
+from pyfrc_core.deploy.installing import Environment
 from pyfrc_core.deploy.local_checks import DeployOptions, ImportCheck, prepare
 from pyfrc_core.deploy.login import Credentials, log_in
-from pyfrc_core.deploy.progress import DeployProgress, Questions, UserInterface, ask_to_continue
-from pyfrc_core.deploy.session import _confirm, _deployed, _plan_as_text
+from pyfrc_core.deploy.progress import DeployProgress, JsonProgress, Phase, Questions, UserInterface, ask_to_continue
+from pyfrc_core.deploy.robot_checks import carry_out
+from pyfrc_core.deploy.session import _confirm, _deployed, _plan_as_text, _replace_program, _upload
+from pyfrc_core.deploy.targets import AdministratorTask
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.deploy.targets.systemcore import SYSTEMCORE
 from pyfrc_core.errors import UsageError
 from pyfrc_core.project import find_project
+from pyfrc_core.sync import Lock, LockedFile
 
 ROBOT = "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
 
@@ -236,6 +247,220 @@ def test_the_plan_as_text() -> None:
         "+ new.py\n~ robot.py\n- old.py\n"
         "1 to add, 1 to change, 1 to remove; 15 kB to send. Nothing was changed on the robot."
     )
+
+
+def test_what_an_upload_says() -> None:
+    requests: list[DeployRequest] = []
+    deployed = Deployed(2, 1, 1, 1, False, 3, 15_000, ("pipe",), ("logs.release-1",))
+
+    def upload(deployed: Deployed, **options: Any) -> str:
+        shown = io.StringIO()
+        robot: Any = SimpleNamespace(facts=SimpleNamespace(environment="a" * 16))
+        robot.deploy = lambda manifest, request, work: requests.append(request) or deployed
+        program: Any = SimpleNamespace(main="robot.py", deploy_json={}, manifest=None)
+        program.imports = SimpleNamespace(program=lambda: ["robot.py"])
+        _upload(robot, program, DeployOptions(**options), UserInterface(DeployProgress(shown)))
+        return shown.getvalue()
+
+    said = upload(deployed, debug=True)
+    assert "upload     3 files, 15 kB; release 2 " in said
+    assert "  the program of another tool is kept as release 1\n" in said
+    assert "written, which is kept as 'logs.release-1'\n" in said
+    assert "  not carried over (pipes, sockets, devices): 'pipe'\n" in said
+    assert "nothing has changed; release 2 " in upload(replace(deployed, unchanged=True), reinstall=True)
+    assert "release" not in upload(Deployed(None, None, None, None, False, 1, 1), in_place=True).partition("\n")[0]
+    first, again, in_place = requests
+    assert first == DeployRequest("robot.py", {}, True, False, ["robot.py"], True, "a" * 16)
+    assert (again.reinstall, again.debug, again.restart) == (True, False, True)
+    assert (in_place.in_place, in_place.restart) == (True, False)
+
+
+@pytest.mark.parametrize("environment", ["a" * 16, None])
+def test_a_program_that_ends_is_sent_again_with_its_packages(
+    environment: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The packages are sent again only if they are pyfrc's."""
+    sent: list[str] = []
+    deployed = Deployed(2, 1, 1, None, False, 1, 1)
+
+    def upload(robot: object, program: object, options: DeployOptions, talk: object) -> Deployed:
+        sent.append(f"program, {'reinstall' if options.reinstall else ''}")
+        return replace(deployed, fallback=len(sent))
+
+    def start(robot: object, talk: object, fallback: int, auto_rollback: bool, reinstall: Any) -> str:
+        assert (fallback, auto_rollback, reinstall()) == (1, True, len(sent))
+        return "running"
+
+    monkeypatch.setattr(session, "_upload", upload)
+    monkeypatch.setattr(session, "install_packages", lambda robot, wanted, phase: sent.append("packages"))
+    monkeypatch.setattr("pyfrc_core.deploy.starting.start", start)
+    facts = SimpleNamespace(environment=environment, wastes_memory=False, remains=False)
+    robot: Any = SimpleNamespace(facts=facts, program_survived=False)
+    connection: Any = SimpleNamespace(controller=SYSTEMCORE, host="10.0.0.2")
+    wanted: Any = SimpleNamespace(name="a" * 16)
+    shown = io.StringIO()
+    options = DeployOptions(auto_rollback=True)
+    _replace_program(robot, connection, None, wanted, options, UserInterface(JsonProgress(shown)))  # type: ignore[arg-type]
+    assert sent == ["program, ", *(["packages"] if environment else []), "program, reinstall"]
+    result = json.loads(shown.getvalue().splitlines()[-1])
+    assert (result["release"], result["fallback"], result["program"], result["in_place"]) == (
+        2,
+        len(sent),
+        "running",
+        False,
+    )
+
+
+def test_private_files_are_uploaded_only_if_they_are_meant(make_project: MakeProject) -> None:
+    project = find_project(make_project({"robot.py": ROBOT, "id_rsa": ""}).path)
+    what = "files would be uploaded that seem to be private: id_rsa (files of this name hold keys or passwords)"
+    with pytest.raises(RefusedError) as caught:
+        prepare(project, DeployOptions(skip_tests=True), NOT_ASKED)
+    assert str(caught.value).startswith(
+        f"not deployed: {what}\n  Under [tool.pyfrc.deploy] in pyproject.toml, leave them"
+    )
+    shown = io.StringIO()
+    prepare(project, DeployOptions(dry_run=True), UserInterface(DeployProgress(shown)))
+    assert f"warning: {what}\n" in shown.getvalue()
+
+
+def test_tests_that_have_passed_are_not_run_again_and_a_project_without_any_is_imported(
+    make_project: MakeProject, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    project, shown = find_project(make_project({"robot.py": ROBOT}).path), io.StringIO()
+    monkeypatch.setattr(local_checks, "ImportCheck", lambda project: project)
+    monkeypatch.setattr(local_checks, "_passed_already", lambda project, builtin: "16:40" if builtin else None)
+    talk = UserInterface(DeployProgress(shown))
+    assert prepare(project, DeployOptions(), talk).importing is project
+    assert "this project has no tests; the ready-made ones run with --builtin\n" in shown.getvalue()
+    assert prepare(project, DeployOptions(builtin=True), talk).importing is None
+    assert "tests      passed at 16:40; the project's files, Python and packages have" in shown.getvalue()
+    assert prepare(project, DeployOptions(builtin=True, skip_tests=True), talk).importing is project
+
+
+def test_files_that_change_while_the_tests_run(make_project: MakeProject, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = make_project({"robot.py": ROBOT, "tests/test_it.py": "", "data.json": "1"})
+    project, writes = find_project(made.path), dict[str, str]()
+    shown = io.StringIO()
+
+    def run(command: list[str], output: object, quiet: bool) -> bool:
+        made.write(writes)
+        return True
+
+    monkeypatch.setattr(local_checks, "_run", run)
+    monkeypatch.setattr(local_checks, "_passed_already", lambda project, builtin: None)
+    writes |= {"data.json": "2", "new.log": ""}
+    assert "new.log" in {
+        each.path for each in prepare(project, DeployOptions(), UserInterface(DeployProgress(shown))).manifest.entries
+    }
+    assert "warning: files have changed since the tests began: data.json\n" in shown.getvalue()
+    writes |= {"arm.py": "", "robot.py": ROBOT + "\n"}
+    with pytest.raises(
+        RefusedError, match=r"have changed since the tests began, and were not tested: arm\.py, robot\.py\n"
+    ):
+        prepare(project, DeployOptions(), NOT_ASKED)
+
+
+# -- what is done meanwhile, and installed -----------------------------------------------------------------------------
+
+
+def test_a_task_of_the_administrator_causes_only_a_note_or_a_warning() -> None:
+    shown = io.StringIO()
+    task = AdministratorTask("script", "it was done", "it could not be done")
+    for problem in (None, "no connection"):
+        connection: Any = SimpleNamespace(administer=lambda task, problem=problem: problem)
+        carry_out(task, connection, DeployProgress(shown))
+        carry_out(None, connection, DeployProgress(shown))
+    assert shown.getvalue() == "  it was done\nwarning: it could not be done: no connection\n"
+
+
+def locked(name: str, version: str, content: str) -> LockedFile:
+    return LockedFile(
+        name, version, f"{name}-{version}.whl", len(content), hashlib.sha256(content.encode()).hexdigest()
+    )
+
+
+LOCK = Lock(
+    2027, "SystemCore", (), locked("python", "3.14.3", "p"), (locked("wpilib", "1", "w"), locked("six", "2", "s"))
+)
+
+
+def test_when_a_robot_has_all_that_the_lock_asks_for() -> None:
+    wanted = Environment(LOCK, SYSTEMCORE)
+    assert wanted.name == Environment(replace(LOCK, season=2026), SYSTEMCORE).name
+    assert wanted.name != Environment(replace(LOCK, packages=LOCK.packages[::-1]), SYSTEMCORE).name
+    assert wanted.python == f"/home/systemcore/.pyfrc/pythons/{LOCK.python.sha256[:16]}/bin/python3"
+    assert Environment(LOCK, ROBORIO).python == ROBORIO.python
+    there = {"wpilib": "1", "six": "2", "more": "3"}
+
+    def is_met(environment: str | None, python: str = "3.14.3", packages: dict[str, str] = there) -> bool:
+        return wanted.is_met_by(SimpleNamespace(environment=environment, python=python, packages=packages))  # type: ignore[arg-type]
+
+    assert is_met(wanted.name, "3.9", {}), "it is checked when it is made"
+    assert is_met(None)
+    assert not is_met("b" * 16)
+    assert not is_met(None, "3.14.2")
+    assert not is_met(None, packages={"wpilib": "1"})
+    assert not is_met(None, packages={**there, "six": "1"})
+
+
+class PythonChannel:
+    """A robot's script that installs Python."""
+
+    def __init__(self, reply: str, status: int = 0) -> None:
+        self.reply, self.status, self.received = reply, status, b""
+        self.status_event = threading.Event()
+        self.status_event.set()
+
+    def makefile(self, mode: str) -> io.StringIO:
+        if self.reply == "lost":
+            raise TimeoutError
+        return io.StringIO(f"{self.reply}\n")
+
+    def sendall(self, data: bytes) -> None:
+        self.received += data
+
+    def shutdown_write(self) -> None:
+        self.received += b"."
+
+    def recv_exit_status(self) -> int:
+        return self.status
+
+    def recv_stderr(self, count: int) -> bytes:
+        return b"one\nno such file\n" if self.status == 1 else b""
+
+
+def test_python_is_sent_unless_it_is_there_or_the_disk_is_full(tmp_path: Path) -> None:
+    archive = tmp_path / "python.ipk"
+    archive.write_bytes(b"x" * 100_000)
+    scripts: list[str] = []
+
+    def send(reply: str, status: int = 0) -> tuple[bool, bytes]:
+        channel = PythonChannel(reply, status)
+
+        @contextlib.contextmanager
+        def opened(script: str) -> Iterator[PythonChannel]:
+            scripts.append(script)
+            yield channel
+
+        connection: Any = SimpleNamespace(address="10.0.0.2", opened=opened)
+        sent = installing._send_python(connection, Environment(LOCK, ROBORIO), archive, 1_000_000, Phase("install"))
+        return sent, channel.received
+
+    assert send("there") == (False, b"")
+    assert send("send") == (True, archive.read_bytes() + b".")
+    needed = 100_000 * 5 + 1_000_000
+    assert f'[ "$4" -ge {needed // 1024} ]' in scripts[0]
+    with pytest.raises(
+        RefusedError, match=f"too full to install Python and packages: {needed // 1000:,} kB are needed, 12"
+    ):
+        send("full 12")
+    with pytest.raises(DeployError, match=r"Python could not be installed on the robot: no such file\n"):
+        send("send", 1)
+    with pytest.raises(DeployError, match=r"Python could not be installed on the robot: exit code 2\n"):
+        send("send", 2)
+    with pytest.raises(ConnectionFailedError, match=r"^10.0.0.2: the connection to the robot was lost: no response\n"):
+        send("lost")
 
 
 def test_undeploying_has_to_be_meant() -> None:

@@ -96,6 +96,27 @@ def test_a_crash_is_shown_with_its_traceback_and_goes_back(talk: UserInterface, 
     assert "| RuntimeError: no such gyro" in shown.getvalue()
 
 
+def test_the_user_decides_whether_to_go_back(talk: UserInterface) -> None:
+    asked: list[str] = []
+
+    def answer(yes: bool) -> UserInterface:
+        return UserInterface(talk.progress, Questions(text=str, yes=lambda question: asked.append(question) or yes))  # type: ignore[func-returns-value]
+
+    with pytest.raises(ProgramDiedError, match=r"^the new program ended after 4.1 s; release 1 runs again$"):
+        start(Watching(CRASHED, RUNS), answer(True), 1)
+    robot = Watching(CRASHED)
+    with pytest.raises(
+        ProgramDiedError, match=r"^the new program ended after 4.1 s\n  Go back to the previous program with"
+    ):
+        start(robot, answer(False), 1)
+    assert robot.went_back_to == []
+    assert asked == ["The new program ended after 4.1 s. Go back to release 1?"] * 2
+    with pytest.raises(
+        ProgramDiedError, match=r"4.1 s\n  There is no earlier program to go back to: correct the program"
+    ):
+        start(Watching(CRASHED), answer(True), None, auto_rollback=True)
+
+
 def test_a_crash_in_c_code_is_named(talk: UserInterface, shown: io.StringIO) -> None:
     printed = f'{TRACEBACK}Fatal Python error: Segmentation fault\n\n  File "robot.py", line 4 in robotInit\n'
     watched = replace(CRASHED, output=printed)
@@ -122,7 +143,10 @@ def test_with_a_silent_console_a_note_explains_the_verdict(talk: UserInterface, 
     start(Watching(SILENT), talk, 1)
     assert "its process has run for 20 s " in shown.getvalue()
     assert "judged by its process alone" in shown.getvalue()
+    assert "its console is silent, which is normal without a Driver Station" in shown.getvalue()
     assert "does not serve NetworkTables yet" in shown.getvalue()
+    start(Watching(replace(SILENT, state=replace(SILENT.state, has_output=True))), talk, 1)
+    assert "a main loop of its own, such as a MagicRobot's, does not report the end of its start" in shown.getvalue()
 
 
 def test_a_first_process_that_ended_is_reported(talk: UserInterface, shown: io.StringIO) -> None:

@@ -6,7 +6,10 @@ import os
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from core.agent_disk import AgentDisk
@@ -14,8 +17,11 @@ from core.agent_disk import AgentDisk
 import pyfrc_core.deploy
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.layout import Layout
+from pyfrc_core.deploy.connection import VIRTUAL_ROBOT_GREETING, Connection
+from pyfrc_core.deploy.discovery import Address
 from pyfrc_core.deploy.targets import CONTROLLERS, ControllerKind
 from pyfrc_core.deploy.targets.controller import remove_remains
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 #: One user, one file with the start command, a service manager.
 ONE_USER = Layout(
@@ -131,6 +137,34 @@ def test_a_lost_connection_leaves_nothing_of_an_installation(controller: Control
     assert done.stdout == b"send\n"
     assert done.returncode != 0
     assert list(place.iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="a robot runs Linux")
+def test_which_python_an_agent_runs_in(tmp_path: Path) -> None:
+    """That of the wanted environment, if it is complete; else the one of the start command, if it is there."""
+    layout = ROBORIO.layout._replace(home=str(tmp_path), python=str(tmp_path / "system"))
+    controller = replace(ROBORIO, layout=layout, check_python="")
+    current, wanted = (tmp_path / f".pyfrc/environments/{name * 16}" for name in "ab")
+    for place in (tmp_path / "system", current / "bin/python3", wanted / "bin/python3"):
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_text(f"#!/bin/sh\necho {place.relative_to(tmp_path)} $1\n")
+        place.chmod(0o755)
+
+    def runs(environment: str | None, is_virtual: bool = False) -> str:
+        greeting = VIRTUAL_ROBOT_GREETING if is_virtual else "SSH-2.0-OpenSSH"
+        transport: Any = SimpleNamespace(remote_version=f"{greeting} x=1")
+        connection = Connection(transport, Address("10.0.0.2"), controller, *(3 * [None]))  # type: ignore[arg-type]
+        command = f"{connection.python(environment)} words"
+        return subprocess.run(["sh", "-c", command], check=True, capture_output=True, text=True).stdout
+
+    assert runs(None) == runs("b" * 16) == "system words\n"
+    (tmp_path / layout.command).write_text(f"env A=b {current}/bin/python3 -u -m robotpy\n")
+    assert runs(None) == runs("b" * 16) == f".pyfrc/environments/{'a' * 16}/bin/python3 words\n"
+    (wanted / "environment.json").touch()
+    assert runs("b" * 16) == f".pyfrc/environments/{'b' * 16}/bin/python3 words\n"
+    (current / "bin/python3").unlink()
+    assert runs(None) == "system words\n"
+    assert runs("b" * 16, is_virtual=True) == "system words\n", "its program runs in this computer's environment"
 
 
 @pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda each: each.name)

@@ -10,7 +10,7 @@ import pytest
 from pyfrc_core.deploy.agent import wire
 from pyfrc_core.deploy.agent_stream import AgentStream, TimeLimits
 from pyfrc_core.deploy.errors import ConnectionFailedError
-from pyfrc_core.deploy.responses import Fields
+from pyfrc_core.deploy.responses import value_of
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 LIMITS = TimeLimits(start=20, silence=60, frame=30, response=900)
@@ -18,9 +18,9 @@ ALIVE = wire.message_frame({"alive": True})
 DONE = wire.message_frame({"done": {"release": 7}})
 
 
-def release(fields: Fields) -> int:
+def release(done: object) -> int:
     """Return the field that these tests expect in a response."""
-    return fields.count("release")
+    return value_of(done, "release", int)
 
 
 class Clock:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
 import json
 import os
@@ -17,7 +16,6 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, pro
 from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.manifest import Entry, Manifest
-from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 START = "env LD_LIBRARY_PATH=/usr/local/frc/lib/ /usr/local/bin/python3 -u"
 OTHER_COMMAND = "/usr/local/bin/python3 -u -O -m robotpy --main /home/lvuser/py/robot.py run"
@@ -157,20 +155,6 @@ def test_rollback_lists_files_that_the_program_has_changed(robot: LocalRobot, pr
     session.close()
 
 
-def test_few_releases_are_kept(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    for number in range(1, 7):
-        robot.deploy(agents, project.write("robot.py", f"# {number}\n").manifest)
-    session = robot.start(agents)
-    assert [each.number for each in session.facts.releases] == [4, 5, 6]
-    session.rollback(4)
-    session.close()
-    robot.deploy(agents, project.write("robot.py", "# 7\n").manifest)
-    session = robot.start(agents)
-    assert [each.number for each in session.facts.releases] == [4, 6, 7], "the one that was current stays"
-    assert session.rollback().release.number == 4
-    session.close()
-
-
 def other_tools_program(robot: LocalRobot, command: str = OTHER_COMMAND) -> None:
     py = robot.home / "py"
     if py.is_symlink():
@@ -199,45 +183,6 @@ def test_another_tools_program_becomes_a_release(robot: LocalRobot, project: Pro
     session.close()
 
 
-def test_another_tool_deploys_after_us(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    robot.deploy(agents, project.manifest)
-    other_tools_program(robot)
-    deployed = robot.deploy(agents, project.manifest)
-    assert (deployed.release, deployed.taken, deployed.files_sent) == (3, 2, 0)
-    assert robot.startable() is not None
-
-
-def test_where_names_cannot_be_exchanged(robot: LocalRobot, project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
-    """An old kernel: the directory is moved away before the link takes its place; the start command leads past that."""
-    from pyfrc_core.deploy.agent import releases, robot_paths
-    from pyfrc_core.deploy.agent.activity import Activity
-    from pyfrc_core.deploy.agent.robot_paths import RobotPaths
-
-    other_tools_program(robot, "env LD_LIBRARY_PATH=/usr/local/frc/lib/ x --main /home/lvuser/py/robot.py run")
-    ours = releases.Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None))
-    ours.adopt_directory(1)
-    ours.directory(2).mkdir()
-    (ours.directory(2) / "robot.py").write_text("# ours\n")
-    commands = robot_paths.start_commands(ROBORIO.layout, "robot.py", debug=False)
-    ours.write_record(2, {"files": {}, "commands": commands})
-    for name, text in commands.items():
-        (robot.home / name).write_text(text or "")
-    monkeypatch.setattr(releases, "exchange", lambda one, other: False)
-    original, seen = Path.rename, []
-
-    def rename(path: Path, target: Path) -> Path:
-        moved = original(path, target)
-        seen.append(robot.startable())
-        return moved
-
-    monkeypatch.setattr(Path, "rename", rename)
-    ours.switch(2, commands, 1)
-    assert seen == [{"robot.py": b"# ours\n"}]
-    assert robot.startable() == {"robot.py": b"# ours\n"}
-    assert (ours.directory(1) / "sub/helper.py").exists()
-    assert ours.numbers() == [1, 2]
-
-
 def test_what_the_program_writes_survives(robot: LocalRobot, project: Project, agents: Agents) -> None:
     robot.deploy(agents, project.manifest)
     py = robot.home / "py"
@@ -260,23 +205,6 @@ def test_what_the_program_writes_survives(robot: LocalRobot, project: Project, a
     assert (py / "late.csv").read_text() == "late\n"
     assert (py / "latest").read_text() == "2\n"
     assert (py / "logs/empty").is_dir()
-
-
-def test_what_the_new_program_writes_is_not_undone(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    """The restart was cut off: the next deploy takes along what the old program had still written, and no more."""
-    robot.deploy(agents, project.manifest)
-    py, old = robot.home / "py", robot.home / ".pyfrc/releases/1"
-    (py / "state").write_text("old")
-    (py / "removed").write_text("old")
-    robot.deploy(agents, project.write("robot.py", "# 2\n").manifest)
-    (old / "late").write_text("late")
-    (py / "removed").unlink()
-    (py / "x").write_text("new")
-    (py / "x").replace(py / "state")
-    robot.deploy(agents, project.write("robot.py", "# 3\n").manifest)
-    assert (py / "state").read_text() == "new"
-    assert (py / "late").read_text() == "late"
-    assert not (py / "removed").exists()
 
 
 def test_rollback_keeps_what_the_program_wrote_in_either_release(
@@ -420,28 +348,6 @@ def test_undeploy(robot: LocalRobot, project: Project, agents: Agents) -> None:
     assert list((robot.root / "tmp").iterdir()) == []
 
 
-def test_two_at_once(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    first, second = robot.start(agents, all_signs=True), robot.start(agents)
-
-    def meanwhile(phase: str, done: int, total: int) -> None:
-        if phase == "receive" and done < total and not refused:
-            with pytest.raises(RefusedError, match="is deploying to this robot right now") as caught:
-                second.deploy(project.manifest, DeployRequest("robot.py", {"who": "second"}))
-            refused.append(caught.value)
-
-    refused: list[RefusedError] = []
-    # So large that it is not all sent before the other one asks.
-    project.write("data.bin", os.urandom(2_000_000))
-
-    first.deploy(dataclasses.replace(project.manifest), DeployRequest("robot.py", {"who": "first"}), meanwhile)
-    assert len(refused) == 1
-    assert json.loads((robot.home / "py/deploy.json").read_text()) == {"who": "first"}
-    first.close()
-    second.deploy(project.manifest, DeployRequest("robot.py", {"who": "second"}))
-    second.close()
-    assert json.loads((robot.home / "py/deploy.json").read_text()) == {"who": "second"}
-
-
 def test_a_module_with_a_name_too_long_for_its_compiled_form(
     robot: LocalRobot, project: Project, agents: Agents
 ) -> None:
@@ -491,25 +397,6 @@ def test_a_file_that_changes_while_it_is_sent(
             robot.deploy(agents, manifest)
         assert robot.startable() == before
     robot.deploy(agents, project.manifest)
-
-
-@pytest.mark.parametrize("main", ["my robot.py", "$(reboot).py", "a;b.py", "-x.py", "../robot.py"])
-def test_main_files_that_cannot_stand_in_a_start_command(
-    robot: LocalRobot, project: Project, agents: Agents, main: str
-) -> None:
-    with pytest.raises(RefusedError, match="main"):
-        robot.deploy(agents, project.manifest, main=main)
-    assert robot.startable() is None
-
-
-@pytest.mark.parametrize("path", ["../x", "/etc/x", "a/../../x", "a//b", "", ".", "a\0b"])
-def test_paths_that_lead_elsewhere(robot: LocalRobot, project: Project, agents: Agents, path: str) -> None:
-    manifest = project.manifest
-    entry = dataclasses.replace(manifest.entries[0], path=path)
-    before = contents(robot.root)
-    with pytest.raises(RefusedError, match="is not a path within the program's directory"):
-        robot.deploy(agents, Manifest((*manifest.entries, entry)))
-    assert {each for each in contents(robot.root) if "lock" not in each} == set(before)
 
 
 NAMES = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="/\0"), min_size=1, max_size=20).filter(

@@ -37,20 +37,6 @@ def programs_on(robot: Roborio) -> list[str]:
     return [line for line in lines if "/home/lvuser/py/robot.py" in line]
 
 
-@pytest.mark.slow
-def test_a_kill_that_takes_two_seconds_and_restarts_at_once(make_project) -> None:
-    require_roborio()
-    project = make_project({})
-    with Roborio.unkind(driver_station=True) as robot:
-        for name in ("the first", "the second"):
-            result = write_and_deploy(project, name, robot)
-            assert result.code == 0, result.output
-            assert "the program runs" in result.stdout
-            robot.said(f"this is {name}")
-        assert len(programs_on(robot)) == 1
-        assert "frcKillRobot.sh" not in result.output
-
-
 def test_the_console_is_silent_without_a_driver_station(tmp_path: Path) -> None:
     require_roborio()
     project = project_of(tmp_path, {"robot.py": ROBOT.format(name="a robot")})

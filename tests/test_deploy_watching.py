@@ -95,11 +95,9 @@ def test_a_slow_start_is_neither_running_nor_ended() -> None:
     assert judge(Program()).verdict == STARTING
 
 
-def feed(
-    *looks: tuple[float, set[int], str], end: float, old: int = OLD, has_run: bool = False
-) -> tuple[StartMonitor, str | None]:
+def feed(*looks: tuple[float, set[int], str], end: float, old: int = OLD) -> tuple[StartMonitor, str | None]:
     """A monitor that has seen all of this, restarted at 0, and its verdict at `end`."""
-    monitor = StartMonitor({old}, has_run=has_run)
+    monitor = StartMonitor({old})
     monitor.observe(-1.0, {old})
     monitor.observe(-0.5, set())
     monitor.restarted(0.0)
@@ -119,17 +117,6 @@ def test_how_long_a_program_that_has_started_has_to_live_on() -> None:
     assert monitor.trial_left(4.0) == 2.0, "longer after a traceback"
     monitor.observe(5.0, {101}, OVER)
     assert monitor.trial_left(9.0) is None, "its end is known"
-
-
-def test_a_program_that_ran_before_with_the_same_files_has_to_live_on_half_as_long() -> None:
-    looks = (1.0, {101}, BEGINNING), (1.5, {101}, COMPLETE)
-    monitor, verdict = feed(*looks, end=1.7, has_run=True)
-    assert (monitor.trial_left(1.7), verdict) == (pytest.approx(0.1), None)
-    assert monitor.verdict(1.8, LIMIT, SILENT_LIMIT) == RUNNING
-    monitor, verdict = feed(*looks, (1.75, set(), ""), (4.0, {102}, BEGINNING), end=4.6, has_run=True)
-    assert monitor.verdict(4.6, LIMIT, SILENT_LIMIT) != RUNNING, "another process"
-    slow = (1.0, {101}, BEGINNING), (3.0, {101}, COMPLETE)
-    assert feed(*slow, end=3.75, has_run=True)[0].trial_left(3.75) == 0.25, "a slow start has the same trial"
 
 
 def test_a_thread_that_outlives_the_program_keeps_nothing_alive_but_the_process() -> None:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import json
 import re
-import socket
 import sys
-import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
 from importlib.metadata import metadata
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -19,10 +17,14 @@ from packaging.requirements import Requirement
 from ports import refusing_port
 
 from pyfrc_core._version import __version__
-from pyfrc_core.doctor import CheckResult, robot_project
+from pyfrc_core.doctor import NEXT_STEP, CheckResult, robot_project
+from pyfrc_core.doctor.check_result import hint, ok, problem
+from pyfrc_core.doctor.examine import DoctorOptions, _project, _season_settings, check_downloads, check_extras
 from pyfrc_core.doctor.installed import Installed, Package, find_installed
 from pyfrc_core.doctor.packages import NEWEST, OLDEST, check_imports, check_pyfrc, check_python, check_wpilib
-from pyfrc_core.project import find_project
+from pyfrc_core.doctor.robot import RobotSearch
+from pyfrc_core.doctor.steps import Step, first_missing, next_step
+from pyfrc_core.project import Project, find_project
 from pyfrc_core.season import CURRENT
 
 ROBOT = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
@@ -201,6 +203,11 @@ def test_a_library_that_cannot_be_imported_is_named_and_the_next_is_tried(code: 
     found = list(check_imports(installed, [str(tmp_path), *sys.path]))
     assert [each.text for each in found] == [f"import wpilib: {how}", "import rev: ValueError of its own"]
     assert {each.status for each in found} == {"problem"}
+    if sys.platform == "linux":
+        too_old = "This system is too old for WPILib: it needs a newer release of your Linux."
+        reinstall = "pip install --force-reinstall --no-deps"
+        assert found[0].remedy == (too_old if "GLIBC" in code else f"{reinstall} wpilib")
+        assert found[1].remedy == f"{reinstall} robotpy-rev"
 
 
 def test_without_a_display_there_is_no_window(make_project) -> None:
@@ -233,81 +240,13 @@ def test_without_a_project_the_rest_is_looked_at(make_project) -> None:
     assert "not searched" in found["robot"][0]["text"]
 
 
-@pytest.mark.slow
-def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
-    found = results_of(make_project({}).run("doctor", "--no-robot", "--json", "--project", "nowhere"))
-    assert found["project"][0]["status"] == "problem"
-
-
 @pytest.mark.parametrize(
     ("files", "topic", "said", "remedy"),
     [
         ({"robot.py": "import wpilib\n\n1 / 0\n"}, "program", "robot.py:3: ZeroDivisionError", ""),
-        pytest.param({"robot.py": "import os\nos._exit(0)\n"}, "program", "robot.py:2", "", marks=pytest.mark.slow),
-        pytest.param({"robot.py": "x = 1\n"}, "program", "no robot class", "class MyRobot", marks=pytest.mark.slow),
-        (
-            {"pyproject.toml": "[tool.pyfrc]\nmian = 'robot.py'\n"},
-            "project",
-            "pyproject.toml:2: unknown key 'tool.pyfrc.mian'",
-            "main",
-        ),
-        pytest.param(
-            {"pyproject.toml": "[tool.robotpy]\nrequires = ['no-such>=1']\n"},
-            "project",
-            "not installed",
-            "no-such>=1",
-            marks=pytest.mark.slow,
-        ),
-        pytest.param(
-            {"pyproject.toml": "[tool.robotpy]\nrequires = ['click>99']\n"},
-            "project",
-            "requires click>99, but ",
-            "click>99",
-            marks=pytest.mark.slow,
-        ),
-        pytest.param(
-            {"sim/config.json": '{"pyfrc": {"robot": {"w": "wide"}}}'},
-            "sim/config.json",
-            "robot.w",
-            "",
-            marks=pytest.mark.slow,
-        ),
-        pytest.param(
-            {"wpilib/__init__.py": ""},
-            "project",
-            "wpilib/__init__.py hides a library",
-            "another name",
-            marks=pytest.mark.slow,
-        ),
-        pytest.param(
-            {"sim/dashboards.json": '{"dashboards": {"a": {"rows": 0}}}'},
-            "sim/dashboards.json",
-            "a.rows = 0",
-            "",
-            marks=pytest.mark.slow,
-        ),
-        pytest.param({"random.py": ""}, "project", "random.py hides a library", "another name", marks=pytest.mark.slow),
-        pytest.param(
-            {"physics.py": "class PhysicsEngine:"},
-            "physics",
-            "physics.py:1: IndentationError",
-            "indent this one by four spaces",
-            marks=pytest.mark.slow,
-        ),
-        pytest.param(
-            {"physics.py": "import phisics"},
-            "physics",
-            "physics.py:1: there is no module phisics",
-            "Did you mean physics?",
-            marks=pytest.mark.slow,
-        ),
-        pytest.param(
-            {"physics.py": "class PhysicEngine: pass"},
-            "physics",
-            "PhysicsEngine",
-            "It must have a class",
-            marks=pytest.mark.slow,
-        ),
+        ({"robot.py": "x = 1\n"}, "program", "no robot class", "class MyRobot"),
+        ({"random.py": ""}, "project", "random.py hides a library", "another name"),
+        ({"physics.py": "class PhysicsEngine:"}, "physics", "physics.py:1: IndentationError", "by four spaces"),
         (
             {"physics.py": "class PhysicsEngine:\n    def update_sim(self): pass\n"},
             "physics",
@@ -317,11 +256,14 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
     ],
 )
 def test_what_is_wrong_in_a_project(files: dict[str, str], topic: str, said: str, remedy: str, make_project) -> None:
-    found = results_of(make_project({"robot.py": ROBOT} | files).run("doctor", "--no-robot", "--json"))
-    wrong = [each for each in found[topic] if each["status"] == "problem"]
-    assert wrong, found
-    assert said in wrong[0]["text"]
-    assert remedy in wrong[0]["remedy"]
+    project = find_project(make_project({"robot.py": ROBOT} | files).path)
+    found = list(robot_project.check_project(project, find_installed()))
+    wrong = [each for each in found if each.status == "problem"]
+    assert [each.topic for each in wrong][:1] == [topic], found
+    assert said in wrong[0].text
+    assert remedy in str(wrong[0].remedy)
+    tests = next(each for each in found if each.topic == "tests")
+    assert (tests.status, tests.text) == ("hint", "the project has none")
 
 
 def test_what_is_wrong_in_files_that_are_not_run(make_project) -> None:
@@ -344,92 +286,149 @@ def test_what_is_wrong_in_files_that_are_not_run(make_project) -> None:
     assert "it is not installed" in missing.text
 
 
-@pytest.mark.slow
-def test_what_a_project_could_have_besides(make_project) -> None:
-    files = {"robot.py": ROBOT, "pyproject.toml": "[tool.robotpy]\nrobotpy_version = '2026.1.1'\nrobotpy_extras = []\n"}
-    found = results_of(make_project(files).run("doctor", "--no-robot", "--json"))
-    assert found["project"][1]["remedy"] == "Rename it to components."
-    hints = {
-        topic: each["remedy"] for topic, findings in found.items() for each in findings if each["status"] == "hint"
-    }
-    assert hints["physics"] == hints["sim/config.json"] == "pyfrc create-physics"
-    assert hints["tests"].startswith("pyfrc add-tests")
-    assert "wpilib==2026.1.1" in found["project"][0]["remedy"]
-
-
 # --- the robot
-
-
-@contextmanager
-def server(says: bytes) -> Iterator[str]:
-    """A server that sends fixed data."""
-    with socket.create_server(("127.0.0.1", 0)) as listening:
-
-        def answer() -> None:
-            connected, _ = listening.accept()
-            connected.sendall(says)
-            connected.close()
-
-        thread = threading.Thread(target=answer)
-        thread.start()
-        yield f"127.0.0.1:{listening.getsockname()[1]}"
-        thread.join()
-
-
-@pytest.mark.slow
-def test_a_robot_that_is_off(make_project) -> None:
-    """A robot that is not found is a problem if the user has specified it, else a hint."""
-    with refusing_port() as port:
-        address = f"127.0.0.1:{port}"
-        preferences = {".wpilib/wpilib_preferences.json": json.dumps({"robotHostname": address})}
-        project = make_project({"robot.py": ROBOT} | preferences)
-        (*_, finding) = results_of(project.run("doctor", "--json"))["robot"]
-        assert (finding["status"], finding["text"]) == ("hint", f"{address}: no robot found")
-        (*_, finding) = results_of(project.run("doctor", "--json", "--robot", address))["robot"]
-        assert finding["status"] == "problem"
-
-
-@pytest.mark.slow
-def test_a_team_number_that_is_none(make_project) -> None:
-    project = make_project({"robot.py": ROBOT, ".wpilib/wpilib_preferences.json": '{"teamNumber": "red"}'})
-    (finding,) = results_of(project.run("doctor", "--json"))["robot"]
-    assert finding["status"] == "problem"
-    assert "teamNumber" in finding["text"]
-
-
-@pytest.mark.slow
-def test_the_next_step_is_the_last_thing_that_is_shown(make_project) -> None:
-    project = make_project({"robot.py": ROBOT})
-    (step,) = results_of(project.run("doctor", "--json"))["next step"]
-    assert step["text"] == "1 of 6, the team number"
-    with refusing_port() as port:
-        result = project.run("doctor", "--robot", f"127.0.0.1:{port}")
-    *_, step, remedy, _, count = result.stdout.splitlines()
-    assert step == "hint    next step: 2 of 6, the downloads for the robot"
-    assert remedy.startswith("          With internet: pyfrc sync.")
-    assert count == "1 problem"
-    assert "next step" not in project.run("doctor", "--no-robot").stdout
 
 
 def test_only_one_result_about_the_robot(make_project) -> None:
     assert make_project({}).run("doctor", "--no-robot", "--team", "1").code == 2
 
 
-@pytest.mark.slow
-def test_problems_come_first_and_extras_when_asked(make_project) -> None:
+def robot_found(project: Project | None, robot: str | None = None, team: int | None = None) -> tuple[CheckResult, Any]:
+    search = RobotSearch(project, robot, team)
+    (finding,) = search.findings()
+    return finding, search.missing_step()
+
+
+def test_a_robot_that_is_not_found_is_a_problem_if_the_user_has_named_it(make_project) -> None:
+    with refusing_port() as port:
+        address = f"127.0.0.1:{port}"
+        preferences = {".wpilib/wpilib_preferences.json": json.dumps({"robotHostname": address})}
+        project = find_project(make_project({"robot.py": ROBOT} | preferences).path)
+        for named, status in ((None, "hint"), (address, "problem")):
+            finding, (step, remedy) = robot_found(project, named)
+            assert (finding.status, finding.text) == (status, f"{address}: no robot found")
+            assert step is Step.CONTROLLER
+            assert "pyfrc deploy lists the addresses that were tried." in remedy
+
+
+def test_a_robot_that_is_not_searched(make_project) -> None:
+    finding, step = robot_found(None)
+    assert (finding.status, finding.text, finding.remedy, step) == (
+        "hint",
+        "not searched: no team is known outside of a project",
+        "pyfrc doctor --team NUMBER",
+        None,
+    )
+    made = make_project({"robot.py": ROBOT})
+    finding, (step, remedy) = robot_found(find_project(made.path))
+    assert finding.text.startswith("not searched: no robot is specified")
+    assert (step, remedy.partition(",")[0]) == (Step.TEAM, "pyfrc deploy asks for it")
+    made.write({".wpilib/wpilib_preferences.json": '{"teamNumber": "red"}'})
+    finding, step = robot_found(find_project(made.path))
+    assert (finding.status, "teamNumber = 'red'" in finding.text, step) == ("problem", True, None)
+
+
+def test_the_next_step_is_named_with_its_number() -> None:
+    found = next_step(Step.TEAM, "do this")
+    assert (found.topic, found.status, found.text, found.remedy) == (
+        NEXT_STEP,
+        "hint",
+        "1 of 6, the team number",
+        "do this",
+    )
+    drive = next_step(Step.DRIVE, "")
+    assert (drive.status, drive.text.partition(".")[0]) == ("ok", "drive")
+    for step in Step:
+        assert next_step(step, "").text
+    # What is not downloaded is only in the way of what comes after it, and before the packages are on the robot.
+    lacks = hint("sync", "", "pyfrc sync")
+    assert [first_missing(lacks, (step, "")).text.partition(" ")[0] for step in Step] == [
+        "1",
+        "2",
+        "2",
+        "2",
+        "5",
+        "drive.",
+    ]
+    assert first_missing(None, (Step.PACKAGES, "x")).remedy == "x"
+
+
+def test_extras_that_are_installed_or_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    extras = {"one": ("json", "this"), "two": ("no_such_module", "that")}
+    monkeypatch.setattr(sys.modules[check_extras.__module__], "EXTRAS", extras)
+    there, missing = check_extras()
+    assert (there.status, there.text) == ("ok", "this: installed")
+    assert (missing.status, missing.text) == ("hint", "that: not installed")
+    assert "pyfrc[two]" in str(missing.remedy)
+
+
+def test_a_project_that_is_not_there_is_a_problem_only_if_it_was_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for named, status in ((None, "hint"), (Path("nowhere"), "problem")):
+        project, about = _project(DoctorOptions(named))
+        assert project is None
+        assert about is not None
+        assert about.status == status
+    (tmp_path / "robot.py").write_text(ROBOT)
+    project, about = _project(DoctorOptions())
+    assert (project is not None, about) == (True, None)
+
+
+def test_what_is_asked_for_and_differs_here(make_project) -> None:
     settings = """
         [tool.robotpy]
+        robotpy_version = "2026.1.1"
+        robotpy_extras = []
         requires = ["pyfrc==2026.0.1", "none-such==1.0; platform_machine != 'roborio'"]
         components = ["command2"]
     """
-    project = make_project({"robot.py": ROBOT, "pyproject.toml": settings})
-    result = project.run("doctor", "--no-robot")
-    assert result.code == 1
-    order = [line.split()[0] for line in result.stdout.splitlines() if line[:1].isalpha()]
-    assert order == sorted(order, key=["problem", "hint", "ok"].index)
-    assert 'pip install "none-such==1.0"\n' in result.stdout
-    assert "Did you mean 'commands2'?" in result.stdout
-    assert 'pip install "pyfrc' not in result.stdout
-    assert "a robot does not need pyfrc" in result.stdout
-    assert "extras:" not in result.stdout
-    assert "extras:" in project.run("doctor", "--no-robot", "--extras").stdout
+    project = find_project(make_project({"robot.py": ROBOT, "pyproject.toml": settings}).path)
+    found = list(robot_project._asked_for(project, find_installed(), WPILIB))
+    by_status = {status: [each for each in found if each.status == status] for status in ("hint", "problem")}
+    texts = "\n".join(each.text for each in by_status["hint"])
+    assert "robotpy_version is 2026.1.1, but wpilib 2026.2.2 is installed here" in texts
+    assert "robotpy_extras was renamed in 2026" in texts
+    assert "requires pyfrc==2026.0.1, but" in texts
+    assert any("a robot does not need pyfrc" in str(each.remedy) for each in by_status["hint"])
+    remedies = [each.remedy for each in by_status["problem"]]
+    assert any("Did you mean 'commands2'?" in str(each) for each in remedies)
+    assert 'pip install "none-such==1.0"' in remedies
+
+
+def test_problems_come_first_and_the_next_step_last(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = [ok("a", "fine"), hint(NEXT_STEP, "1 of 6", "go on"), hint("b", "a hint", "this"), problem("c", "d", "e")]
+    monkeypatch.setattr("pyfrc_core.doctor.examine", lambda options: iter(found))
+    result = make_project({}).run_here("doctor", "--no-robot")
+    words = [line.split()[0] for line in result.stdout.splitlines() if line[:1].strip()]
+    assert (result.code, words) == (1, ["problem", "hint", "ok", "hint", "1"])
+    assert result.stdout.endswith("\n1 problem\n")
+
+
+def test_downloads_that_are_missing_or_differ(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
+    project = find_project(make_project({"robot.py": ROBOT}).path)
+    examine = sys.modules[check_downloads.__module__]
+
+    def found(count: int, others: int, lock: object = SimpleNamespace(files=[1], controller="X")) -> list[CheckResult]:
+        monkeypatch.setattr(examine, "load_lock", lambda file, season: lock)
+        monkeypatch.setattr(examine, "differences", lambda *_: map(str, range(count)))
+        monkeypatch.setattr(examine, "different_here", lambda lock: map(str, range(others)))
+        return list(check_downloads(project, CURRENT, "2026.2.2"))
+
+    (missing,) = found(0, 0, None)
+    assert missing.text == "there is no pyfrc-lock.toml: what the robot needs was not downloaded with pyfrc"
+    fine, here = found(0, 3)
+    assert (fine.status, fine.text) == ("ok", "1 file for the X are on this computer")
+    assert (here.text, here.remedy) == (
+        "this computer has 0, 1, 2",
+        "For the robot's versions here, too: pyfrc sync --install",
+    )
+    assert found(0, 5)[1].text == "this computer has 0, 1, 2 and 2 more"
+    assert [each.text for each in found(3, 0)] == ["0; 1; 2"]
+    assert [each.text for each in found(5, 0)] == ["0; 1; 2; and 2 more"]
+
+
+def test_settings_that_cannot_be_read_fit_no_season(make_project) -> None:
+    made = make_project({"robot.py": ROBOT, "pyproject.toml": "[tool.robotpy]\nrobotpy_version = 5\n"})
+    assert _season_settings(find_project(made.path)) == _season_settings(None) == []

@@ -115,6 +115,18 @@ def test_no_redirection_leaves_an_encrypted_connection(there: str, to: str, foll
             handler.redirect_request(Request(there), None, 302, "", empty, to)
 
 
+def test_a_file_of_the_servers_size_is_kept_where_no_hash_is_known(server: Server, tmp_path: Path) -> None:
+    wanted = Download("Python 3", server.url, tmp_path / "python.ipk")
+    server.sends(200, CONTENT, Content_Length="100")
+    wanted.to.write_bytes(bytes(100))
+    assert get(wanted) is False
+    assert wanted.to.read_bytes() == bytes(100)
+    wanted.to.write_bytes(bytes(99))
+    with pytest.raises(DownloadError, match=r"^127\.0\.0\.1 sent something else than Python 3"):
+        get(wanted)  # which is no archive, and another time
+    assert [each.name for each in tmp_path.iterdir()] == ["python.ipk"]
+
+
 def test_redirections_are_looked_at(server: Server, tmp_path: Path) -> None:
     server.sends(302, b"", Location="ftp://127.0.0.1/six.whl")
     with pytest.raises(DownloadError, match="redirects to ftp://"):

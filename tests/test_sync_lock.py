@@ -176,12 +176,13 @@ RETRYING = (
         ),
         (
             LOOKED + RETRYING + MISSING.format("six", "none"),
-            "the package index b.invalid cannot be reached: Connection refused",
+            "a package index cannot be reached: Connection refused; pip has looked in http://a.invalid/simple, "
+            "http://b.invalid:8/robot",
             "pyfrc sync --from DIRECTORY",
         ),
         (
             "Could not fetch URL http://a.invalid/: certificate verify failed",
-            "the package index cannot be reached: its certificate could not be verified",
+            "a package index cannot be reached: its certificate could not be verified",
             "A network that inspects connections needs its certificate",
         ),
         ("OSError: [Errno 28] No space left on device", "the disk is full", "Free some space"),

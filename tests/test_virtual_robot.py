@@ -12,8 +12,11 @@ import socket
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager, nullcontext
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from conftest import RobotProject, sampled
@@ -31,11 +34,13 @@ from pyfrc_core.deploy.targets import CONTROLLERS, ControllerKind
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.doctor.steps import Step
+from pyfrc_core.errors import PyfrcError, UsageError
 from pyfrc_core.project import find_project
-from pyfrc_core.season import CURRENT
+from pyfrc_core.virtual_robot import robot as virtual_robot
 from pyfrc_core.virtual_robot.console import ConsoleServer
+from pyfrc_core.virtual_robot.disk import RobotDisk
 from pyfrc_core.virtual_robot.robot import Control
-from pyfrc_core.virtual_robot.supervisor import Supervisor
+from pyfrc_core.virtual_robot.supervisor import Supervisor, program_words
 
 pytestmark = pytest.mark.bare
 
@@ -46,14 +51,6 @@ import wpilib
 class MyRobot(wpilib.TimedRobot):
     def robotInit(self):
         print("version 1 of", os.getpid(), flush=True)
-"""
-CRASHES = """
-import wpilib
-
-class MyRobot(wpilib.TimedRobot):
-    def robotInit(self):
-        print("\\7", end="")
-        raise RuntimeError("no gyro")
 """
 
 
@@ -140,26 +137,6 @@ def ended(pid: int) -> bool:
         os.close(descriptor)
 
 
-@pytest.mark.slow
-def test_a_project_for_another_controller_is_refused(project: RobotProject, directory: Path) -> None:
-    other = next(each for each in CONTROLLERS if each.name != CURRENT.controller.name)
-    with started(project, directory, "--controller", other.name.upper()) as robot:
-        for command in (["deploy", "--skip-tests"], ["deploy-info"], ["deploy", "--rollback"]):
-            result = project.run(*command, "--robot", robot.address)
-            assert result.code == 1
-            assert result.first_error == (
-                f"{robot.address}: this robot has a {other.name}, but the robots of season {CURRENT.year} have a "
-                f"{CURRENT.controller.name}"
-            )
-        home = directory / "root" / other.layout.home.lstrip("/")
-        assert list(home.iterdir()) == []
-    result = project.run("virtual-robot", "--directory", directory, "--controller", "crio")
-    assert (result.code, result.stderr) == (
-        2,
-        "error: there is no controller 'crio'\n  Write: --controller roborio or systemcore\n",
-    )
-
-
 @pytest.mark.parametrize("there", CONTROLLERS, ids=lambda each: each.name)
 def test_another_controller_is_refused_without_asking_for_a_password(
     project: RobotProject, directory: Path, there: ControllerKind
@@ -218,6 +195,7 @@ def test_the_program_is_disabled_finds_its_files_and_does_not_outlive_a_robot_th
                     station = wpilib.DriverStation
                     print("seen:", station.isDSAttached(), station.isEnabled(), wpilib.RobotBase.isSimulation())
                     print("read:", Path(wpilib.getDeployDirectory(), "path.txt").read_text())
+                    print("name:", __name__, type(self).__module__)
                     print("home:", Path.home(), Path.cwd() == Path.home())
                     print("silenced:", station.isJoystickConnectionWarningSilenced())
                     print("version 1 of", os.getpid(), flush=True)
@@ -229,22 +207,11 @@ def test_the_program_is_disabled_finds_its_files_and_does_not_outlive_a_robot_th
         assert "False False True" in robot.said("seen:")
         assert "a path" in robot.said("read:")
         assert f"{directory / 'root/home/lvuser'} True" in robot.said("home:")
+        assert "robot robot" in robot.said("name:")
         assert "silenced: True" in robot.said("silenced:")
         pid = robot.pid()
         robot.command.kill()
         assert ended(pid)
-
-
-@pytest.mark.slow
-def test_a_program_that_crashes_is_started_again_and_again(project: RobotProject, directory: Path) -> None:
-    """And what it prints does not control the terminal."""
-    project.write({"robot.py": CRASHES})
-    with started(project, directory) as robot:
-        result = project.run("deploy", "--skip-tests", "--robot", robot.address)
-        assert result.code == 3
-        assert "RuntimeError: no gyro" in result.output
-        robot.said("the robot program has ended (exit code 1); restarting it", times=3)
-        assert "\7" not in "".join(robot.printed) + result.output
 
 
 @pytest.mark.slow
@@ -272,42 +239,12 @@ def test_a_line_that_is_printed_right_after_a_client_has_connected_reaches_it(mo
     console = ConsoleServer("127.0.0.1")
     try:
         with socket.create_connection(("127.0.0.1", console.port)) as client:
-            console.send(b"first")
-            assert client.recv(100).endswith(b"first")
+            for number, line in ((1, b"first"), (2, b"second")):
+                console.send(line)
+                frame = client.recv(100)
+                assert (frame[7:9], frame[9:]) == (bytes([0, number]), line)
     finally:
         console.close()
-
-
-@pytest.mark.slow
-def test_two_at_once_have_ports_consoles_and_programs_of_their_own(project: RobotProject, directory: Path) -> None:
-    with started(project, directory) as one, started(project, directory.with_name("other")) as other:
-        assert one.address != other.address
-        with project.start("console", "--robot", other.address) as console:
-            assert any("connected to" in line for line in console.stdout)
-            deploy(other, project)
-            assert any("version 1 of" in line for line in console.stdout)
-            console.send_signal(signal.SIGINT)
-        assert not any("version 1" in line for line in one.printed)
-
-
-@pytest.mark.slow
-def test_a_port_that_is_taken_and_a_directory_in_use_are_refused(project: RobotProject, directory: Path) -> None:
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
-        result = project.run("virtual-robot", "--directory", directory, "--port", port)
-        assert (result.code, result.stdout) == (1, "")
-        assert result.first_error == f"127.0.0.1:{port}: the port cannot be used: Address already in use"
-    with started(project, directory) as robot:
-        result = project.run("virtual-robot", "--directory", directory)
-        assert result.code == 1
-        assert f"a virtual robot is already running here, at {robot.address}" in result.first_error
-    result = project.run("virtual-robot", "--directory", project.path)
-    assert result.code == 2
-    assert "this directory has files that are not from a virtual robot" in result.first_error
-    result = project.run("virtual-robot", "--directory", project.path / "robot.py" / "virtual-robot")
-    assert result.code == 1
-    assert re.search("cannot store the virtual robot's files here: (not a directory|file exists)", result.first_error)
-    assert "Choose a writable directory with --directory DIR." in result.stderr
 
 
 def test_a_command_gets_the_address_and_the_robot_ends_with_it(project: RobotProject, directory: Path) -> None:
@@ -317,13 +254,6 @@ def test_a_command_gets_the_address_and_the_robot_ends_with_it(project: RobotPro
     result = project.run("virtual-robot", "--directory", directory, "--", "no-such-command")
     assert result.code == 2
     assert "there is no command 'no-such-command'" in result.first_error
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="processes there end without signals")
-@pytest.mark.slow
-def test_a_command_that_a_signal_ends_gives_the_exit_code_of_a_shell(project: RobotProject, directory: Path) -> None:
-    result = project.run("virtual-robot", "--directory", directory, "--", "sh", "-c", "kill -KILL $$")
-    assert result.code == 128 + signal.SIGKILL, result.output
 
 
 @pytest.mark.slow
@@ -391,35 +321,6 @@ def test_a_stopped_robot_leaves_no_child_processes(project: RobotProject, direct
         assert all(ended(child) for child in children)
 
 
-@pytest.mark.slow
-def test_silent_connections_stop_no_deploy(project: RobotProject, directory: Path) -> None:
-    """To every port at which the robot listens: SSH, console, control, and its program's."""
-    missing = ["Linux"] if sys.platform != "linux" else []
-    require("that silent connections stop no deploy", missing)
-    with started(project, directory) as robot, ExitStack() as silent:
-        deploy(robot, project)
-        program = robot.pid()
-        ports = listening_ports(parent_of(program)) | listening_ports(program)
-        assert len(ports) >= 3
-        for port in ports:
-            for _ in range(3):
-                silent.enter_context(socket.create_connection(("127.0.0.1", port)))
-        project.write({"robot.py": ROBOT.replace("version 1", "version 2")})
-        assert "the program runs" in deploy(robot, project)
-        assert "release 2, running" in on(robot, project, "deploy-info")
-
-
-def parent_of(process: int) -> int:
-    return int(Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[1])
-
-
-def listening_ports(process: int) -> set[int]:
-    """Return the TCP ports at which a process listens."""
-    links = {os.readlink(each) for each in Path(f"/proc/{process}/fd").iterdir()}  # noqa: PTH115
-    rows = [row.split() for row in Path("/proc/net/tcp").read_text(encoding="utf-8").splitlines()[1:]]
-    return {int(row[1].split(":")[1], 16) for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in links}
-
-
 def test_a_control_request_needs_the_key(project: RobotProject, directory: Path) -> None:
     program = Supervisor(RobotPaths(ROBORIO.layout, str(directory)), lambda line: None, lambda text: None)
     control = Control(program)
@@ -430,3 +331,91 @@ def test_a_control_request_needs_the_key(project: RobotProject, directory: Path)
                 assert client.recv(100) == response
     finally:
         control.close()
+
+
+def test_what_can_be_wrong_with_its_directory(tmp_path: Path) -> None:
+    place, layout = tmp_path / "robot", ROBORIO.layout
+    with RobotDisk(place, layout) as disk:
+        assert disk.last_port() is None
+        disk.write_address("127.0.0.1:2222", 2222)
+        assert disk.last_port() == 2222
+        (disk.paths.home / "program").touch()
+        (disk.paths.of("/tmp") / "old").touch()
+        with pytest.raises(PyfrcError, match=r"a virtual robot is already running here, at 127\.0\.0\.1:2222\n"):
+            RobotDisk(place, layout)
+    assert (place / "lock").read_text() == "", "it has no address any more"
+    with RobotDisk(place, layout) as again:
+        assert again.key == disk.key
+        assert (disk.paths.home / "program").exists()
+        assert not (disk.paths.of("/tmp") / "old").exists(), "as on a robot, at each start"
+    with RobotDisk(place, layout, fresh=True) as fresh:
+        assert (fresh.key, list(fresh.paths.home.iterdir())) == (disk.key, [])
+    (place / "host_key").write_text("no key")
+    with pytest.raises(PyfrcError, match="this is not an SSH key"):
+        RobotDisk(place, layout)
+    with pytest.raises(UsageError, match="this directory has files that are not from a virtual robot"):
+        RobotDisk(tmp_path, layout)
+    (tmp_path / "file").touch()
+    with pytest.raises(PyfrcError, match=r"cannot store the virtual robot's files here: (not a directory|file exists)"):
+        RobotDisk(tmp_path / "file/robot", layout)
+
+
+def test_the_port_is_that_of_the_last_start_or_the_next_free_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken, socket.create_server(("127.0.0.1", 0)) as free:
+        ports = [each.getsockname()[1] for each in (taken, free)]
+        free.close()
+        with pytest.raises(
+            PyfrcError, match=rf"127\.0\.0\.1:{ports[0]}: the port cannot be used: Address already in use"
+        ):
+            virtual_robot._listener(ports[0], None)
+        for named, last in ((ports[1], ports[0]), (None, ports[1])):
+            with virtual_robot._listener(named, last) as listening:
+                assert listening.getsockname()[1] == ports[1]
+        monkeypatch.setattr(virtual_robot, "FIRST_PORT", ports[0])
+        with virtual_robot._listener(None, ports[0]) as listening:
+            assert listening.getsockname()[1] > ports[0]
+
+
+def test_a_command_s_exit_code_and_the_controllers_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[dict[str, Any]] = []
+
+    class Robot(nullcontext[Any]):
+        def __init__(self, directory: Path, **how: Any) -> None:
+            super().__init__(SimpleNamespace(address="there"))
+            made.append({"directory": directory, **how})
+
+    monkeypatch.setattr(virtual_robot, "VirtualRobot", Robot)
+    run = partial(virtual_robot.run_command, directory=tmp_path, port=None, fresh=True)
+    assert run([sys.executable, "-c", "import sys; sys.exit(sys.argv[1] == 'there')"], controller="RoboRIO") == 1
+    assert made == [{"directory": tmp_path, "controller": ROBORIO, "port": None, "fresh": True}]
+    if sys.platform != "win32":
+        kill = "import os, signal; os.kill(os.getpid(), signal.SIGKILL)"
+        assert run([sys.executable, "-c", kill], controller=None) == 128 + signal.SIGKILL
+    with pytest.raises(UsageError, match="there is no controller 'crio'\n  Write: --controller roborio or systemcore"):
+        run([sys.executable], controller="crio")
+    with pytest.raises(UsageError, match="there is no command 'no-such-command'"):
+        run(["no-such-command"], controller=None)
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ("env A=/b /usr/bin/python3 -u -O -m robotpy --main /home/lvuser/py/r.py run", ["-u", "-O", "r.py", "run"]),
+        ("python3.14 -m robotpy --main '/home/lvuser/py/r.py' -v run", ["r.py", "-v", "run"]),
+        ("java -jar Robot.jar", None),
+        ("python3 -m robotpy --main", None),
+        ("python3 -m other --main /home/lvuser/py/r.py run", None),
+        ("python3 -m robotpy '", None),
+    ],
+)
+def test_start_commands_are_translated(command: str, words: list[str] | None, tmp_path: Path) -> None:
+    paths = RobotPaths(ROBORIO.layout, str(tmp_path))
+    found = program_words(command, paths)
+    if words is None:
+        assert found is None
+        return
+    assert found is not None
+    assert found[:3] == [sys.executable, "-X", "utf8"]
+    runner = found.index("pyfrc_core.virtual_robot.program")
+    assert found[runner + 1 : runner + 3] == ["--main", str(paths.home / "py/r.py")]
+    assert [*found[3 : runner - 1], Path(found[runner + 2]).name, *found[runner + 3 :]] == words

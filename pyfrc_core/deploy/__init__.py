@@ -14,6 +14,6 @@ WPILib: the program is imported, and tested, in other processes (`local_checks`)
   every team's robot has the same address.
 - Nothing that the robot sends is trusted: `agent_stream` limits its time and size, `responses` checks each field, and
   control characters are made visible before they are printed.
-- The console (`console`, `console_frames`) is our own code: `pynetconsole` does not check what it receives, and ends at
-  a wrong message.
+- The console (`agent.console`: frames and the client, on laptop and robot) is our own code: `pynetconsole` does not
+  check what it receives, and ends at a wrong message.
 """

@@ -7,17 +7,17 @@ import socket
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import asdict
+from dataclasses import asdict, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from ..file_hash import open_file
-from ..terminal_text import one_line
 from . import recovery_hints
 from .agent import start_monitor, wire
 from .agent_stream import AgentChannel, AgentStream, TimeLimits, agent_command, agent_package
 from .errors import ConnectionFailedError, DeployError, OtherComputerError
 from .facts import Deployed, DeployRequest, Plan, RobotFacts, RolledBack, StartState, Watched
-from .responses import Fields, ResponseError
+from .responses import Raw, ResponseError, parse, value_of
 
 if TYPE_CHECKING:
     from .discovery import Address
@@ -93,7 +93,7 @@ class AgentClient:
         layout = controller.layout._asdict()
         first = wire.message_frame({"who": _user_and_host(), "layout": layout, **(hello or {})})
         try:
-            stream.start(agent_package() + first)
+            stream.send(agent_package() + first, first=True)
             client.facts = stream.read_response(client._facts, silence=stream.limits.start)
         except BaseException:
             client.close()
@@ -114,18 +114,18 @@ class AgentClient:
         """Return the robot's current facts."""
         return self._request(self._facts, "info")
 
-    def _facts(self, fields: Fields) -> RobotFacts:
-        return RobotFacts.of(fields, self._controller)
+    def _facts(self, message: object) -> RobotFacts:
+        return RobotFacts.of(message, self._controller)
 
     def plan(self, manifest: Manifest, on_progress: OnProgress | None = None) -> Plan:
         """Return what a deploy of these files would do. Nothing is written on the robot."""
         with self._reporting(on_progress):
-            return self._request(Plan.of, "plan", files=_as_lists(manifest))
+            return self._request(partial(parse, Plan), "plan", files=_as_lists(manifest))
 
     def check(self, on_progress: OnProgress | None = None) -> tuple[str, ...]:
         """Compare the robot's code with what was deployed and installed. Return the paths of files that differ."""
         with self._reporting(on_progress):
-            return self._request(lambda fields: tuple(map(one_line, fields.texts("different"))), "check")
+            return self._request(lambda done: value_of(done, "different", tuple[str, ...]), "check")
 
     def install(
         self,
@@ -149,10 +149,10 @@ class AgentClient:
         ]
         with self._reporting(on_progress):
             self._send("install", environment=environment, python=python, wheels=listed)
-            needed = self._stream.read_message(lambda fields: _needed(fields, wheels))
+            needed = self._stream.read_message(lambda message: _needed(message, wheels))
             if needed:
                 self._send_contents(needed, on_progress, None)
-            self._stream.read_response(lambda fields: None)
+            self._stream.read_response(lambda done: None)
         return len(needed)
 
     def deploy(self, manifest: Manifest, request: DeployRequest, on_progress: OnProgress | None = None) -> Deployed:
@@ -169,9 +169,9 @@ class AgentClient:
         # list of the contents that it needs, it may have all of them.
         unknown = recovery_hints.OVERWRITING if request.in_place else recovery_hints.MAYBE_SWITCHED
 
-        def on_message(message: Fields) -> None:
+        def on_message(message: object) -> None:
             nonlocal has_begun
-            phase = message.line("phase")
+            phase = value_of(message, "phase", str)
             if phase == "switch":
                 has_begun = True
                 self.recovery_hint = recovery_hints.OVERWRITING if request.in_place else recovery_hints.SWITCHING
@@ -182,11 +182,11 @@ class AgentClient:
             try:
                 self.recovery_hint = unknown
                 self._send("deploy", **asdict(request), files=_as_lists(manifest))
-                needed = self._stream.read_message(lambda fields: _needed(fields, manifest))
+                needed = self._stream.read_message(lambda message: _needed(message, manifest))
                 if needed:
                     self.recovery_hint = before  # it waits for the last of them
                     self._send_contents(needed, on_progress, unknown)
-                deployed = self._stream.read_response(lambda fields: _deployed(fields, request), on_message)
+                deployed = self._stream.read_response(lambda done: _deployed(done, request), on_message)
             except ConnectionFailedError:
                 raise
             except DeployError:
@@ -209,7 +209,7 @@ class AgentClient:
         if not self._is_restarting:
             self._send("restart")
         self._is_restarting = False
-        self.program_survived = self._stream.read_response(lambda fields: fields.flag("survived"))
+        self.program_survived = self._stream.read_response(lambda done: value_of(done, "survived", bool))
         self.recovery_hint = recovery_hints.started(self._current, self._previous)
         return self.program_survived
 
@@ -229,32 +229,28 @@ class AgentClient:
         """
         output = ""
 
-        def on_message(message: Fields) -> None:
+        def on_message(message: dict[str, Any]) -> None:
             nonlocal output
             if "watching" in message:
-                state = StartState.of(message.object("watching"))
+                state = value_of(message, "watching", StartState)
                 self.recovery_hint = recovery_hints.started(self._current, self._previous, state)
                 if on_state is not None:
                     on_state(state)
                 return
-            printed = message.text("output")
+            printed = value_of(message, "output", Raw)
             output = (output + printed)[-_OUTPUT_KEPT:]
             if on_output is not None:
                 on_output(printed)
 
         self._send("watch", seconds=seconds, unheard=seconds if unheard is None else unheard)
-        verdict, state, has_run = self._stream.read_response(
-            lambda fields: (
-                fields.one_of("verdict", start_monitor.VERDICTS),
-                StartState.of(fields),
-                "has_run" in fields and fields.flag("has_run"),
-            ),
+        watched = self._stream.read_response(
+            _watched,
             on_message,
             silence=self._stream.limits.start,
             within=seconds + 2 * self._stream.limits.start,
         )
         self.recovery_hint = None
-        return Watched(verdict, output, state, has_run)
+        return replace(watched, output=output)
 
     def rollback(
         self, release: int | None = None, on_progress: OnProgress | None = None, *, only_from_deployed: bool = False
@@ -266,7 +262,7 @@ class AgentClient:
         """
         request = {"release": release, "only_from": self._current if only_from_deployed else None}
         with self._reporting(on_progress):
-            back = self._change(RolledBack.of, recovery_hints.rolling_back(release), "rollback", **request)
+            back = self._change(partial(parse, RolledBack), recovery_hints.rolling_back(release), "rollback", **request)
         # None: a rollback from there would return to the release that was rolled back.
         self._current, self._previous, self._command = back.release.number, None, _ANY
         self.recovery_hint = recovery_hints.rolled_back(back.release.number)
@@ -275,15 +271,15 @@ class AgentClient:
     def undeploy(self, on_progress: OnProgress | None = None) -> bool:
         """Stop the program and remove it with all releases. Return whether there was one."""
         with self._reporting(on_progress):
-            removed = self._change(lambda fields: fields.flag("removed"), recovery_hints.UNDEPLOYING, "undeploy")
+            removed = self._change(lambda done: value_of(done, "removed", bool), recovery_hints.UNDEPLOYING, "undeploy")
         self.recovery_hint = None
         return removed
 
-    def _change(self, parse: Callable[[Fields], T], hint: RecoveryHint, op: str, **request: Any) -> T:
+    def _change(self, read: Callable[[object], T], hint: RecoveryHint, op: str, **request: Any) -> T:
         before, self.recovery_hint = self.recovery_hint, hint
         try:
             with self._tracking_changes():
-                return self._request(parse, op, **request)
+                return self._request(read, op, **request)
         except OtherComputerError:
             self.recovery_hint = before  # if the releases have changed, another computer has changed them
             raise
@@ -306,9 +302,9 @@ class AgentClient:
                         self.recovery_hint = recovery_hints.deployed(now.current, self._current)
             raise
 
-    def _request(self, parse: Callable[[Fields], T], op: str, **request: Any) -> T:
+    def _request(self, read: Callable[[object], T], op: str, **request: Any) -> T:
         self._send(op, **request)
-        return self._stream.read_response(parse)
+        return self._stream.read_response(read)
 
     def _send(self, op: str, **request: Any) -> None:
         self._stream.send_request({"op": op, **request})
@@ -341,9 +337,10 @@ class AgentClient:
         def show(progress: object) -> None:
             # The content is only displayed, so a message with invalid content still counts as a keep-alive message.
             with suppress(ResponseError):
-                fields = Fields(progress)
+                step = value_of(progress, "phase", str), value_of(progress, "count", int), value_of(progress, "of", int)
+                self._robot_reports_progress = True
                 if on_progress is not None:
-                    on_progress(fields.line("phase"), fields.count("count"), fields.count("of"))
+                    on_progress(*step)
 
         self._robot_reports_progress = False
         self._stream.on_keep_alive = show
@@ -353,20 +350,27 @@ class AgentClient:
             self._stream.on_keep_alive = None
 
 
-def _deployed(fields: Fields, request: DeployRequest) -> Deployed:
-    deployed = Deployed.of(fields)
+def _deployed(done: object, request: DeployRequest) -> Deployed:
+    deployed = parse(Deployed, done)
     if deployed.release is None and not request.in_place:
         raise ResponseError("'release' is null")
     return deployed
 
 
-def _needed(fields: Fields, manifest: Manifest) -> list[Entry]:
+def _watched(done: object) -> Watched:
+    watched = parse(Watched, done, output="", state=parse(StartState, done))
+    if watched.verdict not in start_monitor.VERDICTS:
+        raise ResponseError(f"there is no verdict {watched.verdict!r}")
+    return watched
+
+
+def _needed(message: object, manifest: Manifest) -> list[Entry]:
     """Return the files whose contents the robot requests.
 
     :raises ResponseError: if it requests a file that was not offered, or one file twice
     """
     by_path = {entry.path: entry for entry in manifest.entries}
-    paths = fields.texts("need")
+    paths = value_of(message, "need", tuple[Raw, ...])
     if not by_path.keys() >= set(paths) or len(set(paths)) < len(paths):
         raise ResponseError("'need' has files that were not offered, or one of them twice")
     return [by_path[path] for path in paths]

@@ -23,7 +23,7 @@ from .. import wheel_files
 from ..terminal_text import one_line
 from .agent import wire
 from .errors import ConnectionFailedError, DeployError, NoPythonError, OtherComputerError, RefusedError
-from .responses import Fields, ResponseError, parse_json
+from .responses import Raw, ResponseError, parse_json, value_of
 from .robot_checks import PREPARE
 
 #: The maximum size of a response, compressed or not, in bytes: enough for the paths of 50,000 files.
@@ -107,21 +107,16 @@ class AgentStream:
             raise self.protocol_error("it sent a message without a request")
         self.send(wire.message_frame(request))
 
-    def send(self, data: bytes) -> None:
-        """Send bytes."""
-        self._channel.settimeout(self.limits.silence)
-        try:
-            self._channel.sendall(data)
-        except (OSError, EOFError) as error:
-            raise self._lost(error) from error
+    def send(self, data: bytes, *, first: bool = False) -> None:
+        """Send bytes.
 
-    def start(self, data: bytes) -> None:
-        """Send the first bytes. Without Python on the robot, the command may already have ended."""
-        self._channel.settimeout(self.limits.start)
+        :param first: whether they are the first ones: without Python on the robot, the command may already have ended
+        """
+        self._channel.settimeout(self.limits.start if first else self.limits.silence)
         try:
             self._channel.sendall(data)
         except (OSError, EOFError) as error:
-            raise self._ended(error) from error
+            raise (self._ended(error) if first else self._lost(error)) from error
 
     def has_message(self) -> bool:
         """Return whether a message has arrived that is not a keep-alive message."""
@@ -130,24 +125,24 @@ class AgentStream:
             self._unread = None if self._is_keep_alive(message) else message
         return self._unread is not None
 
-    def read_message(self, parse: Callable[[Fields], T]) -> T:
+    def read_message(self, read: Callable[[dict[str, Any]], T]) -> T:
         """Read the next message that is not a keep-alive message.
 
-        :param parse: converts its fields to the result
+        :param read: converts it to the result
         """
-        return self._parse(parse, self._next(self.limits.silence, self._clock() + self.limits.response))
+        return self._read(read, self._next(self.limits.silence, self._clock() + self.limits.response))
 
     def read_response(
         self,
-        parse: Callable[[Fields], T],
-        on_message: Callable[[Fields], None] | None = None,
+        read: Callable[[object], T],
+        on_message: Callable[[dict[str, Any]], None] | None = None,
         *,
         silence: float | None = None,
         within: float | None = None,
     ) -> T:
         """Read messages until the response.
 
-        :param parse: converts the fields of ``done`` to the result
+        :param read: converts ``done`` to the result
         :param on_message: called with each message before the response, except for keep-alive messages; by default,
             such a message is an error
         :param silence: seconds until each frame begins; default: `TimeLimits.silence`
@@ -157,10 +152,10 @@ class AgentStream:
         for _ in range(MAX_FRAMES):
             message = self._next(self.limits.silence if silence is None else silence, end)
             if "done" in message:
-                return self._parse(parse, message["done"])
+                return self._read(read, message["done"])
             if on_message is None:
                 raise self.protocol_error("it sent a message that is not a response")
-            self._parse(on_message, message)
+            self._read(on_message, message)
         raise self.protocol_error(f"it sent {MAX_FRAMES} frames and no response")
 
     def _next(self, silence: float, end: float) -> dict[str, Any]:
@@ -173,9 +168,9 @@ class AgentStream:
                 return message
         raise self.protocol_error(f"it sent {MAX_FRAMES} keep-alive messages and no response")
 
-    def _parse(self, parse: Callable[[Fields], T], value: object) -> T:
+    def _read(self, read: Callable[[Any], T], value: object) -> T:
         try:
-            return parse(Fields(value))
+            return read(value)
         except ResponseError as error:
             raise self.protocol_error(error) from error
 
@@ -244,11 +239,10 @@ class AgentStream:
         return DeployError(f"the agent on the robot has ended: {one_line(last)}", where=self._where, remedy=_RETRY)
 
     def _error(self, message: dict[str, Any]) -> DeployError:
+        message = {"remedy": "", "traceback": "", **message}
         try:
-            fields = Fields(message)
-            kind, text = fields.line("error"), fields.line("message")
-            remedy = fields.line("remedy") if "remedy" in fields else ""
-            traceback = fields.text("traceback") if "traceback" in fields else ""
+            kind, text, remedy = (value_of(message, key, str) for key in ("error", "message", "remedy"))
+            traceback = value_of(message, "traceback", Raw)
         except ResponseError as error:
             return self.protocol_error(error)
         if kind in ("bug", "protocol"):
@@ -319,14 +313,6 @@ _MODULES = (
 )
 
 
-_DOCSTRING = re.compile(r'^( *)"""(.*?)"""$', re.MULTILINE | re.DOTALL)
-
-
-def _emptied(docstring: re.Match[str]) -> str:
-    """Return an empty docstring with as many lines, so that those of the code keep their numbers."""
-    return docstring[1] + '""' + "\n" * docstring[2].count("\n")
-
-
 def agent_command(python: str) -> str:
     """Return the command that loads the agent.
 
@@ -342,6 +328,6 @@ def agent_package() -> bytes:
     directory = Path(wire.__file__).parent
     files = {wheel_files.__name__: Path(wheel_files.__file__)}
     files |= {f"{package}.{each}".removesuffix(".__init__"): directory / f"{each}.py" for each in _MODULES.split()}
-    modules = [[name, _DOCSTRING.sub(_emptied, file.read_text("utf-8"))] for name, file in files.items()]
+    modules = [[name, file.read_text("utf-8")] for name, file in files.items()]
     packed = zlib.compress(json.dumps(modules).encode(), 9)
     return b"%08d" % len(packed) + packed

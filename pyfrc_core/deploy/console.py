@@ -1,23 +1,21 @@
-"""Showing the robot program's output, received from the robot's console service."""
+"""Showing the robot program's output: from the robot's console service, or from a command on the robot, over SSH."""
 
 from __future__ import annotations
 
-import contextlib
-import io
 import re
+import shlex
 import socket
-import struct
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 
-from ..terminal_text import VisibleStream, visible
-from .agent.console import ERROR, KEEP_ALIVE, PORTS, TEXT, split_frames
-from .connection import VIRTUAL_ROBOT_GREETING
+from ..terminal_text import VisibleStream, one_line, visible
+from .agent.console import PORTS, ConsoleClient, ConsoleProtocolError
+from .connection import VIRTUAL_ROBOT_GREETING, Connection
 from .discovery import CONNECT_SECONDS, Address
-from .errors import NoConsoleError
+from .errors import ConnectionFailedError, NoConsoleError
 
 #: The robot's ports for a Driver Station: its TCP connection and its control packets.
 TCP_PORT, UDP_PORT = 1740, 1110
@@ -57,95 +55,12 @@ def _send_packets(tcp: socket.socket, udp: socket.socket, robot: tuple[str | int
         ended.wait(_PACKET_SECONDS)
 
 
-#: Kinds of messages are below this number. Kinds other than text and error are skipped.
-_KINDS = 32
-#: The maximum number of consecutive empty frames, which keep a connection alive. A robot sends few of them.
-MAX_EMPTY_FRAMES = 1000
-
-_TEXT_HEAD = struct.Struct(">BfH")  # kind, time in seconds, number
-_ERROR_HEAD = struct.Struct(">BfHHiB")  # kind, time in seconds, number, occurrences, error code, flags
-_LENGTH = struct.Struct(">H")
-
-
-class ConsoleProtocolError(ValueError):
-    """The data is not from a robot's console. The message has the reason."""
-
-
-class ConsoleFrames:
-    """The frames of one connection. At most one incomplete frame (64 KiB) is buffered."""
-
-    def __init__(self) -> None:
-        self._unread = b""
-        self._empty = 0
-
-    def lines(self, received: bytes) -> Iterator[str]:
-        """Yield the line of each complete frame, without a newline.
-
-        :param received: the next bytes
-        :raises ConsoleProtocolError: if the data is not from a robot's console
-        """
-        frames, self._unread = split_frames(self._unread + received)
-        for frame in frames:
-            if frame:
-                self._empty = 0
-                line = _line(frame)
-                if line is not None:
-                    yield line
-            else:
-                self._empty += 1
-                if self._empty > MAX_EMPTY_FRAMES:
-                    raise ConsoleProtocolError("it sends too many empty frames")
-        if len(self._unread) > 2:
-            _check_kind(self._unread[2])  # checked early, since the rest of the frame may never arrive
-
-    def reset_count(self) -> None:
-        """Reset the count of empty frames, after some time has passed."""
-        self._empty = 0
-
-
-def _check_kind(kind: int) -> None:
-    if kind >= _KINDS:
-        raise ConsoleProtocolError(f"it sends messages of kind {kind}, which does not exist")
-
-
-def _line(frame: bytes) -> str | None:
-    kind = frame[0]
-    _check_kind(kind)
-    if kind == TEXT:
-        if len(frame) < _TEXT_HEAD.size:
-            raise ConsoleProtocolError(f"it sends a text message of {len(frame)} bytes, which is too short")
-        _, seconds, _ = _TEXT_HEAD.unpack_from(frame)
-        return f"[{seconds:.2f}] {_decoded(frame[_TEXT_HEAD.size :])}"
-    if kind == ERROR:
-        if len(frame) < _ERROR_HEAD.size:
-            raise ConsoleProtocolError(f"it sends an error message of {len(frame)} bytes, which is too short")
-        _, seconds, _, _, code, _ = _ERROR_HEAD.unpack_from(frame)
-        details, location, stack = _texts(frame, 3)
-        return f"[{seconds:.2f}] {code} {details} {location} {stack}"
-    return None
-
-
-def _texts(frame: bytes, count: int) -> list[str]:
-    texts, position = [], _ERROR_HEAD.size
-    for _ in range(count):
-        start = position + _LENGTH.size
-        position = start + _LENGTH.unpack_from(frame, position)[0] if start <= len(frame) else start
-        if position > len(frame):
-            raise ConsoleProtocolError("it sends an error message with texts longer than the message")
-        texts.append(_decoded(frame[start:position]))
-    return texts
-
-
-def _decoded(text: bytes) -> str:
-    return text.decode(errors="replace")
-
-
 _SECONDS_BETWEEN_TRIES = 1.0
-_KEEP_ALIVE_SECONDS = 2.0
-_WAKE_SECONDS = 0.5
+_WAKE_SECONDS = 0.5  # on Windows, Ctrl-C does not interrupt a blocking receive
 #: A connection that lasts this long counts as stable even without output. Its loss is reported again.
 _STABLE_SECONDS = 5.0
-_RECEIVE_BYTES = 1 << 16
+#: A longer line of a command's output is broken.
+_MAX_LINE_BYTES = 1 << 16
 
 
 def console_port(address: Address) -> int | None:
@@ -163,20 +78,33 @@ def console_port(address: Address) -> int | None:
 
 
 def follow_console(address: Address, without_driver_station: bool = False, quiet: bool = False) -> None:
-    """Show the robot program's output until Ctrl-C. Reconnect after a lost connection.
+    """Show the output that the robot's console service sends until Ctrl-C. Reconnect after a lost connection.
 
     :param without_driver_station: imitate a Driver Station, so that the robot sends its output without one
     :param quiet: do not report the state of the connection
     :raises NoConsoleError: if the server is not a robot's console
     """
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(line_buffering=True)  # flush each line, also to a pipe
-    output = VisibleStream(sys.stdout)
-    report = ConnectionReports(quiet)
-    with contextlib.suppress(KeyboardInterrupt):
+    _follow(lambda report: lines_of_one_connection(address, without_driver_station, report), quiet)
+
+
+def follow_output(connect: Callable[[], AbstractContextManager[Connection]], quiet: bool = False) -> None:
+    """Show the output that a command on the robot prints until Ctrl-C. Reconnect after a lost connection.
+
+    :param connect: connects to the robot, over SSH
+    :param quiet: do not report the state of the connection
+    :raises NoConsoleError: if the robot cannot print it
+    :raises DeployError: if the robot refuses the login
+    """
+    _follow(lambda report: _lines_over_ssh(connect, report), quiet)
+
+
+def _follow(lines: Callable[[ConnectionReports], Iterator[str]], quiet: bool) -> None:
+    output, report = VisibleStream(sys.stdout), ConnectionReports(quiet)
+    with suppress(KeyboardInterrupt):
         while True:
-            for line in lines_of_one_connection(address, without_driver_station, report):
+            for line in lines(report):
                 output.write(f"{line}\n")
+                output.flush()
             time.sleep(_SECONDS_BETWEEN_TRIES)
 
 
@@ -211,17 +139,16 @@ def lines_of_one_connection(
     :raises NoConsoleError: if the server is not a robot's console
     """
     where = address
-    with contextlib.ExitStack() as open_now:
+    with ExitStack() as open_now:
         try:
             port = None if address.port == 22 else console_port(address)
             if port is None and without_driver_station:
                 where = Address(address.host, TCP_PORT)
                 open_now.enter_context(imitated_driver_station(address.host))
             where = Address(address.host, port or PORTS[0])
-            console = open_now.enter_context(
-                socket.create_connection((where.host, where.port), timeout=CONNECT_SECONDS)
-            )
-            console.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            client = ConsoleClient(where.host, [where.port])
+            open_now.callback(client.disconnect)
+            client.connect(CONNECT_SECONDS)
         except ConnectionRefusedError:
             report("refused", f"{where} refuses the connection: check the address, and that the robot is on")
             return
@@ -233,11 +160,13 @@ def lines_of_one_connection(
             )
             return
         report("connected", f"connected to {where}")
-        frames = ConsoleFrames()
+        connected = time.monotonic()
         try:
-            for received in _pieces(console, frames, report, is_over):
-                for line in frames.lines(received):
-                    yield line
+            while not is_over():
+                for line in client.lines(_WAKE_SECONDS):
+                    yield f"[{line.seconds:.2f}] {line.text}"
+                    report.reset()
+                if time.monotonic() - connected >= _STABLE_SECONDS:
                     report.reset()
         except ConsoleProtocolError as error:
             raise NoConsoleError(
@@ -245,31 +174,47 @@ def lines_of_one_connection(
                 where=str(where),
                 remedy="Check the address, or specify another with --robot HOST.",
             ) from error
-        if not is_over():
+        except OSError:
             report("lost", f"the connection was lost; reconnecting to {where}")
 
 
-def _pieces(
-    console: socket.socket, frames: ConsoleFrames, report: ConnectionReports, is_over: Callable[[], bool]
-) -> Iterator[bytes]:
-    """Yield the received data until the connection is lost. Send keep-alive frames meanwhile."""
-    console.settimeout(_WAKE_SECONDS)  # on Windows, Ctrl-C does not interrupt a blocking receive
-    connected = kept_alive = time.monotonic()
-    while not is_over():
-        received = None
-        try:
-            with contextlib.suppress(TimeoutError):
-                received = console.recv(_RECEIVE_BYTES)
-            now = time.monotonic()
-            if now - kept_alive >= _KEEP_ALIVE_SECONDS:
-                kept_alive = now
-                frames.reset_count()
-                console.sendall(KEEP_ALIVE)
-        except OSError:
-            return
-        if received == b"":
-            return
-        if now - connected >= _STABLE_SECONDS:
+def _lines_over_ssh(
+    connect: Callable[[], AbstractContextManager[Connection]], report: ConnectionReports
+) -> Iterator[str]:
+    """Yield the lines that the robot's command prints until the connection is lost."""
+    try:
+        with connect() as connection:
             report.reset()
-        if received is not None:
-            yield received
+            report("connected", f"connected to {connection.address}")
+            yield from _printed_lines(connection)
+        report("lost", f"the connection was lost; reconnecting to {connection.address}")
+    except ConnectionFailedError as error:
+        report("unreachable", f"{error.where}: {error.message}")
+
+
+def _printed_lines(connection: Connection) -> Iterator[str]:
+    """Yield what the robot's command prints.
+
+    :raises NoConsoleError: if the command ends by itself
+    """
+    with connection.opened(shlex.join(connection.controller.layout.output)) as channel:
+        channel.settimeout(_WAKE_SECONDS)
+        unfinished = b""
+        while True:
+            try:
+                piece = channel.recv(1 << 16)
+            except TimeoutError:
+                continue
+            if not piece:
+                break
+            *lines, unfinished = (unfinished + piece).split(b"\n")
+            if len(unfinished) > _MAX_LINE_BYTES:
+                lines, unfinished = [*lines, unfinished], b""
+            yield from (line.decode(errors="replace") for line in lines)
+        if channel.exit_status_ready() and (status := channel.recv_exit_status()) > 0:
+            said = channel.recv_stderr(4096).decode(errors="replace").strip()
+            raise NoConsoleError(
+                f"the program's output cannot be read: {one_line(said) or f'exit code {status}'}",
+                where=str(connection.address),
+                remedy="Perhaps the robot's image is too old.",
+            )

@@ -128,17 +128,7 @@ def _normal(host: str) -> str:
 def _right_spelling(host: str) -> str:
     if host.isdecimal() and len(host) <= 5 and 1 <= int(host) <= MAX_TEAM:
         return f"For a team's robot, write --team {int(host)}; for an address, four numbers, as in 10.12.34.2"
-    try:
-        # Some systems read a number with leading zeros as octal; users mean decimal.
-        decimal = re.fullmatch(r"[0-9]{1,3}(\.[0-9]{1,3}){3}", host)
-        plain = ".".join(str(int(part)) for part in host.split(".")) if decimal else _dotted(host)
-        return f"Write {ipaddress.ip_address(plain)}"
-    except (OSError, ValueError):
-        return "Write four numbers from 0 to 255, as in 10.12.34.2"
-
-
-def _dotted(host: str) -> str:
-    return socket.inet_ntoa(socket.inet_aton(host))
+    return "Write four numbers from 0 to 255, without zeros before them, as in 10.12.34.2"
 
 
 def addresses_of(team: int, controller: ControllerKind, resolve: bool = True) -> list[tuple[Address, str]]:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from ..terminal_text import one_line
 from .agent import start_monitor
+from .responses import Raw, parse, sent_as, value_of
 
 if TYPE_CHECKING:
-    from .responses import Fields
     from .targets import ControllerKind
 
 #: The image of a virtual robot, which has none.
@@ -39,32 +39,16 @@ class Release:
     :param damaged:     whether its record cannot be read
     """
 
-    number: int
+    number: int = field(metadata=sent_as("release"))
     taken: bool
     main: str | None
-    debug: bool
+    debug: bool | None
     files: int
-    previous: int | None
-    deploy_json: Mapping[str, str]
+    previous: int | None = field(metadata=sent_as("from"))
+    deploy_json: Mapping[str, str] = field(metadata=sent_as("deploy"))
     ran: bool = False
     ended: bool = False
     damaged: bool = False
-
-    @classmethod
-    def of(cls, fields: Fields) -> Release:
-        """Parse the agent's message."""
-        return cls(
-            number=fields.count("release"),
-            taken=fields.flag("taken"),
-            main=fields.line_or_none("main"),
-            debug=bool(fields.flag_or_none("debug")),
-            files=fields.count("files"),
-            previous=fields.count_or_none("from"),
-            deploy_json=fields.record("deploy"),
-            ran=fields.flag("ran"),
-            ended=fields.flag("ended"),
-            damaged="damaged" in fields and fields.flag("damaged"),
-        )
 
 
 @dataclass(frozen=True)
@@ -102,7 +86,7 @@ class RobotFacts:
     wpilib: str | None
     image: str | None
     wastes_memory: bool
-    free_bytes: int
+    free_bytes: int = field(metadata=sent_as("free"))
     user: str
     current: int | None
     releases: tuple[Release, ...]
@@ -121,41 +105,27 @@ class RobotFacts:
     environment: str | None = None
 
     @classmethod
-    def of(cls, fields: Fields, controller: ControllerKind) -> RobotFacts:
-        """Parse the agent's message."""
-        texts = fields.texts_or_none("texts")
-        image = VIRTUAL_IMAGE if fields.flag("virtual") else controller.image_in(texts)
+    def of(cls, message: object, controller: ControllerKind) -> RobotFacts:
+        """Parse the agent's message.
+
+        :raises ResponseError: if a field is missing or invalid
+        """
+        texts = value_of(message, "texts", dict[str, Raw | None])
+        image = VIRTUAL_IMAGE if value_of(message, "virtual", bool) else controller.image_in(texts)
         why = None
         if image is None and controller.has_image_file:
             why = f"there is no {controller.name} image on it"
-        elif not fields.flag("home"):
+        elif not value_of(message, "home", bool):
             why = f"there is no {controller.layout.home} on it"
-        elif not fields.flag("can_restart"):
+        elif not value_of(message, "can_restart", bool):
             why = f"there is no {controller.layout.restart[0].rpartition('/')[2]} on it"
-        return cls(
+        return parse(
+            cls,
+            message,
             controller=controller.name,
             not_controller=why,
-            python=fields.line("python"),
-            wpilib=fields.line_or_none("wpilib"),
             image=None if image is None else one_line(image),
             wastes_memory=controller.wastes_memory(texts),
-            free_bytes=fields.count("free"),
-            user=fields.line("user"),
-            current=fields.count_or_none("current"),
-            releases=tuple(map(Release.of, fields.objects("releases"))),
-            other_code=fields.flag("other_code"),
-            deploy_json=fields.record_in_text("deploy_json"),
-            command=fields.text_or_none("command"),
-            debug=fields.flag("debug"),
-            running=fields.flag("running"),
-            packages=fields.record("packages"),
-            missing_modules=tuple(map(one_line, fields.texts("missing_modules"))),
-            extension_suffixes=tuple(map(one_line, fields.texts("extension_suffixes"))),
-            machine=fields.line("machine"),
-            other_languages=tuple(map(one_line, fields.texts("other_languages"))),
-            program_age=fields.seconds_or_none("program_age"),
-            remains=fields.flag("remains"),
-            environment=fields.line_or_none("environment") if "environment" in fields else None,
         )
 
 
@@ -166,14 +136,8 @@ class Plan:
     added: tuple[str, ...]
     changed: tuple[str, ...]
     removed: tuple[str, ...]
-    files_to_send: int
-    bytes_to_send: int
-
-    @classmethod
-    def of(cls, fields: Fields) -> Plan:
-        """Parse the agent's message."""
-        added, changed, removed = (fields.texts(key) for key in ("added", "changed", "removed"))
-        return cls(added, changed, removed, fields.count("files"), fields.count("bytes"))
+    files_to_send: int = field(metadata=sent_as("files"))
+    bytes_to_send: int = field(metadata=sent_as("bytes"))
 
 
 @dataclass(frozen=True)
@@ -220,25 +184,10 @@ class Deployed:
     fallback: int | None
     taken: int | None
     unchanged: bool
-    files_sent: int
-    bytes_sent: int
+    files_sent: int = field(metadata=sent_as("files"))
+    bytes_sent: int = field(metadata=sent_as("bytes"))
     skipped: tuple[str, ...] = ()
     renamed: tuple[str, ...] = ()
-
-    @classmethod
-    def of(cls, fields: Fields) -> Deployed:
-        """Parse the agent's message."""
-        return cls(
-            release=fields.count_or_none("release"),
-            previous=fields.count_or_none("previous"),
-            fallback=fields.count_or_none("fallback"),
-            taken=fields.count_or_none("taken"),
-            unchanged=fields.flag("unchanged"),
-            files_sent=fields.count("files"),
-            bytes_sent=fields.count("bytes"),
-            skipped=fields.texts("skipped") if "skipped" in fields else (),
-            renamed=fields.texts("renamed") if "renamed" in fields else (),
-        )
 
 
 @dataclass(frozen=True)
@@ -250,14 +199,9 @@ class RolledBack:
     :param changed:  deployed files of the release that the program has changed
     """
 
-    release: Release
+    release: Release = field(metadata=sent_as("about"))
     previous: int | None
     changed: tuple[str, ...]
-
-    @classmethod
-    def of(cls, fields: Fields) -> RolledBack:
-        """Parse the agent's message."""
-        return cls(Release.of(fields.object("about")), fields.count_or_none("previous"), fields.texts("changed"))
 
 
 @dataclass(frozen=True)
@@ -277,23 +221,10 @@ class StartState:
     seconds: float = 0.0
     age: float = 0.0
     lived: float = 0.0
-    has_output: bool = False
+    has_output: bool = field(default=False, metadata=sent_as("heard"))
     seen: bool = False
     cpu: float | None = None
     network_tables: bool | None = None
-
-    @classmethod
-    def of(cls, fields: Fields) -> StartState:
-        """Parse the agent's message."""
-        return cls(
-            seconds=fields.seconds("seconds"),
-            age=fields.seconds("age"),
-            lived=fields.seconds("lived") if "lived" in fields else 0.0,
-            has_output=fields.flag("heard"),
-            seen=fields.flag("seen"),
-            cpu=fields.seconds_or_none("cpu") if "cpu" in fields else None,
-            network_tables=fields.flag_or_none("network_tables") if "network_tables" in fields else None,
-        )
 
 
 @dataclass(frozen=True)
@@ -304,13 +235,11 @@ class Watched:
         process runs, but its output does not confirm the start)
     :param output:  the last part of its output; empty if the console is silent
     :param state:   the state at the end of the watch
-    :param has_run: whether the robot has seen it run before, with the same files
     """
 
     verdict: str
     output: str
     state: StartState = StartState()
-    has_run: bool = False
 
     @property
     def alive(self) -> bool:

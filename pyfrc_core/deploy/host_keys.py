@@ -232,10 +232,8 @@ class RobotKeys:
             return self._is_any_robots() or known.is_for(self._host)
         if known.teams:
             return self._team in known.teams
-        # Older versions pinned keys for single addresses.
-        if known.is_of_cable_only:
-            return not self._keys.of_user or self._is_any_robots()
-        return known.is_for(self._host)
+        # At the cable, a robot may have been seen before the team was known.
+        return known.is_of_cable_only and (not self._keys.of_user or self._is_any_robots())
 
     def _is_any_robots(self) -> bool:
         """Return whether robots of all teams are expected: at an address that all have, outside of projects."""

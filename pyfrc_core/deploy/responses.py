@@ -1,14 +1,17 @@
 """Validation of the robot's messages, field by field: a robot may be broken, or another computer may imitate it.
 
-Not done with pydantic, whose import takes longer (0.1 to 0.3 s) than all other work of a deploy before the first round
-trip. Texts for display in one line are made safe for a terminal here.
+A dataclass says what a message has: the type of each field is what is checked. Not done with pydantic, whose import
+takes longer (0.1 to 0.3 s) than all other work of a deploy before the first round trip.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from typing import Any, TypeVar
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, fields
+from functools import cache, partial
+from types import UnionType
+from typing import Any, NewType, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from ..terminal_text import one_line
 
@@ -17,7 +20,9 @@ _MAX_NUMBER = 1 << 53
 #: The maximum number of values in a message, estimated from the brackets and commas in its JSON.
 _MAX_VALUES = 150_000
 
-Kind = TypeVar("Kind")
+#: A text from the robot as it is. All texts of the type ``str`` are lines that are safe for a terminal.
+Raw = NewType("Raw", str)
+T = TypeVar("T")
 
 
 class ResponseError(Exception):
@@ -45,118 +50,111 @@ def parse_json(text: bytes) -> dict[str, Any]:
     return value
 
 
-class Fields:
-    """An object from the robot. Each method returns a field, or raises `ResponseError` if it is missing or invalid."""
+def parse(kind: type[T], message: object, **given: object) -> T:
+    """Return the dataclass that a message holds. A field with a default may be missing.
 
-    def __init__(self, value: object, name: str = "its response") -> None:
-        if not isinstance(value, dict):
-            raise ResponseError(f"{name} is {_shown(value)}, not an object")
-        self._fields: dict[str, Any] = value
-        self._name = name
+    :param given: fields that are not in the message
+    :raises ResponseError: if a field is missing or invalid
+    """
+    values = dict(given)
+    types = _types_of(kind)
+    for each in fields(kind):  # type: ignore[arg-type]
+        key = each.metadata.get(_SENT_AS, each.name)
+        is_optional = each.default is not MISSING and isinstance(message, dict) and key not in message
+        if each.name not in given and not is_optional:
+            values[each.name] = value_of(message, key, types[each.name])
+    return kind(**values)
 
-    def __contains__(self, key: str) -> bool:
-        return key in self._fields
 
-    def text(self, key: str) -> str:
-        """Return a text unchanged."""
-        return self._of(key, str, "a text")
+_SENT_AS = "sent_as"
 
-    def line(self, key: str) -> str:
-        """Return a text as one line that is safe for a terminal."""
-        return one_line(self.text(key))
 
-    def line_or_none(self, key: str) -> str | None:
-        """Return a text as one line, or None."""
-        return None if self._is_null(key) else self.line(key)
+def sent_as(key: str) -> Mapping[str, str]:
+    """Return the metadata of a dataclass's field that has another name in messages."""
+    return {_SENT_AS: key}
 
-    def text_or_none(self, key: str) -> str | None:
-        """Return a text unchanged, or None."""
-        return None if self._is_null(key) else self.text(key)
 
-    def flag(self, key: str) -> bool:
-        """Return a Boolean."""
-        return self._of(key, bool, "true or false")
+def value_of(message: object, key: str, kind: type[T]) -> T:
+    """Return a field of a message.
 
-    def flag_or_none(self, key: str) -> bool | None:
-        """Return a Boolean, or None."""
-        return None if self._is_null(key) else self.flag(key)
+    :raises ResponseError: if it is missing or invalid
+    """
+    if not isinstance(message, dict):
+        raise ResponseError(f"{_shown(message)} is not an object")
+    if key not in message:
+        raise ResponseError(f"{key!r} is missing")
+    try:
+        converted: T = _converter(kind)(message[key])  # type: ignore[arg-type]
+    except ResponseError as error:
+        raise ResponseError(f"{key!r}: {error}") from None
+    return converted
 
-    def count(self, key: str) -> int:
-        """Return an integer that is not negative."""
-        number = self._of(key, int, "a number")
-        if not 0 <= number <= _MAX_NUMBER:
-            raise ResponseError(f"{key!r} is {_shown(number)}, out of range")
-        return number
 
-    def count_or_none(self, key: str) -> int | None:
-        """Return an integer that is not negative, or None."""
-        return None if self._is_null(key) else self.count(key)
+_types_of: Callable[[object], dict[str, Any]] = cache(get_type_hints)
 
-    def seconds(self, key: str) -> float:
-        """Return a time in seconds that is not negative."""
-        number = self._fields.get(key)
-        if not isinstance(number, (int, float)) or number is True or not 0 <= number <= _MAX_NUMBER:
-            raise ResponseError(f"{key!r} is {_shown(number)}, not a time")
-        return float(number)
 
-    def seconds_or_none(self, key: str) -> float | None:
-        """Return a time in seconds that is not negative, or None."""
-        return None if self._is_null(key) else self.seconds(key)
+@cache
+def _converter(kind: object) -> Callable[[object], Any]:
+    """Return the function that checks a value of this type, and converts it."""
+    if kind in _PLAIN:
+        return _PLAIN[kind]
+    parts = get_args(kind)
+    if get_origin(kind) in (UnionType, Union):  # with None
+        convert = _converter(parts[0])
+        return lambda value: None if value is None else convert(value)
+    if get_origin(kind) is tuple:
+        convert = _converter(parts[0])
+        return lambda value: tuple(map(convert, _of_type(list, "a list", value)))
+    if get_origin(kind) is dict:
+        convert = _converter(parts[1])
+        return lambda value: {name: convert(each) for name, each in _of_type(dict, "an object", value).items()}
+    assert isinstance(kind, type)
+    return partial(parse, kind)
 
-    def one_of(self, key: str, known: Sequence[str]) -> str:
-        """Return a text that is one of `known`."""
-        word = self.text(key)
-        if word not in known:
-            raise ResponseError(f"{key!r} is {_shown(word)}, not one of: {', '.join(known)}")
-        return word
 
-    def texts(self, key: str) -> tuple[str, ...]:
-        """Return a list of texts, unchanged."""
-        values = self._of(key, list, "a list")
-        if not all(isinstance(each, str) for each in values):
-            raise ResponseError(f"{key!r} is not a list of texts")
-        return tuple(values)
+def _of_type(kind: type[T], what: str, value: object) -> T:
+    if not isinstance(value, kind) or type(value) is not kind:  # True is an int in Python, but not a number in JSON
+        raise ResponseError(f"{_shown(value)} is not {what}")
+    return value
 
-    def texts_or_none(self, key: str) -> dict[str, str | None]:
-        """Return an object with a text or None for each name, unchanged."""
-        values = self.object(key)
-        return {name: values.text_or_none(name) for name in values._fields}
 
-    def objects(self, key: str) -> list[Fields]:
-        """Return a list of objects."""
-        return [Fields(each, repr(key)) for each in self._of(key, list, "a list")]
+def _line(value: object) -> str:
+    return one_line(_of_type(str, "a text", value))
 
-    def object(self, key: str) -> Fields:
-        """Return an object."""
-        return Fields(self._of(key, dict, "an object"), repr(key))
 
-    def record(self, key: str) -> dict[str, str]:
-        """Return an object's fields as lines that are safe for a terminal; empty if it is not an object."""
-        return _record(self._fields.get(key))
+def _count(value: object) -> int:
+    number = _of_type(int, "a number", value)
+    if not 0 <= number <= _MAX_NUMBER:
+        raise ResponseError(f"{_shown(number)} is out of range")
+    return number
 
-    def record_in_text(self, key: str) -> dict[str, str]:
-        """Return the same for a text that contains JSON."""
+
+def _seconds(value: object) -> float:
+    if not isinstance(value, (int, float)) or value is True or not 0 <= value <= _MAX_NUMBER:
+        raise ResponseError(f"{_shown(value)} is not a time")
+    return float(value)
+
+
+def _record(value: object) -> dict[str, str]:
+    """Return a JSON object, or one in a text, as lines. Files have them, which may hold anything: then it is empty."""
+    if isinstance(value, str):
         try:
-            return _record(json.loads("{}" if self._is_null(key) else self.text(key) or "{}"))
+            value = json.loads(value)
         except (ValueError, RecursionError):
-            return {}
-
-    def _is_null(self, key: str) -> bool:
-        return self._fields.get(key, ...) is None
-
-    def _of(self, key: str, kind: type[Kind], what: str) -> Kind:
-        if key not in self._fields:
-            raise ResponseError(f"{key!r} is missing in {self._name}")
-        value = self._fields[key]
-        if not isinstance(value, kind) or type(value) is not kind:  # True is an int in Python, but not a number in JSON
-            raise ResponseError(f"{key!r} is {_shown(value)}, not {what}")
-        return value
-
-
-def _record(about: object) -> dict[str, str]:
-    if not isinstance(about, dict):
+            value = None
+    if not isinstance(value, dict):
         return {}
-    return {one_line(key): one_line(value if isinstance(value, str) else _shown(value)) for key, value in about.items()}
+    return {one_line(key): one_line(each if isinstance(each, str) else _shown(each)) for key, each in value.items()}
+
+
+_PLAIN: dict[object, Callable[[object], object]] = {
+    bool: partial(_of_type, bool, "true or false"),
+    int: _count,
+    float: _seconds,
+    str: _line,
+    Raw: partial(_of_type, str, "a text"),
+    Mapping[str, str]: _record,
+}
 
 
 def _shown(value: object) -> str:

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import sys
-import threading
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -85,33 +84,17 @@ def obstacles(facts: RobotFacts, controller: ControllerKind) -> Iterator[Obstacl
         yield Obstacle(wrong_image, image, certain=False)
 
 
-class BackgroundTask:
-    """Runs a task of the administrator in the background, over a second connection. A failure only causes a warning.
+def carry_out(task: AdministratorTask | None, connection: Connection, progress: DeployProgress) -> None:
+    """Have the administrator carry out a task, over a second connection. A failure only causes a warning.
 
     :param task: None: nothing to do
     """
-
-    def __init__(self, task: AdministratorTask | None, connection: Connection) -> None:
-        self._task = task
-        self._connection = connection
-        self._problem: str | None = None
-        self._thread = threading.Thread(target=self._run)
-        if task is not None:
-            self._thread.start()
-
-    def report(self, progress: DeployProgress) -> None:
-        """Wait for the result, and print it."""
-        if self._task is None:
-            return
-        self._thread.join()
-        if self._problem is None:
-            progress.note(f"  {self._task.done}")
-        else:
-            progress.warning(f"{self._task.failed}: {self._problem}")
-
-    def _run(self) -> None:
-        assert self._task is not None
-        self._problem = self._connection.administer(self._task)
+    if task is None:
+        return
+    if (problem := connection.administer(task)) is None:
+        progress.note(f"  {task.done}")
+    else:
+        progress.warning(f"{task.failed}: {problem}")
 
 
 def _our_wpilib() -> str:

@@ -10,16 +10,15 @@ from ..errors import UsageError
 from ..project import Project
 from ..wording import counted, size_text
 from .connection import Connection, load_in_background
-from .console import follow_console
+from .console import follow_console, follow_output
 from .discovery import Address
 from .errors import DeployError, RefusedError
 from .facts import Release, RobotFacts
 from .installing import Environment, install_packages, wanted_environment
 from .local_checks import CheckedProgram, DeployOptions, prepare
 from .manifest import ascii_path
-from .program_output import follow_output
 from .progress import DeployProgress, UserInterface
-from .robot_checks import BackgroundTask, other_languages_notice, refuse_unfit_robot
+from .robot_checks import carry_out, other_languages_notice, refuse_unfit_robot
 from .robot_packages import check_packages
 from .target_connection import connected, connected_agent, console_address, find, reconnected
 from .team import RobotChoice, choose_target
@@ -80,10 +79,6 @@ def _replace_program(
     from .starting import start
 
     controller = connection.controller
-    tasks = [
-        BackgroundTask(controller.save_memory if robot.facts.wastes_memory else None, connection),
-        BackgroundTask(controller.remove_remains if robot.facts.remains else None, connection),
-    ]
     deployed = _upload(robot, program, options, talk)
 
     def reinstall() -> int | None:
@@ -100,8 +95,9 @@ def _replace_program(
             verdict = start(robot, talk, deployed.fallback, options.auto_rollback, reinstall)
     finally:
         _repair_stop(robot, connection, talk.progress)
-        for task in tasks:  # last, since a failing login as administrator may take half a minute
-            task.report(talk.progress)
+        # Last, since a failing login as administrator may take half a minute.
+        carry_out(controller.save_memory if robot.facts.wastes_memory else None, connection, talk.progress)
+        carry_out(controller.remove_remains if robot.facts.remains else None, connection, talk.progress)
     result = {"host": connection.host, **asdict(deployed), "in_place": options.in_place, "program": verdict}
     text = "Its files were overwritten; the program was not restarted." if options.in_place else "Deployed."
     talk.progress.result(result, text)
@@ -137,7 +133,7 @@ def _note_unfit_releases(facts: RobotFacts, progress: DeployProgress) -> None:
 def _repair_stop(robot: AgentClient, connection: Connection, progress: DeployProgress) -> None:
     """Replace the robot's stop command if it has not ended the program."""
     if robot.program_survived:
-        BackgroundTask(connection.controller.repair_stop(), connection).report(progress)
+        carry_out(connection.controller.repair_stop(), connection, progress)
 
 
 def undeploy_other_languages(

@@ -111,7 +111,7 @@ def _restart(robot: AgentClient, talk: UserInterface) -> Watched:
         watched = robot.watch(WATCH_SECONDS, on_state=reporter.show, unheard=UNHEARD_SECONDS)
         state = watched.state
         phase.detail = {
-            start_monitor.RUNNING: "the program runs, as before" if watched.has_run else "the program runs",
+            start_monitor.RUNNING: "the program runs",
             start_monitor.UNHEARD: f"its process has run for {state.age:.0f} s",
             start_monitor.STARTING: f"still starting after {state.seconds:.0f} s",
         }.get(watched.verdict, f"it {_end_of(watched)}")

@@ -27,16 +27,24 @@ def find(target: RobotTarget, choice: RobotChoice, progress: DeployProgress) -> 
     """
     load_in_background()
     with progress.phase("find") as phase:
-        if target.robot is not None:
-            address = parse_address(target.robot)
-            candidates, whose = [(address, f"by {target.source}")], str(address)
-        else:
-            assert target.team is not None
-            candidates = addresses_of(target.team, target.controller, choice.resolve)
-            whose = f"team {target.team} (by {target.source})"
-        found = find_robot(candidates, whose, target.controller, take_its_robot=target.robot is None)
+        found = search(target, choice.resolve)
         phase.detail = f"{found.address} ({found.kind})"
     return found
+
+
+def search(target: RobotTarget, resolve: bool = True) -> FoundRobot:
+    """Find the robot, and return it with an open socket.
+
+    :param resolve: whether host names may be resolved
+    :raises RobotNotFoundError: with all failed attempts
+    :raises OnTheFieldError: if the Driver Station is connected to a competition field
+    """
+    if target.robot is not None:
+        address = parse_address(target.robot)
+        return find_robot([(address, f"by {target.source}")], str(address), target.controller, take_its_robot=False)
+    assert target.team is not None
+    candidates = addresses_of(target.team, target.controller, resolve)
+    return find_robot(candidates, f"team {target.team} (by {target.source})", target.controller)
 
 
 def load_robot_keys(target: RobotTarget, address: Address) -> RobotKeys:

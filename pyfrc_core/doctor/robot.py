@@ -9,12 +9,12 @@ from contextlib import closing
 from ..config.robotpy import load_robot_packages
 from ..deploy.agent_client import AgentClient
 from ..deploy.connection import Connection, connect
-from ..deploy.discovery import RobotNotFoundError, addresses_of, find_robot, parse_address
+from ..deploy.discovery import RobotNotFoundError, parse_address
 from ..deploy.errors import HostKeyError, NoPythonError, OnTheFieldError
 from ..deploy.facts import RobotFacts
 from ..deploy.robot_checks import RobotWithoutPython, image_it, image_problem, named, obstacles, other_languages_notice
 from ..deploy.robot_packages import unfit_packages
-from ..deploy.target_connection import load_robot_keys
+from ..deploy.target_connection import load_robot_keys, search
 from ..deploy.targets import ControllerKind, controller_of
 from ..deploy.team import find_target
 from ..errors import PyfrcError, SettingsError, UsageError
@@ -49,7 +49,7 @@ class RobotSearch:
         self._findings: list[CheckResult] = []
         self._next: tuple[Step, str] | None = None
         self._found = False
-        self._whose = robot or (f"team {team}" if team is not None else "this project")
+        self._whose = "the robot"
         self._thread = threading.Thread(target=self._run, args=(project, robot, team), daemon=True)
         self._thread.start()
 
@@ -107,15 +107,8 @@ class RobotSearch:
             yield hint(_TOPIC, f"not searched: {unknown.message}", unknown.remedy or "pyfrc doctor --team NUMBER")
             self._next = Step.TEAM, "pyfrc deploy asks for it, and keeps it in .wpilib/wpilib_preferences.json"
             return
-        if target.robot is not None:
-            address = parse_address(target.robot)
-            self._whose = str(address)
-            candidates = [(address, target.source)]
-        else:
-            assert target.team is not None
-            self._whose = f"team {target.team}"
-            candidates = addresses_of(target.team, target.controller)
-        found = find_robot(candidates, self._whose, target.controller, take_its_robot=target.robot is None)
+        self._whose = f"team {target.team}" if target.robot is None else str(parse_address(target.robot))
+        found = search(target)
         with found.connected:
             self._found = True
             yield ok(_TOPIC, f"{self._whose} found at {found.address} ({found.kind})")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-from urllib.parse import urlsplit
 
 from ..errors import PyfrcError
 from ..season import Season
@@ -27,8 +26,6 @@ _CONFLICT = re.compile(r"The conflict is caused by:\s*\n(?P<reasons>(?:[ \t]+\S.
 _UNREACHABLE = re.compile(r"Retrying \(Retry\(|Could not fetch URL|Connection to \S+ timed out|ConnectTimeoutError")
 _REASON = re.compile(r"\[Errno -?\d+\] ([^'\")\n]+)|(certificate.verify.failed)|(timed out)", re.IGNORECASE)
 _INDEXES = re.compile(r"^Looking in indexes: (.+)$", re.MULTILINE)
-#: The path of what pip tries again to get, or the host of it.
-_TRIED = re.compile(r"Retrying \(Retry\(.*: (/\S*)$|Could not fetch URL (\S+?):? |host='([^']+)'", re.MULTILINE)
 _WRONG_HASH = re.compile(r"DO NOT MATCH THE HASHES[^\n]*\n\s+(\S.*?) from ([^\s#]+)")
 _FULL = "No space left on device"
 _ERROR = re.compile(r"^ERROR: (?!Ignored the following|pip's dependency resolver)(.+)$", re.MULTILINE)
@@ -69,26 +66,15 @@ def unreachable_index(printed: str) -> PyfrcError:
     )
     if found is not None and found[2]:
         remedy = "A network that inspects connections needs its certificate in pip's settings: docs/reference/sync.md."
-    return PyfrcError(f"{_tried_indexes(printed)} cannot be reached: {why.strip()}", remedy=remedy)
+    listed = ", ".join(indexes_in(printed))
+    looked_in = f"; pip has looked in {listed}" if listed else ""
+    return PyfrcError(f"a package index cannot be reached: {why.strip()}{looked_in}", remedy=remedy)
 
 
 def indexes_in(printed: str) -> list[str]:
     """Return the addresses of the indexes in which pip has looked, as far as it prints them."""
     listed = _INDEXES.search(printed)
     return listed[1].split(", ") if listed else []
-
-
-def _tried_indexes(printed: str) -> str:
-    """Return the hosts of the indexes that pip could not reach, as far as its output names them."""
-    hosts = []
-    for index in map(urlsplit, indexes_in(printed)):
-        for path, url, host in _TRIED.findall(printed):
-            tried = path.startswith(index.path) if path else index.hostname in (host, urlsplit(url).hostname)
-            if tried and index.hostname and index.hostname not in hosts:
-                hosts.append(index.hostname)
-    if not hosts:
-        return "the package index"
-    return f"the package index {' or '.join(hosts)}"
 
 
 def _no_wheel(missing: re.Match[str], season: Season) -> PyfrcError:

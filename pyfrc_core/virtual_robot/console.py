@@ -1,26 +1,16 @@
-"""A robot's console service, which sends the robot program's output to all clients. Standard library only."""
+"""A robot's console service, which sends the robot program's output to all clients."""
 
 from __future__ import annotations
 
 import socket
-import struct
 import threading
 import time
 from contextlib import suppress
 
-#: The console's port on a robot.
-PORT = 1741
+from ..deploy.agent.console import PORTS, text_frame
 
-_TEXT = 12
-_MAX_LINE_BYTES = 65000
 #: Seconds for which clients that read nothing may delay a line, all together, before they are disconnected.
 _SEND_SECONDS = 1.0
-
-
-def text_frame(line: bytes, number: int) -> bytes:
-    """Return a console frame with a line of output: length, kind, time in seconds, number, text."""
-    body = struct.pack(">BfH", _TEXT, time.monotonic() % 1e6, number % 65536) + line[:_MAX_LINE_BYTES]
-    return struct.pack(">H", len(body)) + body
 
 
 class ConsoleServer:
@@ -31,7 +21,7 @@ class ConsoleServer:
 
     def __init__(self, host: str) -> None:
         try:
-            self._server = socket.create_server((host, PORT))
+            self._server = socket.create_server((host, PORTS[0]))
         except OSError:
             self._server = socket.create_server((host, 0))
         self._server.setblocking(False)

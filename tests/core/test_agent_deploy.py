@@ -74,9 +74,14 @@ def test_a_path_twice_and_a_main_file_that_is_not_there(robot: AgentDisk) -> Non
     request = {"op": "deploy", "files": manifest(ONE) * 2, "main": "robot.py"}
     assert refused(robot.ask(request)) == ("path", "the manifest has the same path twice")
     assert refused(robot.deploy(ONE, main="other.py")) == ("main", "there is no other.py among the files")
-    kind, message = refused(robot.deploy({"my robot.py": ""}, main="my robot.py"))
-    assert kind == "main"
-    assert "'my robot.py'" in str(message)
+    for main in ("my robot.py", "$(reboot).py", "a;b.py", "-x.py"):
+        kind, message = refused(robot.deploy({main: ""}, main=main))
+        assert kind == "main"
+        assert repr(main) in str(message)
+    for path in ("../x", "/etc/x", "a/../../x", "a//b", "", ".", "a\0b"):
+        said = f"{path!r} is not a path within the program's directory"
+        assert refused(robot.deploy({**ONE, path: ""})) == ("path", said)
+    assert robot.startable() == "nothing"
 
 
 def test_contents_that_are_not_as_announced(robot: AgentDisk) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import itertools
-import json
 import os
 import stat
 import tempfile
@@ -198,14 +197,25 @@ def test_a_damaged_file_is_not_linked_into_another_environment(two: Robot) -> No
     assert two.environments.damaged() == {}
 
 
-def test_an_environment_of_an_older_pyfrc_stays_as_it_is(two: Robot) -> None:
-    """Its record has no hashes."""
-    record = two.place(NAMES[0]) / "environment.json"
-    record.write_text(json.dumps({"python": PYTHON, "wheels": {"0" * 64: [f"{PACKAGES}/kept.py"]}}))
-    damage(two.place(NAMES[1]) / PACKAGES / "kept.py")
-    two.install(NAMES[1], NEXT)
-    assert two.sent == ["kept-1.whl"]
-    assert two.environments.is_usable(NAMES[0])
+def test_what_an_interrupted_installation_has_left_is_removed(two: Robot) -> None:
+    own = two.paths.own
+    for name in (f"environments/{NAMES[2]}/bin/python3", "wheels/0", "new/0/a.py", "environments/theirs/x"):
+        (own / name).parent.mkdir(parents=True, exist_ok=True)
+        (own / name).touch()
+    two.environments.remove_remains()
+    assert sorted(each.name for each in own.iterdir()) == ["environments", "pythons"]
+    assert sorted(each.name for each in (own / "environments").iterdir()) == [*NAMES[:2], "theirs"]
+
+
+def test_environments_and_pythons_that_nothing_needs_are_removed(two: Robot) -> None:
+    pythons = two.paths.own / "pythons"
+    for name in ("f" * 16, "mine"):
+        (pythons / name).mkdir()
+    two.environments.remove_unused([None, NAMES[1]])
+    assert [each.name for each in (two.paths.own / "environments").iterdir()] == [NAMES[1]]
+    assert sorted(each.name for each in pythons.iterdir()) == [PYTHON, "mine"]
+    two.environments.remove_unused([])
+    assert [each.name for each in pythons.iterdir()] == ["mine"]
 
 
 @pytest.mark.parametrize("path", ["bin/python3", "pyvenv.cfg", "environment.json"])

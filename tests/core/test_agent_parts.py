@@ -5,7 +5,8 @@ from __future__ import annotations
 import io
 import os
 import signal
-from collections.abc import Iterable
+import socket
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ import pytest
 from pyfrc_core.deploy.agent import host, wire
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.compiling import Compiler
+from pyfrc_core.deploy.agent.console import ConsoleClient, OutputCommand, text_frame
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.program import Program
 from pyfrc_core.deploy.agent.robot_paths import Refusal, RobotPaths
@@ -26,6 +28,7 @@ from pyfrc_core.deploy.agent.wire import (
     read_frame,
 )
 from pyfrc_core.deploy.targets.roborio import ROBORIO
+from pyfrc_core.deploy.targets.systemcore import SYSTEMCORE
 
 # -- frames ------------------------------------------------------------------------------------------------------------
 
@@ -71,9 +74,42 @@ def test_a_wire_limits_silence() -> None:
 # -- the console -------------------------------------------------------------------------------------------------------
 
 
-def message(kind: int, body: bytes) -> bytes:
-    content = bytes([kind]) + body
-    return len(content).to_bytes(2, "big") + content
+def received(output: ConsoleClient | OutputCommand) -> str:
+    """What is received first; after the end, nothing."""
+    text = ""
+    while not text and vars(output).get("_socket", vars(output).get("_process")) is not None:
+        text = output.receive(0.2)
+    return text
+
+
+def test_the_output_of_a_console_until_its_end() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        output = ConsoleClient("127.0.0.1", (1, server.getsockname()[1]))  # at the first port is none
+        assert output.receive(0.0) == ""
+        output.connect()
+        robot, _ = server.accept()
+        with robot:
+            robot.sendall(text_frame(b"one", 1) + text_frame("zwei\xdf".encode(), 2)[:-1])
+            assert received(output) == "one\n"
+            assert robot.recv(100) == b"\0\0", "a sign of life"
+            robot.sendall(text_frame(b"\x9f", 3)[-1:] + text_frame(b"three", 3))
+            assert received(output) == "zwei\xdf\nthree\n"
+        assert received(output) == ""
+        assert output.receive(0.0) == ""
+    with pytest.raises(OSError, match="refused"):
+        output.connect()
+
+
+def test_the_output_of_a_command_until_its_end() -> None:
+    output = OutputCommand(["sh", "-c", "echo one; printf half; read line"])
+    output.connect()
+    assert received(output) == "one\n"
+    output.disconnect()
+    assert output.receive(0.0) == ""
+    for command in (["true"], ["/no/such/command"]):
+        output = OutputCommand(command)
+        output.connect()
+        assert received(output) == ""
 
 
 # -- what is on the robot ----------------------------------------------------------------------------------------------
@@ -142,6 +178,19 @@ def test_what_cannot_be_stopped_is_reported(tmp_path: Path, monkeypatch: pytest.
     assert waits
 
 
+def test_where_the_exit_code_of_the_command_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    World(monkeypatch, [])
+    assert robot_with_script(tmp_path, "exit 1").stop(start=True) is False, "a roboRIO's script fails without a program"
+    robot = RealRobot(RobotPaths(SYSTEMCORE.layout, str(tmp_path)))
+    sudo = robot.paths.of(SYSTEMCORE.layout.stop[0])
+    sudo.parent.mkdir(parents=True)
+    sudo.write_text("#!/bin/sh\necho sudo: a password is required >&2\nexit 1\n")
+    sudo.chmod(0o755)
+    with pytest.raises(Refusal, match=r"^systemctl has failed: sudo: a password is required$") as caught:
+        robot.stop(start=False)
+    assert caught.value.remedy.startswith("Switch the robot off and on again")
+
+
 def test_a_watch_ends_when_the_laptop_wants_something_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     World(monkeypatch, [8])
     monkeypatch.setattr(RealRobot, "is_running", lambda robot, process: True)
@@ -149,6 +198,32 @@ def test_a_watch_ends_when_the_laptop_wants_something_else(tmp_path: Path, monke
     monkeypatch.setattr(ours._console, "receive", lambda seconds: "")
     with pipe_with(message_frame({})) as source:
         assert ours.watch(Wire(source, io.BytesIO()), 60, 60)["verdict"] == "starting"
+
+
+def test_of_much_output_before_the_restart_the_end_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    World(monkeypatch, [8], [9])
+    ours = Program(robot_with_script(tmp_path, ""))
+    printed = iter([f"{'x' * 40_000}\n", f"{'y' * 40_000}\nthe end\n"])
+
+    def stop(robot: RealRobot, start: bool, meanwhile: Callable[[], None]) -> bool:
+        meanwhile()
+        return False
+
+    monkeypatch.setattr(ours._console, "receive", lambda seconds: next(printed, ""))
+    monkeypatch.setattr(RealRobot, "stop", stop)
+    assert ours.restart() is False
+    assert ours._output == f"[pyfrc has left out earlier output]\n{'y' * 40_000}\nthe end\n"
+
+
+def test_what_is_known_of_processes_and_of_the_last_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = RealRobot(RobotPaths(ROBORIO.layout))
+    assert robot.is_running(os.getpid())
+    assert not robot.is_running(1 << 30)
+    boot = robot.boot()
+    assert (bool(boot.name), (boot.age or 0) > 0) == (True, True)
+    assert robot.boot().name == boot.name
+    monkeypatch.setattr(host, "age_of", lambda processes: None)
+    assert robot.boot() == ("", None)
 
 
 # -- compiling ---------------------------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ from roborio.local import LocalRobot, directory_in_memory
 from pyfrc_core.deploy.agent import releases
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.environment_files import EnvironmentFiles
+from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.integrity import different_in_release
 from pyfrc_core.deploy.agent.releases import Releases
 from pyfrc_core.deploy.targets import ControllerKind
@@ -81,7 +82,7 @@ def check_all_cuts(
     monkeypatch: pytest.MonkeyPatch,
     act: Callable[[AgentDisk], object],
     old: Program | None,
-    new: Program,
+    new: Program | None,
     environment: str | None = None,
 ) -> None:
     """Do something on a robot, and look at what power cuts leave; then deploy there."""
@@ -139,6 +140,13 @@ def test_rollbacks(directory: Path, controller: ControllerKind, monkeypatch: pyt
     deploy(robot, RENAMED)
     back = {"op": "rollback", "release": 1}
     check_all_cuts(directory, controller, monkeypatch, lambda robot: robot.ask(back), (RENAMED, {}), (ONE, {}))
+
+
+def test_an_undeploy(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(RealRobot, "stop", lambda host, start: False)
+    deploy(AgentDisk(directory / "robot", ROBORIO.layout), ONE)
+    undeploy = {"op": "undeploy"}
+    check_all_cuts(directory, ROBORIO, monkeypatch, lambda robot: robot.ask(undeploy), (ONE, {}), None)
 
 
 @BOTH

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import socket
 import subprocess
@@ -16,6 +15,7 @@ from pyfrc_core.deploy.agent import disk, host, transaction
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.content_index import ContentIndex
 from pyfrc_core.deploy.agent.host import RealRobot
+from pyfrc_core.deploy.agent.release_record import parse_record
 from pyfrc_core.deploy.agent.releases import Releases
 from pyfrc_core.deploy.agent.robot_paths import Refusal, RobotPaths
 from pyfrc_core.deploy.targets.roborio import ROBORIO
@@ -23,7 +23,6 @@ from pyfrc_core.deploy.targets.roborio import ROBORIO
 from .agent_disk import AgentDisk, manifest
 
 ONE = {"robot.py": "# one\nimport arm\n", "arm.py": "# arm\n", "data/path.json": "{}"}
-TWO = {**ONE, "robot.py": "# two\nimport arm\n"}
 
 
 @pytest.fixture
@@ -39,19 +38,11 @@ def numbered(robot: AgentDisk, *numbers: int) -> None:
 
 
 def record(robot: AgentDisk, number: int) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(robot.read(f".pyfrc/releases/{number}.json") or "{}")
-    return found
+    return parse_record(robot.read(f".pyfrc/releases/{number}.json") or "")
 
 
 def quiet(robot: AgentDisk) -> Releases:
     return Releases(robot.places, Activity(lambda **message: None))
-
-
-# -- a restart and its watch -------------------------------------------------------------------------------------------
-
-
-restarted: list[Path | None] = []
-watched: list[tuple[float, float]] = []
 
 
 # -- which releases stay -----------------------------------------------------------------------------------------------

@@ -3,23 +3,33 @@
 from __future__ import annotations
 
 import errno
+import hashlib
 import ssl
+import threading
 import urllib.error
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from packaging.requirements import Requirement
 
+from pyfrc_core._version import __version__
 from pyfrc_core.errors import PyfrcError, UsageError
-from pyfrc_core.season import CURRENT
-from pyfrc_core.sync import LockedFile, download, synchronize
+from pyfrc_core.season import CURRENT, Season
+from pyfrc_core.sync import Lock, LockedFile, download, install, synchronize
 from pyfrc_core.sync.addresses import PYTHON_VARIABLE
 from pyfrc_core.sync.cache import Cache
+from pyfrc_core.sync.carry import take
 from pyfrc_core.sync.lock import is_file_name
+from pyfrc_core.sync.pip_errors import NothingFitsError
 from pyfrc_core.sync.resolve import _found, find_packages
 from pyfrc_core.sync.synchronize import SyncOptions, _Work
+from pyfrc_core.sync.wanted import Wanted, load_wanted
 
 HASH = "a" * 64
+PYTHON_FILE = LockedFile("python", "3.14", "python.tar.gz", 1, HASH, "https://a.invalid/p")
 
 
 def installed(name: str, version: str, url: str, **archive: Any) -> dict[str, Any]:
@@ -154,8 +164,6 @@ def test_a_python_of_a_directory_is_copied_and_has_no_address_in_the_lock(
 
 
 def test_a_file_without_an_address_comes_from_the_directory_that_has_it(tmp_path: Path, seen: Seen) -> None:
-    import hashlib
-
     links = tmp_path / "links"
     links.mkdir()
     (links / "six.whl").write_bytes(b"six")
@@ -169,8 +177,6 @@ def test_a_file_without_an_address_comes_from_the_directory_that_has_it(tmp_path
 
 
 def test_files_that_the_disk_has_no_room_for_are_refused(work: _Work, monkeypatch: pytest.MonkeyPatch) -> None:
-    from types import SimpleNamespace
-
     python = LockedFile("python", "3.14", "python.tar.gz", 1000, HASH, "https://a.invalid/p")
     lock = synchronize.Lock(CURRENT.year, CURRENT.controller.name, (), python, ())
     free = SimpleNamespace(free=1000)
@@ -179,3 +185,133 @@ def test_files_that_the_disk_has_no_room_for_are_refused(work: _Work, monkeypatc
     free.free = 999
     with pytest.raises(PyfrcError, match="the disk is too full: "):
         work._missing(lock)
+
+
+# -- finding packages --------------------------------------------------------------------------------------------------
+
+META = CURRENT.downloads.packages
+SIX, SEVEN = (LockedFile("six", v, f"six-{v}.whl", 0, "", f"https://a.invalid/six-{v}.whl") for v in ("1", "2"))
+
+
+@pytest.mark.parametrize(
+    ("settings", "locked", "version"),
+    [
+        ("", (META,), "2026.9"),
+        ("components = ['commands2', 'apriltag']\n", (f"{META}[apriltag,commands2]",), "2026.9"),
+        ("robotpy_version = '2026.1'\nrequires = ['six>1', 'pyfrc']\n", (f"{META}==2026.1", "six>1"), None),
+        ("robotpy_version = 'ignored'\nrequires = ['six']\n", ("six",), None),
+        (
+            "robotpy_version = 'ignored'\nrequires = ['x @ https://a.invalid/x-1-py3-none-any.whl#sha256=0']\n",
+            (str(Requirement("x @ https://a.invalid/x-1-py3-none-any.whl#sha256=0")),),
+            None,
+        ),
+    ],
+)
+def test_what_a_project_asks_for(settings: str, locked: tuple[str, ...], version: str | None, tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_text(f"[tool.robotpy]\n{settings}")
+    assert load_wanted(tmp_path / "pyproject.toml", CURRENT, "2026.9") == Wanted(locked, version)
+
+
+def test_locked_versions_are_kept_as_long_as_they_fit(work: _Work, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[list[str], list[str]]] = []
+
+    def find(requirements: list[str], season: Season, *, constraints: list[str], **more: Any) -> list[LockedFile]:
+        asked.append((requirements, constraints))
+        if "six==1" in constraints and requirements != ["six"]:
+            raise NothingFitsError("six==1 does not fit")
+        return [SIX]
+
+    monkeypatch.setattr(synchronize, "find_packages", find)
+    assert work._find(Wanted(("six",), "2026.9"), {"six": SIX}) == [SIX]
+    assert work._find(Wanted(("six>1",), "2026.9"), {"six": SIX}) == [SIX]
+    assert work._find(Wanted(("six",), None), {}) == [SIX]
+    newest = [f"{META}==2026.9"]
+    assert asked == [(["six"], ["six==1"]), (["six>1"], ["six==1"]), (["six>1"], newest), (["six"], [])]
+
+
+def test_a_new_lock_has_what_was_found(work: _Work, monkeypatch: pytest.MonkeyPatch) -> None:
+    python = PYTHON_FILE
+    monkeypatch.setattr(work, "_find", lambda wanted, old: [SIX if old else SEVEN])
+    monkeypatch.setattr(work, "_python", lambda locked: locked or replace(python, version="3.15"))
+    monkeypatch.setattr(work, "_get", lambda locked, url: replace(locked, size=3, sha256=HASH))
+    before = Lock(CURRENT.year, CURRENT.controller.name, ("six",), python, (replace(SIX, size=3, sha256=HASH),))
+    wanted = Wanted(("six", "seven"))
+    assert work.make_lock(wanted, before, keep=True) == replace(before, requirements=wanted.locked)
+    new = replace(before, requirements=wanted.locked, python=replace(python, version="3.15"))
+    assert work.make_lock(wanted, before, keep=False) == replace(new, packages=(replace(SEVEN, size=3, sha256=HASH),))
+    assert work.make_lock(wanted, None, keep=True).python.version == "3.15"
+
+
+def test_what_the_cache_has_under_another_lock_is_not_got_again(work: _Work, monkeypatch: pytest.MonkeyPatch) -> None:
+    got: list[str] = []
+    monkeypatch.setattr(work, "_get", lambda locked, url: got.append(url) or locked)
+    found = replace(SIX, sha256=hashlib.sha256(b"six").hexdigest(), index="https://b.invalid")
+    there = work._cache.path_of(found)
+    there.parent.mkdir(parents=True)
+    there.write_bytes(b"six")
+    assert work._package(found, None) == replace(found, size=3)
+    assert work._package(found, replace(found, size=3, index=None)) == replace(found, size=3)
+    assert got == []
+    there.write_bytes(b"another")
+    assert work._package(found, None) == found
+    assert got == [found.url]
+
+
+def test_only_one_process_at_a_time_changes_the_cache(tmp_path: Path) -> None:
+    cache, waited = Cache(tmp_path / "cache", CURRENT), threading.Event()
+
+    def change() -> None:
+        with cache.changed_alone(waited.set):
+            (tmp_path / "done").touch()
+
+    with cache.changed_alone(lambda: pytest.fail("it is alone")):
+        other = threading.Thread(target=change)
+        other.start()
+        assert waited.wait(60)
+        assert not (tmp_path / "done").exists()
+    other.join(60)
+    assert (tmp_path / "done").exists()
+
+
+def test_what_this_computer_has_and_lacks(monkeypatch: pytest.MonkeyPatch) -> None:
+    here = {"six": "2", "click": "8"}
+    monkeypatch.setattr(install, "_version_here", here.get)
+    packages = (SIX, replace(SIX, name="click", version="8"), replace(SIX, name="only-on-robots"))
+    lock = Lock(CURRENT.year, "", ("six", "No_Such>1", f"{META}[all]", "x; python_version<'3'"), PYTHON_FILE, packages)
+    assert list(install.different_here(lock)) == ["six 2 (the robot: 1)"]
+    assert list(install.missing_here(lock, CURRENT)) == ["no-such"]
+    wpilib = replace(lock, packages=(replace(SIX, name=META, version="2027.0a1"),))
+    assert install._with_version(f"{META}[all]", wpilib, CURRENT) == f"{META}[all]==2027.0a1"
+    for unchanged in (f"{META}==2026.1", f"{META}-cli", "six"):
+        assert install._with_version(unchanged, wpilib, CURRENT) == unchanged
+    assert install._with_version(META, lock, CURRENT) == META
+
+
+def test_what_is_installed_here_has_the_locked_versions(monkeypatch: pytest.MonkeyPatch) -> None:
+    lock = Lock(CURRENT.year, "", ("six>=1",), PYTHON_FILE, (SIX,))
+    commands: list[list[str]] = []
+
+    def run(command: list[str], stdin: int) -> SimpleNamespace:
+        commands.append(command)
+        limits = Path(command[command.index("--constraint") + 1]).read_text("utf-8")
+        assert limits == f"six==1\npyfrc=={__version__}\n"
+        return SimpleNamespace(returncode=len(commands) - 1)
+
+    monkeypatch.setattr(install.subprocess, "run", run)
+    install.install_here(replace(lock, requirements=()), CURRENT, [])
+    install.install_here(lock, CURRENT, ["wheels"], quiet=True)
+    (command,) = commands
+    assert command[1:6] == ["-m", "pip", "install", "--disable-pip-version-check", "--quiet"]
+    assert command[6:8] == ["--find-links", "wheels"]
+    assert command[-1] == "six>=1"
+    with pytest.raises(PyfrcError, match="pip could not install the robot's versions on this computer"):
+        install.install_here(lock, CURRENT, [])
+
+
+def test_a_copy_appears_only_when_it_is_complete(tmp_path: Path) -> None:
+    (tmp_path / "six.whl").write_bytes(b"six")
+    six = LockedFile("six", "1", "six.whl", 3, hashlib.sha256(b"six").hexdigest())
+    take(six, tmp_path, tmp_path / "to/six.whl")
+    with pytest.raises(PyfrcError, match="changes while it is read"):
+        take(replace(six, size=4), tmp_path, tmp_path / "to/other.whl")
+    assert [each.name for each in (tmp_path / "to").iterdir()] == ["six.whl"]

@@ -20,7 +20,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))  # run without site-packages
 
-from pyfrc_core.virtual_robot.console import text_frame
+from pyfrc_core.deploy.agent.console import text_frame
 
 ROOT = sys.argv[1]
 HAS_DRIVER_STATION = sys.argv[2] == "driver-station"  # connected all the time

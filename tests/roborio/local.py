@@ -59,7 +59,7 @@ class LocalChannel:
         #: Set: `recv_exit_status` waits by itself.
         self.status_event = threading.Event()
         self.status_event.set()
-        #: How many steps on the disk the agent has made, or calls, once it has ended by itself.
+        #: How many calls the agent has made, once it has ended by itself.
         self.steps: int | None = None
 
     def sendall(self, data: bytes) -> None:
@@ -262,23 +262,19 @@ class Agents:
         *,
         cut_to_robot: int | None = None,
         cut_from_robot: int | None = None,
-        last_step: int | None = None,
-        loses: bool = False,
         calls: bool = False,
         all_signs: bool = False,
         runs: bool | None = None,
     ) -> LocalChannel:
         """A new agent.
 
-        :param last_step: it is killed before this step of its on the disk
-        :param loses:     and what was not on the disk yet is lost, as when the power goes
-        :param calls:     its calls are counted, instead of its steps on the disk
+        :param calls:     its calls are counted
         :param all_signs: it gives a sign of life for everything that it does
         :param runs:      what each watch of a program sees: it runs, or it ends; None: what is so
         """
         ours, theirs = socket.socketpair()
         alive, end = os.pipe()
-        options = {"last_step": last_step, "loses": loses, "calls": calls, "all_signs": all_signs, "runs": runs}
+        options = {"calls": calls, "all_signs": all_signs, "runs": runs}
         message = json.dumps({"root": str(root), **options}).encode()
         socket.send_fds(self._control, [message], [theirs.fileno(), end])
         theirs.close()

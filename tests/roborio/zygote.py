@@ -1,8 +1,4 @@
-"""Forks agents that have everything imported already: a hundred of them a second. Run by `local`.
-
-Each can end itself, by SIGKILL, before its n-th step on the disk; and to lose then what was not on the disk yet, as
-in a power cut: every file written since the last flush is empty.
-"""
+"""Forks agents that have everything imported already: a hundred of them a second. Run by `local`."""
 
 from __future__ import annotations
 
@@ -13,7 +9,6 @@ import hashlib
 import json
 import os
 import pathlib
-import signal
 import socket
 import sys
 import tempfile
@@ -24,86 +19,18 @@ from typing import Any
 
 from pyfrc_core.deploy.agent import (
     compiling,
-    disk,
     host,
     program,
     robot_paths,
     serve,
     start_monitor,
-    system,
     wire,
 )
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
-_CHANGES = {
-    "os.rename",
-    "os.link",
-    "os.symlink",
-    "os.mkdir",
-    "os.remove",
-    "os.rmdir",
-    "os.chmod",
-    "os.truncate",
-    "os.fork",
-}
-_WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT
 #: In seconds.
 _LONGER_THAN_A_TEST = 3600.0
-
-
-class Steps:
-    """Counts an agent's steps on the disk, and ends it before one of them."""
-
-    def __init__(self, last: int | None, loses: bool, root: str) -> None:
-        self.count = 0
-        self._last = last
-        self._loses = loses
-        self._root = pathlib.Path(root)
-        self._me = os.getpid()
-        self._unsaved: dict[int, int] = {}
-        self._saved_caches: set[int] = set()
-        self._open, self._fsync, self._flush = pathlib.Path.open, os.fsync, system.flush
-        if loses:
-            # A function, which is bound to the path as the original is; our own method would not be.
-            pathlib.Path.open = lambda path, *args, **options: self._opening(path, *args, **options)  # type: ignore[method-assign,assignment]
-            os.fsync = self._fsyncing
-            for module in (system, disk):
-                module.flush = self._flushing  # type: ignore[attr-defined]
-        sys.addaudithook(self._hook)
-
-    def _hook(self, event: str, args: Any) -> None:
-        # "ctypes.dlsym": right before the disk is flushed, and names are exchanged.
-        is_step = event in _CHANGES or event == "ctypes.dlsym" or (event == "open" and (args[2] or 0) & _WRITING)
-        if is_step and os.getpid() == self._me:
-            self.count += 1
-            if self.count == self._last:
-                self._end()
-
-    def _end(self) -> None:
-        if self._loses:
-            for descriptor in self._unsaved.values():
-                os.ftruncate(descriptor, 0)
-            for cache in self._root.rglob("*.pyc"):
-                if cache.stat().st_ino not in self._saved_caches:
-                    os.truncate(cache, 0)
-        os.kill(self._me, signal.SIGKILL)
-
-    def _opening(self, path: pathlib.Path, mode: str = "r", *args: Any, **options: Any) -> Any:
-        stream = self._open(path, mode, *args, **options)
-        if mode[0] in "wax":
-            self._unsaved[os.fstat(stream.fileno()).st_ino] = os.dup(stream.fileno())
-        return stream
-
-    def _fsyncing(self, descriptor: Any) -> None:
-        self._fsync(descriptor)
-        number = descriptor if isinstance(descriptor, int) else descriptor.fileno()
-        self._unsaved.pop(os.fstat(number).st_ino, None)
-
-    def _flushing(self, directory: pathlib.Path) -> None:
-        self._flush(directory)
-        self._unsaved.clear()
-        self._saved_caches = {cache.stat().st_ino for cache in self._root.rglob("*.pyc")}
 
 
 class Calls:
@@ -149,11 +76,10 @@ def wait_for_end(compiler: compiling.Compiler) -> None:
 
 
 def agent(connection: int, alive: int, options: dict[str, Any]) -> None:
-    """Run an agent, and write the number of its steps or calls at its end."""
+    """Run an agent, and write the number of its calls at its end."""
     os.dup2(connection, 0)
     os.dup2(connection, 1)
     os.close(connection)
-    steps = Steps(options.get("last_step"), options.get("loses", False), options["root"])
     if options["all_signs"]:
         serve.Activity = functools.partial(serve.Activity, pause=0.0)  # type: ignore[misc,assignment]
     if options["runs"] is not None:
@@ -164,11 +90,10 @@ def agent(connection: int, alive: int, options: dict[str, Any]) -> None:
         }
 
         def watch(self: program.Program, *_: object) -> dict[str, Any]:
-            has_run = self._monitor is not None and self._monitor.has_run
-            return {**seen, "seconds": 1.0, "age": 1.0, "lived": 1.0, "has_run": has_run}
+            return {**seen, "seconds": 1.0, "age": 1.0, "lived": 1.0}
 
         program.Program.watch = watch  # type: ignore[method-assign]
-    counted: Steps | Calls = Calls() if options["calls"] else steps
+    counted = Calls() if options["calls"] else None
     try:
         serve.main(open(0, "rb", 0))  # noqa: SIM115
     except SystemExit:
@@ -177,7 +102,7 @@ def agent(connection: int, alive: int, options: dict[str, Any]) -> None:
         traceback.print_exc()
     finally:
         sys.setprofile(None)
-        os.write(alive, b"%d" % counted.count)
+        os.write(alive, b"%d" % (counted.count if counted is not None else 0))
         os._exit(0)
 
 

@@ -1,4 +1,7 @@
-"""The output of the robot program, from the robot's console service or from a command such as ``journalctl``."""
+"""The output of the robot program, from the robot's console service or from a command such as ``journalctl``.
+
+Standard library only: the agent on the robot reads it, and so does the laptop.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,9 @@ import os
 import select
 import struct
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Union
+from typing import TYPE_CHECKING, NamedTuple, Union
 
 if TYPE_CHECKING:
     import socket
@@ -17,67 +20,172 @@ if TYPE_CHECKING:
 #: The console's ports: for any client, and for the Driver Station.
 PORTS = (1741, 1740)
 #: Kinds of messages, the first byte of each.
-ERROR, TEXT = 11, 12
-#: An empty frame.
-KEEP_ALIVE = b"\0\0"
+_ERROR, _TEXT = 11, 12
+#: Kinds of messages are below this number. Kinds other than text and error are skipped.
+_KINDS = 32
+#: The maximum number of empty frames, which keep a connection alive, among what arrives at once.
+_MAX_EMPTY_FRAMES = 1000
+#: The maximum length of a line that is sent, in bytes.
+_MAX_LINE_BYTES = 65000
+
+_LENGTH = struct.Struct(">H")
+_TEXT_HEAD = struct.Struct(">BfH")  # kind, time in seconds, number
+_ERROR_HEAD = struct.Struct(">BfHHiB")  # kind, time in seconds, number, occurrences, error code, flags
+
+_KEEP_ALIVE = b"\0\0"  # an empty frame
 _KEEP_ALIVE_SECONDS = 1.0
 #: Seconds to wait for more output after the first, so that several lines are read together.
 _BATCH_SECONDS = 0.02
 
 
-class ConsoleClient:
-    """A connection to the console, if it can be reached.
+class ConsoleProtocolError(ValueError):
+    """The data is not from a robot's console. The message has the reason."""
 
-    :param ports: loopback ports to try in turn
+
+class ConsoleLine(NamedTuple):
+    """A message of a console: seconds since the robot's start, and the text without the newline at its end."""
+
+    seconds: float
+    text: str
+
+
+def text_frame(line: bytes, number: int) -> bytes:
+    """Return the frame with a line of output.
+
+    :param number: counts the lines
+    """
+    body = _TEXT_HEAD.pack(_TEXT, time.monotonic() % 1e6, number % 65536) + line[:_MAX_LINE_BYTES]
+    return _LENGTH.pack(len(body)) + body
+
+
+class ConsoleFrames:
+    """The frames of one connection. At most one incomplete frame (64 KiB) is buffered."""
+
+    def __init__(self) -> None:
+        self._unread = b""
+
+    def lines(self, received: bytes) -> Iterator[ConsoleLine]:
+        """Yield the lines that are complete with the next bytes.
+
+        :raises ConsoleProtocolError: if the data is not from a robot's console
+        """
+        data, begin, empty = self._unread + received, _LENGTH.size, 0
+        while len(data) >= begin:
+            end = begin + _LENGTH.unpack_from(data, begin - _LENGTH.size)[0]
+            if len(data) > begin and end > begin:
+                _check_kind(data[begin])  # also of an incomplete frame, whose rest may never arrive
+            if end > len(data):
+                break
+            empty += end == begin
+            if empty > _MAX_EMPTY_FRAMES:
+                raise ConsoleProtocolError("it sends too many empty frames")
+            if end > begin and (line := _line(data[begin:end])) is not None:
+                yield line
+            begin = end + _LENGTH.size
+        self._unread = data[begin - _LENGTH.size :]
+
+
+def _check_kind(kind: int) -> None:
+    if kind >= _KINDS:
+        raise ConsoleProtocolError(f"it sends messages of kind {kind}, which does not exist")
+
+
+def _line(frame: bytes) -> ConsoleLine | None:
+    if frame[0] == _TEXT:
+        if len(frame) < _TEXT_HEAD.size:
+            raise ConsoleProtocolError(f"it sends a text message of {len(frame)} bytes, which is too short")
+        _, seconds, _ = _TEXT_HEAD.unpack_from(frame)
+        return ConsoleLine(seconds, frame[_TEXT_HEAD.size :].decode(errors="replace").removesuffix("\n"))
+    if frame[0] == _ERROR:
+        if len(frame) < _ERROR_HEAD.size:
+            raise ConsoleProtocolError(f"it sends an error message of {len(frame)} bytes, which is too short")
+        _, seconds, _, _, code, _ = _ERROR_HEAD.unpack_from(frame)
+        details, location, stack = _texts(frame, 3)
+        return ConsoleLine(seconds, f"{code} {details} {location} {stack}")
+    return None
+
+
+def _texts(frame: bytes, count: int) -> list[str]:
+    texts, position = [], _ERROR_HEAD.size
+    for _ in range(count):
+        start = position + _LENGTH.size
+        position = start + _LENGTH.unpack_from(frame, position)[0] if start <= len(frame) else start
+        if position > len(frame):
+            raise ConsoleProtocolError("it sends an error message with texts longer than the message")
+        texts.append(frame[start:position].decode(errors="replace"))
+    return texts
+
+
+class ConsoleClient:
+    """A client of a console service.
+
+    :param host: of the robot
+    :param ports: to try in turn
     """
 
-    def __init__(self, ports: tuple[int, ...]) -> None:
+    def __init__(self, host: str, ports: Sequence[int]) -> None:
+        self._host = host
         self._ports = ports
         self._socket: socket.socket | None = None
-        self._unread = b""
+        self._frames = ConsoleFrames()
         self._keep_alive = 0.0
 
-    def connect(self) -> None:
-        """Connect, to receive the output from now on."""
+    def connect(self, seconds: float = 1.0) -> None:
+        """Connect, to receive the output from now on.
+
+        :param seconds: the time limit for each port
+        :raises OSError: if none can be reached
+        """
         import socket
 
         self.disconnect()
         for port in self._ports:
             try:
-                self._socket = socket.create_connection(("127.0.0.1", port), timeout=1.0)
+                self._socket = socket.create_connection((self._host, port), timeout=seconds)
+                break
             except OSError:
-                continue
-            self._socket.setblocking(False)
-            return
+                if port == self._ports[-1]:
+                    raise
+        assert self._socket is not None
+        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._socket.setblocking(False)
 
     def disconnect(self) -> None:
         """Disconnect."""
         if self._socket is not None:
             self._socket.close()
-        self._socket, self._unread = None, b""
+        self._socket, self._frames = None, ConsoleFrames()
+
+    def lines(self, seconds: float) -> Iterator[ConsoleLine]:
+        """Wait up to `seconds` for output, and yield the complete lines that have arrived.
+
+        :raises OSError: if the connection is lost
+        :raises ConsoleProtocolError: if the server is not a robot's console
+        """
+        if self._socket is None:
+            raise ConnectionResetError("not connected")
+        now = time.monotonic()
+        if now >= self._keep_alive:
+            with suppress(BlockingIOError):
+                self._socket.send(_KEEP_ALIVE)
+            self._keep_alive = now + _KEEP_ALIVE_SECONDS
+        if select.select([self._socket], [], [], seconds)[0]:
+            time.sleep(min(_BATCH_SECONDS, seconds))
+            received = self._socket.recv(1 << 18)
+            if not received:
+                raise ConnectionResetError("closed")
+            yield from self._frames.lines(received)
 
     def receive(self, seconds: float) -> str:
-        """Wait up to `seconds` for output, and return the complete lines that have arrived."""
+        """Return the same as a text. Without a connection, wait, and return nothing."""
         if self._socket is None:
             time.sleep(seconds)
             return ""
-        now = time.monotonic()
         try:
-            if now >= self._keep_alive:
-                self._socket.send(KEEP_ALIVE)
-                self._keep_alive = now + _KEEP_ALIVE_SECONDS
-            if not select.select([self._socket], [], [], seconds)[0]:
-                return ""
-            time.sleep(min(_BATCH_SECONDS, seconds))
-            chunk = self._socket.recv(1 << 18)
-        except BlockingIOError:
-            return ""
-        except OSError:
-            chunk = b""
-        messages, self._unread = split_frames(self._unread + chunk)
-        if not chunk:
+            return "".join(f"{line.text}\n" for line in self.lines(seconds))
+        except (OSError, ConsoleProtocolError):
             self.disconnect()
-        return "".join(map(console_text, messages))
+            return ""
 
 
 class OutputCommand:
@@ -133,30 +241,3 @@ class OutputCommand:
 
 
 Console = Union[ConsoleClient, OutputCommand]  # noqa: UP007 - the agent runs on Python 3.9, too
-
-
-def split_frames(received: bytes) -> tuple[list[bytes], bytes]:
-    """Return the complete messages, and the remaining bytes of an incomplete frame."""
-    messages, start = [], 0
-    while len(received) >= start + 2:
-        end = start + 2 + int.from_bytes(received[start : start + 2], "big")
-        if end > len(received):
-            break
-        messages.append(received[start + 2 : end])
-        start = end
-    return messages, received[start:]
-
-
-def console_text(message: bytes) -> str:
-    """Return the text of a console message as one line; empty for other kinds of messages."""
-    if message[:1] == bytes([TEXT]):
-        line = message[1 + 4 + 2 :].decode(errors="replace")
-        return line if line.endswith("\n") else line + "\n"
-    if message[:1] == bytes([ERROR]):
-        parts, rest = [], message[1 + 4 + 2 + 2 + 4 + 1 :]
-        while len(rest) >= 2:
-            (length,) = struct.unpack_from(">H", rest)
-            parts.append(rest[2 : 2 + length].decode(errors="replace"))
-            rest = rest[2 + length :]
-        return " ".join(part for part in parts if part) + "\n"
-    return ""

@@ -113,5 +113,4 @@ class ContentIndex:
 
     def has(self, wanted: WantedFile, code: Path) -> bool:
         """Return whether the directory `code` has this file with the wanted content."""
-        file, same = code / wanted.path, self.same_file(wanted)
-        return same is not None and file.is_file() and (same == str(file) or file.samefile(same))
+        return self.same_file(wanted) == str(code / wanted.path)

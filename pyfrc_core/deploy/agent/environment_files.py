@@ -53,8 +53,8 @@ def read_record(place: Path) -> Record:
 
 
 def wheels_in(record: Record) -> dict[str, dict[str, str]]:
-    """Return the wheels of an environment, each with the hashes of its files; none of one that has no hashes."""
-    return dict(record["wheels"]) if "made" in record else {}
+    """Return the wheels of an environment, each with the hashes of its files."""
+    return dict(record.get("wheels", {}))
 
 
 def files_in(record: Record) -> dict[str, str]:

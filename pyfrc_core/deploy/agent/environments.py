@@ -19,11 +19,8 @@ from .activity import Activity
 from .disk import different_files, free_bytes, remove, sync, write_whole
 from .environment_files import RECORD, EnvironmentFiles, Record, Wheel, files_in, read_record, wheels_in
 from .robot_paths import Refusal, RobotPaths, in_environment
-from .system import linked_directory
 
 _NAME = re.compile(r"[0-9a-f]{16}")
-#: Earlier versions have given such names to another tool's environment when they replaced it.
-_TAKEN = re.compile(r"taken-\d+")
 _PYTHON = re.compile(r"(/\S+)/bin/python3")
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 #: The directory of files that are to replace damaged ones.
@@ -49,8 +46,7 @@ class Environments:
 
     def is_usable(self, name: str) -> bool:
         """Return whether an environment is complete."""
-        place = self.directory(name)
-        return (place / RECORD).is_file() if _NAME.fullmatch(name) else bool(_TAKEN.fullmatch(name) and place.is_dir())
+        return bool(_NAME.fullmatch(name)) and (self.directory(name) / RECORD).is_file()
 
     def of_this_process(self) -> str | None:
         """Return the environment in which this agent runs, or None: another tool's, or a Python without one."""
@@ -62,7 +58,7 @@ class Environments:
         return None if found is None else self._at(self._paths.of(found[1]))
 
     def _at(self, place: Path) -> str | None:
-        place = place.resolve()  # start commands of earlier versions have a link to it
+        place = place.resolve()
         return place.name if place.parent == self._directory.resolve() and self.is_usable(place.name) else None
 
     def in_commands(self, commands: dict[str, str | None], name: str | None) -> dict[str, str | None]:
@@ -71,9 +67,7 @@ class Environments:
         :raises Refusal: if that is no longer there
         """
         if name is not None and not self.is_usable(name):
-            if not _TAKEN.fullmatch(name):
-                raise Refusal("release", "the packages of this release are no longer on the robot", "Choose another.")
-            name = None  # it is where the other tool has made it
+            raise Refusal("release", "the packages of this release are no longer on the robot", "Choose another.")
         return in_environment(self._paths.layout, commands, name)
 
     def install(self, request: dict[str, Any], receive: Any) -> None:
@@ -175,11 +169,9 @@ class Environments:
 
     def remove_remains(self) -> None:
         """Remove what interrupted installations have left."""
-        for name in ("venv", "python", _NEW):
-            remove(self._paths.own / name)
+        remove(self._paths.own / _NEW)
         for place in self._directory.iterdir() if self._directory.is_dir() else ():
-            # A link is what an interrupted exchange of an earlier version has left.
-            if linked_directory(place) is not None or (_NAME.fullmatch(place.name) and not self.is_usable(place.name)):
+            if _NAME.fullmatch(place.name) and not self.is_usable(place.name):
                 remove(place)
         remove(self._wheels)
 
@@ -190,18 +182,13 @@ class Environments:
         """
         here = {self.current(), self.of_this_process(), *used}
         for place in list(self._directory.iterdir()) if self._directory.is_dir() else ():
-            if place.name not in here and (_NAME.fullmatch(place.name) or _TAKEN.fullmatch(place.name)):
+            if place.name not in here and _NAME.fullmatch(place.name):
                 remove(place / RECORD)  # first: it is not complete from now on
                 remove(place)
-        links = [self._paths.of(each) for each in self._paths.layout.former_links]
-        shown = {place.name for place in map(linked_directory, links) if place is not None}  # another tool may use it
-        pythons = {self._record(name).get("python") for name in here if name is not None} | shown
+        pythons = {self._record(name).get("python") for name in here if name is not None}
         for place in list(self._pythons.iterdir()) if self._pythons.is_dir() else ():
             if _NAME.fullmatch(place.name) and place.name not in pythons:
                 remove(place)
-        for link in links:
-            if linked_directory(link) is not None and not link.exists():
-                remove(link)
 
     def _record(self, name: str) -> Record:
         return read_record(self.directory(name))

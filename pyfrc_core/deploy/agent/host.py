@@ -49,7 +49,7 @@ class RealRobot:
     def console(self) -> Console:
         """Return a client for the program's output."""
         output = self.paths.layout.output
-        return OutputCommand(output) if output else ConsoleClient(PORTS)
+        return OutputCommand(output) if output else ConsoleClient("127.0.0.1", PORTS)
 
     def can_restart(self) -> bool:
         """Return whether the program can be stopped and started."""

@@ -32,7 +32,6 @@ class Layout(NamedTuple):
     :param can_fail:      whether the exit code of `stop` and `restart` says that they have failed
     :param python:        the Python in the start commands, of the system or another tool; a program with an environment
         of pyfrc's starts with the Python of that instead
-    :param former_links:  links to environments and Pythons, which earlier versions have made
     :param installing:    the directory in which scripts of pyfrc write, in names that begin with their process's number
     :param output:        a command that prints what the program prints from then on; without one, the console service
         on the robot sends that
@@ -61,7 +60,6 @@ class Layout(NamedTuple):
     can_fail: bool = False
     output: Sequence[str] = ()
     installing: str = ""
-    former_links: Sequence[str] = ()
 
     @property
     def by_administrator(self) -> str:

@@ -49,17 +49,17 @@ class Program:
         #: The program's process at the end of the watch, if it was seen.
         self.process: int | None = None
 
-    def restart(self, main: Path | None = None, has_run: bool = False) -> bool:
+    def restart(self, main: Path | None = None) -> bool:
         """Restart the program; return when the old one has ended. The console is connected before.
 
         :param main: the program's main file, if known
-        :param has_run: see `StartMonitor`
         :return: whether the old program survived the stop command and was ended by a signal
         """
-        self._console.connect()
+        with suppress(OSError):  # without a console, its process decides
+            self._console.connect()
         self._output = ""
         reports = cache(partial(_reports_start, main))
-        self._monitor = monitor = StartMonitor(self._host.processes(), reports, has_run)
+        self._monitor = monitor = StartMonitor(self._host.processes(), reports)
         survived = self._host.stop(start=True, meanwhile=lambda: self._poll(monitor))
         self._poll(monitor)
         monitor.restarted(time.monotonic())
@@ -89,7 +89,7 @@ class Program:
             if verdict is not None:
                 self._console.disconnect()
                 self.process = monitor.process
-                return {"verdict": verdict, "has_run": monitor.has_run, **self._state(monitor, now)}
+                return {"verdict": verdict, **self._state(monitor, now)}
             if now >= report:
                 wire.send(watching=self._state(monitor, now))
                 report = now + _REPORT_SECONDS

@@ -6,8 +6,9 @@ compares it with the process that runs then: another one means that the program 
 
 from __future__ import annotations
 
+import hashlib
 import json
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 Record = dict[str, Any]
@@ -88,63 +89,17 @@ def now(record: Record, boot: Boot, processes: Collection[int], age: float | Non
     return {**record, "lasted": max(record.get("lasted") or 0.0, round(age or 0.0, 1))}
 
 
-def _is_table(key: Callable[[Any], bool], value: Callable[[Any], bool]) -> Callable[[Any], bool]:
-    return lambda table: isinstance(table, dict) and all(key(each) and value(table[each]) for each in table)
-
-
-def _has_texts(table: Any) -> bool:
-    """Return whether this is an object of texts, without a call for each: it may have thousands."""
-    return isinstance(table, dict) and {*map(type, table.values())} <= {str}
-
-
-def _is_text(value: Any) -> bool:
-    return isinstance(value, str)
-
-
-def _is_number(value: Any) -> bool:
-    return type(value) is int and value >= 0
-
-
-def _is_release(value: Any) -> bool:
-    return _is_number(value) and value < 1 << 53
-
-
-def _is_carried(value: Any) -> bool:
-    return (
-        isinstance(value, dict)
-        and _is_release(value.get("from"))
-        and _is_table(_is_text, _is_number)(value.get("files"))
-    )
-
-
-def _is_process(value: Any) -> bool:
-    return isinstance(value, dict) and _is_text(value.get("boot")) and _is_number(value.get("id"))
-
-
-#: Whether the value of each field is valid.
-_FIELDS: dict[str, Callable[[Any], bool]] = {
-    "files": _has_texts,
-    "compiled": _has_texts,
-    "carried": _is_carried,
-    "main": lambda value: value is None or _is_text(value),
-    "debug": lambda value: value is None or isinstance(value, bool),
-    "commands": _is_table(_is_text, lambda value: value is None or _is_text(value)),
-    "deploy": lambda value: isinstance(value, dict),
-    "environment": lambda value: value is None or _is_text(value),
-    "from": lambda value: value is None or _is_release(value),
-    "ran": lambda value: isinstance(value, bool),
-    "ended": lambda value: isinstance(value, bool),
-    "lasted": lambda value: isinstance(value, (int, float)) and 0 <= value <= LONG,
-    "process": lambda value: value is None or _is_process(value),
-}
+def record_text(record: Record) -> str:
+    """Return the content of a record's file: its SHA-256, and the record."""
+    text = json.dumps(record)
+    return f"{_hash_of(text)}\n{text}"
 
 
 def parse_record(text: str) -> Record:
     """Return the record in a file; empty if it is damaged."""
-    try:
-        record = json.loads(text)
-    except (ValueError, RecursionError):
-        return {}
-    if not isinstance(record, dict) or "commands" not in record:
-        return {}
-    return record if all(is_valid(record[key]) for key, is_valid in _FIELDS.items() if key in record) else {}
+    sha256, _, content = text.partition("\n")
+    return dict(json.loads(content)) if sha256 == _hash_of(content) else {}
+
+
+def _hash_of(text: str) -> str:
+    return hashlib.sha256(text.encode(errors="surrogateescape")).hexdigest()

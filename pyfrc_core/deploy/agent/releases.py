@@ -19,7 +19,7 @@ from .activity import Activity
 from .carrying import Carried, carry_over
 from .disk import allow_changes, make_links_absolute, remove, remove_if_possible, sync, text_of, write_whole
 from .environments import Environments
-from .release_record import Record, parse_record, standing
+from .release_record import Record, parse_record, record_text, standing
 from .robot_paths import Refusal, RobotPaths
 from .system import REPLACES_LINKS, exchange, linked_directory, make_link, replace_link
 
@@ -90,7 +90,7 @@ class Releases:
     def write_record(self, number: int, record: Record) -> None:
         """Write the record of a release."""
         self.paths.releases.mkdir(parents=True, exist_ok=True)
-        write_whole(self._record_file(number), json.dumps(record))
+        write_whole(self._record_file(number), record_text(record))
         self._unwritten.discard(number)
 
     def update_record(self, number: int, change: Callable[[Record], Record]) -> None:

@@ -71,8 +71,6 @@ class Agent:
         self._lock: ExitStack | None = None
         #: The release that was started and not watched yet.
         self._started: int | None = None
-        #: The release that a deploy has just compared with the laptop's files, if it was seen to run before.
-        self._has_run: int | None = None
         self._requests: dict[str, Callable[[Message], Message]] = {
             "plan": lambda request: plan(self._releases, request["files"]),
             "check": lambda request: {"different": different_code(self._releases)[:_MAX_NAMED]},
@@ -138,6 +136,7 @@ class Agent:
         releases, python, layout = self._releases, look_up(request.get("modules") or ()), self._paths.layout
         program = self._host.processes()
         self._review(program)
+        command = text_of(self._paths.home / layout.command)
         return {
             **python,
             "wpilib": python["packages"].get("wpilib"),
@@ -152,7 +151,7 @@ class Agent:
             "releases": [self._summary(number) for number in releases.numbers()],
             "other_code": releases.is_other_tools() and any(True for _ in files_below(self._paths.code)),
             "deploy_json": text_of(self._paths.code / "deploy.json"),
-            "command": text_of(self._paths.home / layout.command),
+            "command": None if command is None else command.strip(),
             "debug": self._paths.is_debug(),
             "running": bool(program),
             "environment": releases.environments.of_this_process(),
@@ -217,7 +216,6 @@ class Agent:
             self._recover()
             try:
                 done = Deploy(self._releases, self._wire, request).run()
-                self._has_run = done["release"] if done.get("has_run") else None
                 return {**done, "fallback": self._releases.fallback(done["release"])}
             except BaseException:
                 with suppress(ConnectionError):  # the next deploy removes the rest
@@ -244,12 +242,10 @@ class Agent:
             self._started = current = self._releases.current()
             name = None if current is None else self._releases.record(current).get("main")
             main = None if name is None else self._paths.code / name
-            has_run = current is not None and current == self._has_run
-            self._has_run = None  # the next restart is not preceded by a comparison
             if current is not None:
                 with suppress(OSError):  # the process that ends now was not seen to crash
                     self._releases.update_record(current, lambda record: {**record, "process": None})
-            survived = self._activity.wait_for(self._program.restart, main, has_run)
+            survived = self._activity.wait_for(self._program.restart, main)
             with suppress(OSError):  # the next deploy does the rest
                 if current is not None:
                     self._releases.carry_late_writes(current)

@@ -28,8 +28,6 @@ _BEGINNING = re.compile(r"Robot program starting|WPILib version \d|registered SI
 #: Bounds, in seconds, of the trial period after the start, which is half as long as the start itself. A slow robot also
 #: needs longer for its first loop. The minimum detects a crash 0.5 s after a very short start.
 _MIN_TRIAL, _MAX_TRIAL = 0.6, 2.0
-#: The minimum for a program that an earlier watch has seen run with the same files and start command.
-_MIN_TRIAL_AGAIN = 0.3
 #: Seconds for which it must run after a traceback. A traceback does not always mean a crash: code logs caught errors.
 _AFTER_TRACEBACK = 3.0
 #: Seconds after the restart in which one process may be replaced without a traceback, since the stop command and the
@@ -48,13 +46,11 @@ class StartMonitor:
 
     :param old:     processes of the old program, from just before the restart
     :param reports: returns whether the program reports the end of `robotInit`; called only if that is late
-    :param has_run: whether an earlier watch has seen it run, with the same files and start command
     """
 
-    def __init__(self, old: Iterable[int], reports: Callable[[], bool] = lambda: True, has_run: bool = False) -> None:
+    def __init__(self, old: Iterable[int], reports: Callable[[], bool] = lambda: True) -> None:
         self._old = frozenset(old)
         self._reports = reports
-        self.has_run = has_run
         #: The program's current process, if any.
         self.process: int | None = None
         #: When it was first seen.
@@ -181,8 +177,7 @@ class StartMonitor:
         """Return the remaining seconds of the trial period; None before the start and after the end."""
         if self._started is None or self.process is None or self._over is not None or self._dead is not None:
             return None
-        least = _MIN_TRIAL_AGAIN if self.has_run else _MIN_TRIAL
-        trial = min(_MAX_TRIAL, max(least, (self._started - self._since) / 2))
+        trial = min(_MAX_TRIAL, max(_MIN_TRIAL, (self._started - self._since) / 2))
         if self._ends:  # a process was already replaced
             trial = _MAX_TRIAL
         return max(0.0, self._started + trial - now, self._proof_left(now))

@@ -133,8 +133,6 @@ class Deploy:
         """Update only the record of the current release, which already has the same files."""
         directory = self._releases.directory(current)
         record = self._releases.record(current)
-        same = (record.get("main"), record.get("debug")) == (self._main, self._debug)
-        has_run = bool(same and record.get("ran") and not record.get("ended"))
         record.update(deploy=self._about, main=self._main, debug=self._debug, commands=self._commands)
         compile_below(directory, self._debug, self._activity, self._paths.layout.code, self._program)
         self._linked = record.get("compiled", {})
@@ -142,8 +140,7 @@ class Deploy:
         self._write_about(directory)
         self._releases.write_record(current, record)
         self._switch(current, None)
-        done = {"release": current, "previous": current, "files": 0, "bytes": 0, "taken": None, "unchanged": True}
-        return {**done, "has_run": has_run}
+        return {"release": current, "previous": current, "files": 0, "bytes": 0, "taken": None, "unchanged": True}
 
     def _check_disk_space(self, wanted: list[WantedFile], at_hand: ContentIndex) -> ContentIndex:
         """Check that there is enough disk space, and remove old releases if there is not.

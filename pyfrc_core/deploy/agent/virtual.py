@@ -50,7 +50,7 @@ class VirtualRobotClient:
 
     def console(self) -> Console:
         """Return a client for the program's output."""
-        return ConsoleClient((self.console_port,))
+        return ConsoleClient("127.0.0.1", (self.console_port,))
 
     def can_restart(self) -> bool:
         """Return whether the program can be stopped and started."""

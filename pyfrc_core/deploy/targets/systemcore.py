@@ -58,7 +58,6 @@ _LAYOUT = Layout(
     command_mode=0o755,
     python=_PYTHON,
     installing=_PYTHONS,
-    former_links=(f"{_HOME}/venv", f"{_HOME}/.python"),
     can_fail=True,
     # The messages of the program's processes; with --unit, those of systemd about it would come, too.
     output=("journalctl", "--follow", "--lines=0", "--output=cat", "_SYSTEMD_UNIT=robot.service"),
