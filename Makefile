@@ -6,7 +6,7 @@ VENV ?= .venv
 DEV ?= dev
 RUN := @$(PYTHON) make.py --venv $(VENV) --group $(DEV)
 
-.PHONY: demo test test-2027 test-like-windows test-like-macos templates-2027 mutants check check-platforms check-page docs dist install clean
+.PHONY: demo test test-2027 test-like-windows test-like-macos templates-2027 next-preview mutants check check-platforms check-page docs dist install clean
 
 demo:  ## create a robot project in demo/, run its tests, deploy it to a virtual robot, change it, roll back
 	$(RUN) demo
@@ -25,6 +25,9 @@ test-like-macos:  ## the same for macOS
 
 templates-2027:  ## make templates/2027 from the templates of 2026 with pyfrc migrate; ARGS=--patches: see CONTRIBUTING.md
 	$(RUN) templates-2027 $(ARGS)
+
+next-preview:  ## install the newest preview of 2027 in .venv-next, run season 2027's tests, and print which names have changed; ARGS=--help
+	$(RUN) next-preview $(ARGS)
 
 mutants:  ## change pyfrc in one place at a time, and see whether a test fails; ARGS=--help
 	$(RUN) mutants $(ARGS)

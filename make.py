@@ -156,6 +156,14 @@ def templates_2027(environment: Environment, arguments: Sequence[str]) -> None:
     run([environment.python, "tests/make_2027.py", *arguments])
 
 
+def next_preview(environment: Environment, arguments: Sequence[str]) -> None:
+    """Run season 2027's tests with the newest preview in a new environment, and print which names it has changed."""
+    newest = Environment(Path(".venv-next"))
+    shutil.rmtree(newest.directory, ignore_errors=True)
+    newest.install("dev-2027")
+    run([newest.python, "tests/next_preview.py", *arguments])
+
+
 def mutants(environment: Environment, arguments: Sequence[str]) -> None:
     """Change pyfrc in one place at a time, and see whether a test fails."""
     run([environment.python, "tests/mutants.py", *arguments])
@@ -178,6 +186,7 @@ TASKS: dict[str, Callable[[Environment, Sequence[str]], None]] = {
             docs,
             dist,
             templates_2027,
+            next_preview,
             mutants,
             install,
         ),
@@ -186,7 +195,7 @@ TASKS: dict[str, Callable[[Environment, Sequence[str]], None]] = {
 
 
 #: Those that take arguments.
-WITH_OPTIONS = ("dist", "test", "test-like-windows", "test-like-macos", "templates-2027", "mutants")
+WITH_OPTIONS = ("dist", "test", "test-like-windows", "test-like-macos", "templates-2027", "next-preview", "mutants")
 
 
 def main(words: Sequence[str]) -> None:
@@ -209,7 +218,8 @@ def main(words: Sequence[str]) -> None:
         parser.error(f"{options.task} takes no arguments")
     os.chdir(ROOT)
     environment = Environment(Path(options.venv))
-    environment.install("" if options.task == "demo" else options.group)
+    if options.task != "next-preview":
+        environment.install("" if options.task == "demo" else options.group)
     TASKS[options.task](environment, options.arguments)
 
 

@@ -83,8 +83,8 @@ def load_season_settings(pyproject: Path) -> list[SeasonSetting]:
     version = _version_in(table)
     if version is not None and (year := year_of(version)) is not None:
         where = file.place_of("tool", "robotpy", "robotpy_version")
-        # A project from before the seasons that pyfrc knows may well run with the oldest of these.
-        found.append(SeasonSetting(f"robotpy_version is {version}", max(year, min(SEASONS)), where))
+        # A project from before 2026 may well run with WPILib 2026; 2027 spells every name in another way.
+        found.append(SeasonSetting(f"robotpy_version is {version}", max(year, 2026), where))
     requires = table.get("requires")
     for each in requires if isinstance(requires, list) else ():
         if (only := _only_season(each)) is not None:

@@ -180,5 +180,6 @@ def _explanation(year: int, text: str, files: RobotFiles, instead: str | None = 
     except (SettingsError, OSError):
         says = []  # reported where the settings are needed
     if not says or not instead:
-        remedy.append(f'If the robot is for WPILib {year}: pip install "{SEASONS[year].requirement}"')
+        wanted = f'pip install "{SEASONS[year].requirement}"' if year in SEASONS else "install the pyfrc of that season"
+        remedy.append(f"If the robot is for WPILib {year}: {wanted}")
     return Explanation(f"{text} in WPILib {CURRENT.year}", "\n  ".join(remedy))

@@ -1,7 +1,8 @@
 """What a season fixes: dates, match lengths, field, controller, packages.
 
 All of it is one `record.Season`; other rooms ask `CURRENT`. Of earlier seasons only the field is known, for
-`field.season` in sim/config.json. CONTRIBUTING.md says how to add a season.
+`field.season` in sim/config.json. CONTRIBUTING.md says how to add a season, and when one leaves: pyfrc 2026.x knows
+2026 and 2027, so that teams can try the previews; pyfrc 2027.1 knows 2027 only.
 """
 
 from .choice import (
@@ -13,6 +14,7 @@ from .choice import (
     season_of,
     year_of,
 )
+from .field_2026 import FIELD_2026
 from .record import FieldPart, Season, SeasonField
 
 __all__ = [
@@ -48,6 +50,7 @@ _EARLIER_FIELDS = {
     2023: SeasonField(16.54175 * _FEET, 8.0137 * _FEET),
     2024: SeasonField(16.541 * _FEET, 8.211 * _FEET),
     2025: SeasonField(17.548 * _FEET, 8.052 * _FEET),
+    2026: FIELD_2026,
 }
 
 #: The field of each season, by year; of earlier seasons pyfrc knows only this.

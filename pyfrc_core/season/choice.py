@@ -3,16 +3,29 @@
 from __future__ import annotations
 
 import importlib.metadata
+import pkgutil
 from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
 from typing import NamedTuple
 
 from ..errors import ProjectError
 from .record import Season
-from .season_2026 import SEASON_2026
-from .season_2027 import SEASON_2027
+
+
+def _find_seasons() -> dict[int, Season]:
+    """Return the records of the modules here that are named after a season: one can be deleted without a change."""
+    found = {}
+    for module in pkgutil.iter_modules([str(Path(__file__).parent)]):
+        prefix, _, year = module.name.partition("_")
+        if prefix == "season":
+            record: Season = getattr(import_module(f"{__package__}.{module.name}"), f"SEASON_{year}")
+            found[record.year] = record
+    return dict(sorted(found.items()))
+
 
 #: The seasons that pyfrc knows, by year.
-SEASONS: dict[int, Season] = {season.year: season for season in (SEASON_2026, SEASON_2027)}
+SEASONS = _find_seasons()
 
 
 class SeasonSetting(NamedTuple):
@@ -50,7 +63,7 @@ def season_of(version: str | None, settings: Sequence[SeasonSetting] = ()) -> Se
     settings, the oldest season that pyfrc knows.
     """
     years = [year_of(version or ""), *(each.year for each in settings)]
-    return next((SEASONS[year] for year in years if year in SEASONS), SEASON_2026)
+    return next((SEASONS[year] for year in years if year in SEASONS), SEASONS[min(SEASONS)])
 
 
 def refuse_unknown_wpilib(installed: str | None, settings: Sequence[SeasonSetting] = ()) -> None:
@@ -92,14 +105,14 @@ def refuse_other_season(installed: str | None, settings: Sequence[SeasonSetting]
     wanted = settings[0]
     if wanted.year == year_of(installed):
         return
+    here = year_of(installed) or 0
+    rewrite = f", or rewrite it for {here}: pyfrc migrate" if wanted.year < here else ""
     if wanted.year not in SEASONS:
         raise ProjectError(
             f"{wanted.text}, and this pyfrc runs robots of {_KNOWN}",
             where=wanted.where,
-            remedy=f'Install the pyfrc of that season, or write: robotpy_version = "{installed}"',
+            remedy=f'Install the pyfrc of that season, or write: robotpy_version = "{installed}"{rewrite}',
         )
-    here = year_of(installed) or 0
-    rewrite = f", or rewrite it for {here}: pyfrc migrate" if wanted.year < here else ""
     raise ProjectError(
         f"{wanted.text}, but wpilib {installed} is installed here",
         where=wanted.where,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from datetime import datetime, timezone
 
+from .field_2026 import FIELD_2026
 from .record import (
     ControllerSoftware,
     Dashboards,
@@ -12,16 +13,13 @@ from .record import (
     Packages,
     RobotDownloads,
     Season,
-    SeasonField,
 )
-from .structures_2026 import structures
 
 SEASON_2026 = Season(
     year=2026,
     kickoff=datetime(2026, 1, 10, 17, tzinfo=timezone.utc),  # noon, Eastern time
     match=MatchLengths(autonomous=15.0, pause=3.0, teleop=135.0),
-    # The game manual: 54 ft 3 in by 26 ft 5 in.
-    field=SeasonField(54.25, 26 + 5 / 12, parts=structures(12 * 54 + 3, 12 * 26 + 5)),
+    field=FIELD_2026,
     controller=ControllerSoftware(
         name="roboRIO",
         images=("2026_v1.2",),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from datetime import datetime, timezone
 
+from .field_2026 import FIELD_2026
 from .record import (
     ControllerSoftware,
     Dashboards,
@@ -14,14 +15,13 @@ from .record import (
     Season,
     SeasonField,
 )
-from .season_2026 import SEASON_2026
 
 #: WPILib is an alpha; the match and the field are 2026's until the kickoff.
 SEASON_2027 = Season(
     year=2027,
     kickoff=datetime(2027, 1, 9, 17, tzinfo=timezone.utc),  # noon, Eastern time, on the second Saturday
     match=MatchLengths(autonomous=15.0, pause=3.0, teleop=135.0),
-    field=SeasonField(SEASON_2026.field.w, SEASON_2026.field.h),
+    field=SeasonField(FIELD_2026.w, FIELD_2026.h),
     controller=ControllerSoftware(
         name="SystemCore",
         images=("14",),  # goes with this preview; pyfrc cannot see which one a controller has

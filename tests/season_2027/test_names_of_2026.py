@@ -11,8 +11,10 @@ import pytest
 from pyfrc_core.explain import Explanation, explain
 from pyfrc_core.explain.other_season import _MODULES_OF_2026, _NAMES_OF_2026
 from pyfrc_core.project.robot_files import RobotFiles
+from pyfrc_core.season import SEASONS
 
-FOR_2026 = '\n  If the robot is for WPILib 2026: pip install "wpilib>=2026.2.2,<2027"'
+INSTALL_2026 = 'pip install "wpilib>=2026.2.2,<2027"' if 2026 in SEASONS else "install the pyfrc of that season"
+FOR_2026 = f"\n  If the robot is for WPILib 2026: {INSTALL_2026}"
 TELEMETRY = "the modules telemetry (to show values) and tunables (to set them)"
 
 

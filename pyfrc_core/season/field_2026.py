@@ -1,4 +1,4 @@
-"""The structures of the 2026 field, REBUILT, seen from above.
+"""The 2026 field, REBUILT, with its structures seen from above.
 
 Sizes are those of the game manual's section 5, "ARENA". Places are those of the AprilTags in WPILib's layout
 ``2026-rebuilt-welded``: a hub's tags are on its four sides, those of a trench in the middle of its opening, number 31
@@ -11,7 +11,7 @@ Not drawn: what the manual gives no size for, and what is only seen from the sid
 
 from __future__ import annotations
 
-from .record import FieldPart, PartKind
+from .record import FieldPart, PartKind, SeasonField
 
 _INCHES = 1 / 12  # in feet
 
@@ -26,7 +26,7 @@ _DEPOT_WIDTH, _DEPOT_DEPTH, _DEPOT_FROM_MIDDLE = 42.0, 27.0, 75.93
 _OUTPOST_WIDTH, _OUTPOST_MIDDLE = 31.8, 26.22
 
 
-def structures(length: float, width: float) -> tuple[FieldPart, ...]:
+def _structures(length: float, width: float) -> tuple[FieldPart, ...]:
     """Return the structures on a field of this size, in inches."""
     blue = list(_half(width))
     center = _part("center line", "line", "", (length / 2, 0), (length / 2, width), width)
@@ -94,3 +94,7 @@ def _part(
 
 def _turned(point: tuple[float, float], length: float, width: float) -> tuple[float, float]:
     return length * _INCHES - point[0], width * _INCHES - point[1]
+
+
+#: The game manual: 54 ft 3 in by 26 ft 5 in.
+FIELD_2026 = SeasonField(54.25, 26 + 5 / 12, parts=_structures(12 * 54 + 3, 12 * 26 + 5))
