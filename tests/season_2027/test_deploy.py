@@ -130,6 +130,7 @@ def test_a_changed_password_is_asked_for_at_a_terminal_only(project: RobotProjec
         assert list(robot.home.glob(".pyfrc")) == []
 
 
+@pytest.mark.slow
 def test_a_disk_that_cannot_be_written(project: RobotProject, robot: Systemcore) -> None:
     assert deploy(project, robot).code == 0
     robot.run("chown", "-R", "root", "/home/systemcore/.pyfrc")
@@ -140,6 +141,7 @@ def test_a_disk_that_cannot_be_written(project: RobotProject, robot: Systemcore)
     assert info(project, robot)["running"]
 
 
+@pytest.mark.slow
 def test_a_disk_that_has_become_read_only(project: RobotProject, robot: Systemcore) -> None:
     assert deploy(project, robot).code == 0
     project.write({"robot.py": ROBOT.format(version=2)})
@@ -156,6 +158,7 @@ def test_a_disk_that_has_become_read_only(project: RobotProject, robot: Systemco
     robot.said("this is version 2")
 
 
+@pytest.mark.slow
 def test_a_slow_link(project: RobotProject, robot: Systemcore) -> None:
     """As a bad radio: 0.1 s for a round trip, 25 kB in a second."""
     with Proxy((robot.host, robot.port), round_trip=0.1, rate=25_000) as proxy:
@@ -166,6 +169,7 @@ def test_a_slow_link(project: RobotProject, robot: Systemcore) -> None:
 
 
 @pytest.mark.parametrize("clock", ["@0", "@4000000000"], ids=["1970", "2096"])
+@pytest.mark.slow
 def test_a_wrong_clock_is_no_obstacle(clock: str, project: RobotProject, robot: Systemcore) -> None:
     """As on a robot whose Driver Station has not set it yet: files seem to be old, or of the future."""
     assert deploy(project, robot).code == 0

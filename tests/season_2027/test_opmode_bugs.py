@@ -81,6 +81,7 @@ def test_tests_name_the_line(project: RobotProject) -> None:
     assert [bool(re.search(rf"^{place}: \w+", result.stdout, re.MULTILINE)) for place in places] == [True, False, True]
 
 
+@pytest.mark.slow
 def test_fuzz_finds_each_and_replays_repeat_it(project: RobotProject) -> None:
     result = project.run("fuzz", "--runs", "60", "--seed", "1", "-j", "1")
     scripts = list((project.path / "tests" / "fuzz").glob("*.jsonl"))

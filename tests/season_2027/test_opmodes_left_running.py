@@ -52,8 +52,8 @@ SHORT = "[tool.pyfrc.fuzz]\nmatch_seconds = 12\n"
     ("end", "left"),
     [
         ("self.robot.arm.set_throttle(0)", [(DRIVE, "0.49")]),
-        ("self.robot.drive.stop_motor()", [(ARM, "0.30")]),
-        ("self.robot.drive.stop_motor(), self.robot.arm.set_throttle(0)", []),
+        pytest.param("self.robot.drive.stop_motor()", [(ARM, "0.30")], marks=pytest.mark.slow),
+        pytest.param("self.robot.drive.stop_motor(), self.robot.arm.set_throttle(0)", [], marks=pytest.mark.slow),
     ],
     ids=["the drive", "a motor", "none"],
 )

@@ -158,6 +158,7 @@ def test_tests_for_robotpy_run_unchanged(project: RobotProject) -> None:
     }
 
 
+@pytest.mark.slow
 def test_plain_pytest_runs_them_too(project: RobotProject) -> None:
     result = project.run("-v", program="pytest", cold=True)
     assert result.code == 1, result.output

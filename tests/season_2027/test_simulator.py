@@ -109,6 +109,7 @@ def test_what_cannot_be_chosen(arguments: tuple[str, ...], said: str, make_proje
     assert said in result.output
 
 
+@pytest.mark.slow
 def test_the_guides_example_works(make_project: MakeProject) -> None:
     guide = (Path(__file__).parents[2] / "docs/how_to/use_opmodes.md").read_text("utf-8")
     (robot,) = re.findall(r"```python\n(.*?)```", guide, re.DOTALL)

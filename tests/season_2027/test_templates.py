@@ -22,7 +22,7 @@ def test_there_is_one_for_robots_with_opmodes(make_project: MakeProject) -> None
     assert "opmode" in listed
 
 
-@pytest.mark.parametrize("template", sampled(TEMPLATES, "command", "opmode"))
+@pytest.mark.parametrize("template", sampled(TEMPLATES, "opmode"))
 def test_it_passes_its_tests_and_a_match_with_random_inputs(make_project: MakeProject, template: str) -> None:
     project = make_project({})
     made = project.run("init", "--template", template)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from conftest import MakeProject
 
 ROBOT = """
@@ -114,6 +115,7 @@ def test_the_ready_made_tests_pass(make_project: MakeProject) -> None:
     assert result.code == 0, result.output
 
 
+@pytest.mark.slow
 def test_two_interpreters_have_the_same_trace(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, "tests/test_robot.py": "from pyfrc.tests import *\n"})
     hashes = set()

@@ -147,6 +147,7 @@ def test_sparks(make_project: MakeProject) -> None:
     assert "The trace equals the recorded one." in replayed.stdout
 
 
+@pytest.mark.slow
 def test_a_swerve_drive_on_sparks(make_project: MakeProject) -> None:
     """It drives, and its odometry agrees, with the physics that `create-physics` writes."""
     project = make_project({})
