@@ -24,8 +24,8 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None) 
     The robot program is started on this computer, with simulated devices, to find its motors, encoders and gyros. Then
     each joystick axis is moved, to find the motors that drive the robot, and their directions. It takes about a second.
 
-    Then the project's tests are run with the new physics.py, in a copy of the project. If one fails that did not fail
-    before, or that needs a physics.py, it is not put in place.
+    Then the project's tests are run with the new physics.py. If one fails that did not fail before, or that needs a
+    physics.py, it does not stay in its place.
 
     Existing files are not changed. To write one again, move it away first.
 
@@ -43,10 +43,8 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None) 
         hint(line)
     for note in done.notes:
         hint(f"note: {note}")
-    for file, mistake in done.unchanged.items():
+    for file in done.unchanged:
         hint(f"unchanged: {from_here(file)} (exists)")
-        if mistake:
-            click.secho(f"warning: the existing file is not valid: {mistake}", fg="yellow", err=True)
     for file in done.written:
         hint(f"wrote {from_here(file)}")
     new, old = (done.failures.new, done.failures.old) if done.failures else ([], [])

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..wpi import geometry
 from .deadzones import DeadzoneCallable, deadzone_function, motor_output
-from .parameters import finite, positive, within_full_power
+from .parameters import finite, positive
 from .pose import METRES_PER_FOOT
 from .quantities import magnitude
 
@@ -182,10 +182,8 @@ class MecanumDrivetrain:
         self.y_wheelbase = _feet(y_wheelbase, "y_wheelbase")
         self.speed = _feet_per_second(speed)
         self.deadzone = deadzone_function(deadzone)
-        # The motors' last outputs: left front, left rear, right front, right rear; and the sign of forward on the
-        # right.
-        self._last_outputs = (0.0, 0.0, 0.0, 0.0)
-        self._right_forward = 1.0
+        #: Speed of each wheel in ft/s after the last calculation, forward positive, for encoders.
+        self.lf_speed = self.lr_speed = self.rf_speed = self.rr_speed = 0.0
 
     def get_vector(self, lr_motor: float, rr_motor: float, lf_motor: float, rf_motor: float) -> DriveVector:
         """
@@ -196,8 +194,7 @@ class MecanumDrivetrain:
         :returns: speed of the robot to the right and forward in ft/s, its clockwise rotation in rad/s
         :raises ParameterError: for NaN
         """
-        lf, lr, rf, rr = self._last_outputs = self._outputs(lf_motor, lr_motor, rf_motor, rr_motor)
-        self._right_forward = 1.0
+        lf, lr, rf, rr = self._outputs(lf_motor, lr_motor, rf_motor, rr_motor, right_forward=1.0)
         linear = self.speed / 4
         right, forward = (lf - lr - rf + rr) * linear, (lf + lr + rf + rr) * linear
         return DriveVector(right, forward, (lf + lr - rf - rr) * self._angular())
@@ -211,8 +208,7 @@ class MecanumDrivetrain:
         :returns: speed of the robot in m/s and rad/s, counter-clockwise
         :raises ParameterError: for NaN
         """
-        lf, lr, rf, rr = self._last_outputs = self._outputs(lf_motor, lr_motor, rf_motor, rr_motor)
-        self._right_forward = -1.0
+        lf, lr, rf, rr = self._outputs(lf_motor, lr_motor, rf_motor, rr_motor, right_forward=-1.0)
         rising = lf - rr
         falling = lr - rf
         linear = self.speed / 4
@@ -222,56 +218,19 @@ class MecanumDrivetrain:
     def _angular(self) -> float:
         return self.speed / (2 * (self.x_wheelbase + self.y_wheelbase))
 
-    def _outputs(self, lf: float, lr: float, rf: float, rr: float) -> tuple[float, float, float, float]:
-        # The usual case first, without a call for each motor.
-        if not -1.0 <= lf <= 1.0 or not -1.0 <= lr <= 1.0 or not -1.0 <= rf <= 1.0 or not -1.0 <= rr <= 1.0:
-            lf, lr = within_full_power(lf, "lf_motor"), within_full_power(lr, "lr_motor")
-            rf, rr = within_full_power(rf, "rf_motor"), within_full_power(rr, "rr_motor")
+    def _outputs(
+        self, lf: float, lr: float, rf: float, rr: float, right_forward: float
+    ) -> tuple[float, float, float, float]:
+        """Return the motors' outputs, and set the wheels' speeds.
+
+        :param right_forward: the sign of forward on the right
+        """
         deadzone = self.deadzone
-        if deadzone is None:
-            return lf, lr, rf, rr
-        return deadzone(lf), deadzone(lr), deadzone(rf), deadzone(rr)
-
-    @property
-    def lf_speed(self) -> float:
-        """Speed of the left front wheel in ft/s after the last calculation, forward positive, for encoders."""
-        return self._last_outputs[0] * self.speed
-
-    @lf_speed.setter
-    def lf_speed(self, speed: float) -> None:
-        self._set_speed(0, speed)
-
-    @property
-    def lr_speed(self) -> float:
-        """Speed of the left rear wheel, like `lf_speed`."""
-        return self._last_outputs[1] * self.speed
-
-    @lr_speed.setter
-    def lr_speed(self, speed: float) -> None:
-        self._set_speed(1, speed)
-
-    @property
-    def rf_speed(self) -> float:
-        """Speed of the right front wheel, like `lf_speed`."""
-        return self._last_outputs[2] * self.speed * self._right_forward
-
-    @rf_speed.setter
-    def rf_speed(self, speed: float) -> None:
-        self._set_speed(2, speed * self._right_forward)
-
-    @property
-    def rr_speed(self) -> float:
-        """Speed of the right rear wheel, like `lf_speed`."""
-        return self._last_outputs[3] * self.speed * self._right_forward
-
-    @rr_speed.setter
-    def rr_speed(self, speed: float) -> None:
-        self._set_speed(3, speed * self._right_forward)
-
-    def _set_speed(self, wheel: int, speed: float) -> None:
-        given = list(self._last_outputs)
-        given[wheel] = finite(speed, "speed") / self.speed
-        self._last_outputs = given[0], given[1], given[2], given[3]
+        lf, lr = motor_output(lf, "lf_motor", deadzone), motor_output(lr, "lr_motor", deadzone)
+        rf, rr = motor_output(rf, "rf_motor", deadzone), motor_output(rr, "rr_motor", deadzone)
+        self.lf_speed, self.lr_speed = lf * self.speed, lr * self.speed
+        self.rf_speed, self.rr_speed = rf * self.speed * right_forward, rr * self.speed * right_forward
+        return lf, lr, rf, rr
 
     @property
     def wheelSpeeds(self) -> geometry.MecanumDriveWheelSpeeds:

@@ -5,9 +5,10 @@ The registry is built on import: Python's import lock ensures that there is only
 
 from __future__ import annotations
 
+import shutil
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -60,35 +61,18 @@ def cache_folder() -> Path | None:
 def build(folder: Path | None) -> UnitRegistry:
     """Return a registry with our units, from the definitions in `folder`; write them there if they are missing.
 
-    Without a usable folder the registry is built from the source definitions.
+    Without a usable folder the registry is built from the source definitions. What a killed process has left there is
+    removed: the next run writes it again.
     """
     registry: UnitRegistry | None = None
     if folder is not None:
-        if folder.is_dir():
-            # A damaged pickle may raise any exception.
-            with suppress(Exception):
-                registry = pint.UnitRegistry(cache_folder=folder)
-        if registry is None:
-            with suppress(OSError):
-                registry = _build_and_cache(folder)
+        try:
+            registry = pint.UnitRegistry(cache_folder=folder)
+        except Exception:  # a damaged pickle may raise any; also where nothing can be written
+            shutil.rmtree(folder, ignore_errors=True)
     if registry is None:
         registry = pint.UnitRegistry()
     registry.load_definitions(DEFINITIONS)
-    return registry
-
-
-def _build_and_cache(folder: Path) -> UnitRegistry:
-    """Parse the definitions in a directory beside `folder`, then rename it: `folder` is written atomically."""
-    import shutil
-    import tempfile
-
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=f"{folder.name}-", dir=folder.parent, ignore_cleanup_errors=True) as new:
-        complete = Path(new) / "definitions"
-        registry: UnitRegistry = pint.UnitRegistry(cache_folder=complete)
-        shutil.rmtree(folder, ignore_errors=True)
-        with suppress(OSError):  # another process was first: its definitions are the same
-            complete.rename(folder)
     return registry
 
 

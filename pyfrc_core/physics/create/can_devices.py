@@ -9,7 +9,7 @@ import math
 import time
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Any
 
 from ...hal import HalData
@@ -41,17 +41,18 @@ class CanMotor(Motor):
     :param live: what moves while the joysticks are tested
     """
 
-    vendor: str = ""
-    expression: str = ""
-    model: str = ""
-    count: int = 1
-    factor: float = 1.0
-    cancoder: str = ""
-    live: Mechanism | None = field(default=None, compare=False, repr=False)
+    _: KW_ONLY
+    vendor: str
+    expression: str
+    model: str
+    count: int
+    factor: float
+    cancoder: str
+    live: Mechanism = field(compare=False, repr=False)
 
     def output(self, hal_data: HalData) -> float:
         """Return the applied output, whatever the control mode."""
-        return super().output(hal_data) if self.live is None else self.live.output()
+        return self.live.output()
 
 
 @dataclass
@@ -76,8 +77,7 @@ class CanDevices:
     def update(self, now: float) -> None:
         """Move all motors for one packet."""
         for motor in self.motors:
-            if motor.live is not None:
-                motor.live.update(PACKET_US / 1_000_000)
+            motor.live.update(PACKET_US / 1_000_000)
         if self.in_real_time:  # phoenix6's devices do not follow robot time
             time.sleep(PACKET_US / 1_000_000)
 
@@ -90,14 +90,9 @@ def find_can_devices(objects: Iterable[Reached]) -> CanDevices:
     controllers = [entry for entry in things if _kind(entry[1]) != "CANcoder"]
     followers = Counter(_place_of_leader(thing) for _, thing, _ in controllers)
     for name, thing, expression in controllers:
-        kind = _kind(thing)
-        vendor, (model, make) = _CONTROLLERS[kind], motors.usual_motor(kind)
         found.devices += _parts(thing)
         if _place_of_leader(thing) is None:
-            value = "Applied Output" if vendor == "Spark" else "motorVoltage"
-            count = 1 + followers[_place(thing)]
-            motor = CanMotor(name, None, _device(thing), value, False, vendor, expression, model, count)
-            found.motors.append(_completed(motor, thing, make(count), cancoders))
+            found.motors.append(_motor(name, thing, expression, 1 + followers[_place(thing)], cancoders))
     found.devices += [f"CANEncoder:CANcoder (v6)[{thing.device_id}]" for _, thing, _ in cancoders]
     return found
 
@@ -140,11 +135,15 @@ def _parts(thing: Any) -> list[str]:
     return [own, *(own.replace("CANMotor", other) for other in ("CANEncoder", "CANDIO") if not _is_spark(thing))]
 
 
-def _completed(motor: CanMotor, thing: Any, model: motors.DCMotor, cancoders: list[tuple[Name, Any, str]]) -> CanMotor:
-    """Return the motor with what the robot has configured, and with what moves while the joysticks are tested."""
-    if motor.vendor == "Spark":
+def _motor(name: Name, thing: Any, expression: str, count: int, cancoders: list[tuple[Name, Any, str]]) -> CanMotor:
+    """Return the motor with what the robot has configured, and with what moves while the joysticks are tested.
+
+    :param count: the number of motors, with those of the followers
+    """
+    vendor, (model, make) = _CONTROLLERS[_kind(thing)], motors.usual_motor(_kind(thing))
+    if vendor == "Spark":
         factor = sparks.factor_of(thing)
-        controller: Controller = Spark(thing, model, _TRIAL_GEARING)
+        controller: Controller = Spark(thing, make(count), _TRIAL_GEARING)
         encoder = ""
     else:
         from phoenix6.configs import FeedbackConfigs
@@ -154,11 +153,20 @@ def _completed(motor: CanMotor, thing: Any, model: motors.DCMotor, cancoders: li
         factor = 1 / ratio if ratio else 1.0
         chosen = next(
             (each for each in cancoders if each[1].device_id == feedback.feedback_remote_sensor_id), None
-        ) or _beside(motor.name, cancoders)
-        controller = Talon(thing, model, 1 / factor if chosen else _TRIAL_GEARING, chosen[1] if chosen else None)
+        ) or _beside(name, cancoders)
+        controller = Talon(thing, make(count), 1 / factor if chosen else _TRIAL_GEARING, chosen[1] if chosen else None)
         encoder = chosen[2] if chosen else ""
-    live = Mechanism(controller, _TRIAL_INERTIA * controller.gearing**2)
-    return replace(motor, factor=factor, cancoder=encoder, live=live)
+    return CanMotor(
+        name,
+        device=_device(thing),
+        vendor=vendor,
+        expression=expression,
+        model=model,
+        count=count,
+        factor=factor,
+        cancoder=encoder,
+        live=Mechanism(controller, _TRIAL_INERTIA * controller.gearing**2),
+    )
 
 
 def _beside(name: Name, cancoders: list[tuple[Name, object, str]]) -> tuple[Name, Any, str] | None:

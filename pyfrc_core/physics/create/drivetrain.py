@@ -53,19 +53,6 @@ class Mecanum:
         return [motor for wheel in self.wheels.values() for motor in wheel.motors]
 
 
-@dataclass(frozen=True)
-class Swerve:
-    """A swerve drive: four wheels with a drive motor and a steering motor each.
-
-    On other motor controllers, their joint effect cannot be observed.
-    """
-
-    drive: list[Motor]
-    steer: list[Motor]
-    #: Its modules on vendors' motor controllers, whose joint effect vendors' simulations show; empty for others.
-    modules: list[Module] = field(default_factory=list)
-
-
 #: The corners in the order in which pyfrc's drivetrains take their motors.
 CORNERS = ("front_left", "rear_left", "front_right", "rear_right")
 
@@ -75,7 +62,7 @@ class DrivetrainLayout:
     """The identified parts of the robot.
 
     :param drivetrain: a drivetrain whose motors can be identified
-    :param swerve: the motors of a swerve drive, by their names
+    :param modules: those of a swerve drive on vendors' motor controllers, whose simulations show what both motors do
     :param encoders: the encoders of the wheels, by side or corner
     :param mechanisms: the other motors with an encoder, each with its encoder
     :param can_mechanisms: the other motors on vendors' motor controllers, which have encoders of their own
@@ -86,7 +73,7 @@ class DrivetrainLayout:
     """
 
     drivetrain: Tank | Mecanum | None = None
-    swerve: Swerve | None = None
+    modules: list[Module] = field(default_factory=list)
     encoders: dict[str, list[Encoder]] = field(default_factory=dict)
     mechanisms: list[tuple[Motor, Encoder]] = field(default_factory=list)
     can_mechanisms: list[CanMotor] = field(default_factory=list)
@@ -98,20 +85,12 @@ class DrivetrainLayout:
 
 def find_layout(found: Survey) -> DrivetrainLayout:
     """Identify the parts of the robot, as far as names and joysticks allow."""
-    layout = DrivetrainLayout(swerve=_swerve(found), track_width=found.track_width)
+    layout = DrivetrainLayout(modules=found.swerve.modules, track_width=found.track_width)
     layout.assumptions += found.swerve.assumptions
-    if layout.swerve is None and not any(motor.name.says_swerve for motor in found.motors):
+    if not wheel_pairs(found.motors) and not any(motor.name.says_swerve for motor in found.motors):
         layout.drivetrain = _Finder(found, layout.assumptions).find()
     _assign_encoders(found, layout)
     return layout
-
-
-def _swerve(found: Survey) -> Swerve | None:
-    if found.swerve.modules:
-        modules = found.swerve.modules
-        return Swerve([module.drive for module in modules], [module.steer for module in modules], modules)
-    pairs = wheel_pairs(found.motors)
-    return Swerve([drive for drive, _ in pairs], [steer for _, steer in pairs]) if pairs else None
 
 
 class _Finder:
@@ -293,8 +272,7 @@ def _opposite(one: Mapping[str, int], other: Mapping[str, int]) -> bool:
 
 def _assign_encoders(found: Survey, layout: DrivetrainLayout) -> None:
     driving: list[Motor] = list(layout.drivetrain.motors) if layout.drivetrain else []
-    if layout.swerve is not None and layout.swerve.modules:
-        driving += [*layout.swerve.drive, *layout.swerve.steer]
+    driving += [motor for module in layout.modules for motor in (module.drive, module.steer)]
     others = [motor for motor in found.motors if motor not in driving]
     free = list(found.encoders)
 

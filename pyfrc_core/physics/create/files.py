@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...config.sim import sim_config_schema
-from ...config.sim_file import SIM_CONFIG, load_sim_config
-from ...errors import PyfrcError, SettingsError, UsageError
+from ...config.sim_file import SIM_CONFIG
+from ...errors import PyfrcError, UsageError
 from ...processes.call import run_in_subprocess
 from ...project import Project
 from ...text_files import write_whole
@@ -24,7 +24,7 @@ class Created:
     """Result of `create_physics`; files are absolute.
 
     :param written: the files that were written
-    :param unchanged: the files that existed, each with an error message or an empty text
+    :param unchanged: the files that existed
     :param recognised: lines about the drivetrain, encoders and gyros; empty when the robot was not started
     :param notes: sentences about assumptions and remaining work
     :param problem: why the robot could not be driven, with the user's line
@@ -34,7 +34,7 @@ class Created:
     """
 
     written: list[Path] = field(default_factory=list)
-    unchanged: dict[Path, str] = field(default_factory=dict)
+    unchanged: list[Path] = field(default_factory=list)
     recognised: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     problem: str | None = None
@@ -55,29 +55,22 @@ def create_physics(project: Project) -> Created:
     physics, config = project.physics_file, project.root / SIM_CONFIG
     schema = config.with_name(SCHEMA_NAME)
     done = Created()
-    if os.path.lexists(physics):
-        done.unchanged[physics] = _physics_error(physics)
-    if os.path.lexists(config):
-        done.unchanged[config] = _config_error(project.root)
+    done.unchanged += [file for file in (physics, config) if os.path.lexists(file)]
     if len(done.unchanged) == 2:
         return done
     _check_places(project, config)
     proposal = run_in_subprocess(propose, project, "while pyfrc was searching for its devices")
-    texts = {physics: proposal.physics, config: proposal.config}
     if config not in done.unchanged:
-        texts[schema] = sim_config_schema() + "\n"
+        _write(config, proposal.config, done)
         if os.path.lexists(schema):
-            done.unchanged[schema] = ""
-    new = {file: text for file, text in texts.items() if file not in done.unchanged}
-    if physics in new:
-        done.failures = failures_with(project, new)
+            done.unchanged.append(schema)
+        else:
+            _write(schema, sim_config_schema() + "\n", done)
+    if physics not in done.unchanged:
+        done.failures = failures_with(project, proposal.physics)
         if done.failures and done.failures.new:
             done.proposal = project.root / PROPOSAL
-            done.proposal.parent.mkdir(parents=True, exist_ok=True)
-            texts = {done.proposal: texts.pop(physics), **texts}
-    for file, text in texts.items():
-        if file not in done.unchanged:
-            _write(file, text, done)
+        _write(done.proposal or physics, proposal.physics, done)
     done.recognised = proposal.recognised
     done.notes = [*proposal.assumptions, *(proposal.advice if physics in done.written else ())]
     done.problem = proposal.problem
@@ -106,24 +99,6 @@ def _check_places(project: Project, config: Path) -> None:
     directory = config.parent
     if os.path.lexists(directory) and not directory.is_dir():
         raise UsageError(f"{directory.name} is a file, but the directory of {SIM_CONFIG.as_posix()} needs this name")
-
-
-def _physics_error(file: Path) -> str:
-    try:
-        compile(file.read_bytes(), file.name, "exec", dont_inherit=True)
-    except SyntaxError as error:
-        return f"{file.name}:{error.lineno}: SyntaxError: {error.msg}" if error.lineno else f"SyntaxError: {error.msg}"
-    except (OSError, ValueError) as error:
-        return str(error)
-    return ""
-
-
-def _config_error(root: Path) -> str:
-    try:
-        load_sim_config(root)
-    except (SettingsError, OSError) as error:
-        return str(error)
-    return ""
 
 
 def _write(file: Path, text: str, done: Created) -> None:

@@ -44,11 +44,9 @@ class ModuleText:
     def motor(self, motor: Motor, wanted: str) -> str:
         """Add the set-up of a motor; return the expression for its output."""
         name = self.name(wanted)
-        if motor.channel is not None:
-            self.simulate(name, source.pwm(motor.channel))
-            return source.power_of_pwm(f"self.{name}")
-        self.simulate(name, source.number(motor.device, motor.value))
-        return f"self.{name}.get()"
+        assert motor.channel is not None
+        self.simulate(name, source.pwm(motor.channel))
+        return source.power_of_pwm(f"self.{name}")
 
     def encoder(self, encoder: Encoder, wanted: str, units: str) -> str:
         """Add the set-up of an encoder; return its name."""

@@ -13,22 +13,20 @@ class Motor:
     """A motor, and where its output can be read.
 
     :param name: its name in the robot's code
-    :param channel: the PWM channel; None for a motor that appears as a SimDevice
-    :param device: the name of the SimDevice
-    :param value: the name of the SimDevice's value with the output
+    :param channel: the PWM channel; None for a motor on the CAN bus
+    :param device: the name of the SimDevice of its controller there
     :param inverted: whether the robot has inverted it, if that is known
     """
 
     name: Name
     channel: int | None = None
     device: str = ""
-    value: str = ""
     inverted: bool = False
 
     @property
     def path(self) -> str:
-        """Return the path of its output in `hal_data`."""
-        return f"pwm[{self.channel}].value" if self.channel is not None else f"CAN[{self.device}].{self.value}"
+        """Return the path of its controller in `hal_data`."""
+        return f"pwm[{self.channel}]" if self.channel is not None else f"CAN[{self.device}]"
 
     def __str__(self) -> str:
         place = f"PWM {self.channel}" if self.channel is not None else one_line(self.device)
@@ -36,6 +34,4 @@ class Motor:
 
     def output(self, hal_data: HalData) -> float:
         """Return the output that the robot has set, from -1 to 1."""
-        if self.channel is not None:
-            return float(hal_data["pwm"][self.channel]["value"])
-        return float(hal_data["CAN"][self.device][self.value])
+        return float(hal_data["pwm"][self.channel]["value"])

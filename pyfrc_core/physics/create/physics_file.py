@@ -67,8 +67,8 @@ def physics_text(found: Survey, layout: DrivetrainLayout) -> str:
     drivetrain = layout.drivetrain
     if drivetrain is not None:
         _drivetrain(text, drivetrain, layout, found.gyros)
-    elif layout.swerve is not None and layout.swerve.modules:
-        can_text.add_swerve(text, layout.swerve.modules)
+    elif layout.modules:
+        can_text.add_swerve(text, layout.modules)
         _gyros(text, found.gyros, "math.degrees(speeds.omega * tm_diff)")
     for motor, encoder in layout.mechanisms:
         if isinstance(motor, CanMotor):

@@ -19,22 +19,13 @@ def advice(found: Survey, layout: DrivetrainLayout) -> list[str]:
 
 
 def _advice_for_driving(layout: DrivetrainLayout) -> list[str]:
-    if layout.swerve is not None and layout.swerve.modules:
+    if layout.drivetrain is not None or layout.modules:
         return []
-    if layout.swerve is not None:
-        return [
-            "The wheels of a swerve drive cannot be identified by joystick inputs: the robot does not move. To drive "
-            "it, let update_sim() give the outputs of the four drive motors and the angles of the four wheels to "
-            "drivetrains.four_motor_swerve_drivetrain() of pyfrc.physics, and its result to "
-            "self.physics_controller.drive(): see docs/how_to/simulate_a_drivetrain.md."
-        ]
-    if layout.drivetrain is None:
-        return [
-            "No drivetrain was recognised, so the robot does not move. To drive it, let update_sim() call "
-            "self.physics_controller.drive() or move_robot(): see pyfrc.physics.drivetrains (for a swerve drive, its "
-            "four_motor_swerve_drivetrain), pyfrc.physics.tankmodel and docs/how_to/simulate_a_drivetrain.md."
-        ]
-    return []
+    return [
+        "No drivetrain was recognised, so the robot does not move. To drive it, let update_sim() call "
+        "self.physics_controller.drive() or move_robot(): see pyfrc.physics.drivetrains (for a swerve drive, its "
+        "four_motor_swerve_drivetrain), pyfrc.physics.tankmodel and docs/how_to/simulate_a_drivetrain.md."
+    ]
 
 
 #: A sensor of a vendor's motor controller, such as ``SPARK MAX [11] RELATIVE ENCODER``.
@@ -42,8 +33,7 @@ _PART = re.compile(r".+ \[[\d,]+\] [A-Z]")
 
 
 def _not_simulated(found: Survey, layout: DrivetrainLayout) -> list[str]:
-    moves = layout.drivetrain is not None or (layout.swerve is not None and layout.swerve.modules)
-    still = [] if moves else found.gyros
+    still = [] if layout.drivetrain is not None or layout.modules else found.gyros
     left_out = [*map(str, [*layout.undriven, *still]), *found.others]
     left_out = [device for device in left_out if not _PART.match(device)]
     return [f"Not simulated, since their purpose is unknown: {', '.join(left_out)}."] if left_out else []
@@ -70,15 +60,12 @@ def summary(layout: DrivetrainLayout, found: Survey) -> list[str]:
         lines.append("mecanum drive")
         wheels = {corner.replace("_", " "): drivetrain.wheels[corner] for corner in CORNERS}
         lines += [f"  {name}: {listed(wheel.motors)}{_reversed(wheel)}" for name, wheel in wheels.items()]
-    elif layout.swerve is not None and layout.swerve.modules:
+    elif layout.modules:
         lines.append("swerve drive")
         lines += [
             f"  {module.drive} drives, {module.steer} steers: {module.x:+.2f} m, {module.y:+.2f} m"
-            for module in layout.swerve.modules
+            for module in layout.modules
         ]
-    elif layout.swerve is not None:
-        lines += ["swerve drive, which you need to complete"]
-        lines += [f"  drive: {listed(layout.swerve.drive)}", f"  steering: {listed(layout.swerve.steer)}"]
     else:
         lines.append("no drivetrain recognised")
     for wheel, encoders in layout.encoders.items():

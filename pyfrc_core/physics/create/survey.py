@@ -18,7 +18,7 @@ from ...runtime.loading import load_robot
 from ...runtime.patches.install import patches
 from ...runtime.robot import RobotRun
 from ...wpi import devices, motor_controllers
-from .can_devices import CanDevices, CanMotor, find_can_devices
+from .can_devices import CanDevices, find_can_devices
 from .motors import Motor
 from .names import Name, NamedDevice, Place, find_devices, find_objects, find_track_width, one_line
 from .sticks import Responses, try_sticks
@@ -135,7 +135,6 @@ def survey(project: Project, log: CrashLog) -> Survey:
                 found.problem = str(_of_robot_code(error, project))
         finally:
             _close(run)
-    found.motors = _one_output_each(found)
     return found
 
 
@@ -222,9 +221,6 @@ _GYROS = (
     _GyroKind(re.compile(r"navX-Sensor\[\d+\]"), "Yaw", "Rate", wraps=True),
 )
 
-#: Patterns for the name of a vendor motor controller's output, from -1 to 1.
-_OUTPUT = re.compile(r"((applied|percent|motor|duty)[ _]?)?(cycle|output|speed)", re.IGNORECASE)
-
 
 def _add_sim_device(found: Survey, device: str, named: Mapping[Place, NamedDevice]) -> None:
     # WPILib's own devices have a kind before a colon; those that are not on the CAN bus are identified by their
@@ -233,41 +229,14 @@ def _add_sim_device(found: Survey, device: str, named: Mapping[Place, NamedDevic
     number = None if elsewhere else re.search(r"\[(?:\d+,)?(\d+)\]$", device)
     known = named.get(("CAN", int(number[1]))) if number else None
     name = known.name if known else Name()
-    values = {value.name: value for value in devices.sim_values(device)}
+    values = {value.name for value in devices.sim_values(device)}
     for kind in _GYROS:
         if kind.device.fullmatch(device) and kind.angle in values:
             rate = kind.rate if kind.rate in values else ""
             found.gyros.append(Gyro(name, None, device, kind.angle, rate, kind.clockwise, kind.wraps))
             return
-    # The test of the joysticks shows which value is a motor's output.
-    outputs = [
-        value.name
-        for value in values.values()
-        if value.kind == "number" and (value.is_output or _OUTPUT.fullmatch(value.name))
-    ]
-    found.motors += [Motor(name, None, device, value) for value in outputs]
-    if not outputs and not elsewhere:
+    if not elsewhere:
         found.others.append(f"{device} ({name})" if name else device)
-
-
-def _one_output_each(found: Survey) -> list[Motor]:
-    """Return the motors, with one value for each SimDevice: one that reacts to the joysticks or is called an output."""
-    reactions = {path: abs(value) for group in found.responses.values() for path, value in group.items()}
-    chosen: dict[str, Motor] = {}
-    for motor in found.motors:
-        if motor.channel is not None or isinstance(motor, CanMotor):
-            chosen[motor.path] = motor
-            continue
-        claim, before = _claim(motor, reactions), chosen.get(motor.device)
-        if any(claim) and (before is None or claim > _claim(before, reactions)):
-            chosen[motor.device] = motor
-    missed = {motor.device: motor for motor in found.motors if motor.path not in chosen and motor.device not in chosen}
-    found.others += map(str, missed.values())
-    return list(chosen.values())
-
-
-def _claim(motor: Motor, reactions: Mapping[str, float]) -> tuple[bool, bool]:
-    return 0 < reactions.get(motor.path, 0) <= 1, bool(_OUTPUT.fullmatch(motor.value))
 
 
 #: The keys of `hal_data` whose channels ``sim/config.json`` may name, and the key that each has there.

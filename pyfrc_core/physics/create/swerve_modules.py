@@ -115,10 +115,10 @@ def _measured(run: RobotRun, modules: list[Module], assumptions: list[str]) -> l
     """Return the modules with their encoders' values while the robot drives straight ahead."""
 
     def is_driving() -> bool:
-        return all(abs(_speed(module.drive)) > 0.05 for module in modules)
+        return all(abs(module.drive.live.speed) > 0.05 for module in modules)
 
     def look() -> list[float]:
-        return [_turns(module.steer) + (0.0 if _speed(module.drive) > 0 else 0.5) for module in modules]
+        return [module.steer.live.turns + (0.0 if module.drive.live.speed > 0 else 0.5) for module in modules]
 
     seen = while_driving_forward(run, is_driving, look)
     if seen is None:
@@ -128,11 +128,3 @@ def _measured(run: RobotRun, modules: list[Module], assumptions: list[str]) -> l
         return modules
     # A wheel that is nearly there has not come to rest yet.
     return [replace(module, ahead=round(ahead, 2) % 1) for module, ahead in zip(modules, seen, strict=True)]
-
-
-def _speed(motor: CanMotor) -> float:
-    return 0.0 if motor.live is None else motor.live.speed
-
-
-def _turns(motor: CanMotor) -> float:
-    return 0.0 if motor.live is None else motor.live.turns
