@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 import pytest
 from make_script import make_script
+from next_preview import differences
 from skips import missing_programs, require
 
 ROOT = Path(__file__).parents[1]
@@ -176,3 +177,15 @@ def test_the_helps_names_are_those_of_the_makefile(capsys: pytest.CaptureFixture
         make_script.main(["--help"])
     printed = capsys.readouterr().out
     assert all(f"  {task} " in printed for task in make_script.TASKS)
+
+
+def test_the_names_that_a_preview_has_changed() -> None:
+    before = {"wpilib.A": "(wpilib.B)", "wpilib.A.f": "(x)", "wpilib.Gone": "", "wpilib.Gone.f": "()", "hal.same": ": int"}
+    after = {"wpilib.A": "(wpilib.C)", "wpilib.A.g": "(x, y)", "wpilib.New": "", "wpilib.New.f": "()", "hal.same": ": int"}
+    assert differences(before, after) == [
+        "~ wpilib.A(wpilib.B)  is now  (wpilib.C)",
+        "- wpilib.A.f(x)",
+        "+ wpilib.A.g(x, y)",
+        "- wpilib.Gone",
+        "+ wpilib.New",
+    ]
