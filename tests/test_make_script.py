@@ -180,8 +180,20 @@ def test_the_helps_names_are_those_of_the_makefile(capsys: pytest.CaptureFixture
 
 
 def test_the_names_that_a_preview_has_changed() -> None:
-    before = {"wpilib.A": "(wpilib.B)", "wpilib.A.f": "(x)", "wpilib.Gone": "", "wpilib.Gone.f": "()", "hal.same": ": int"}
-    after = {"wpilib.A": "(wpilib.C)", "wpilib.A.g": "(x, y)", "wpilib.New": "", "wpilib.New.f": "()", "hal.same": ": int"}
+    before = {
+        "wpilib.A": "(wpilib.B)",
+        "wpilib.A.f": "(x)",
+        "wpilib.Gone": "",
+        "wpilib.Gone.f": "()",
+        "hal.same": ": int",
+    }
+    after = {
+        "wpilib.A": "(wpilib.C)",
+        "wpilib.A.g": "(x, y)",
+        "wpilib.New": "",
+        "wpilib.New.f": "()",
+        "hal.same": ": int",
+    }
     assert differences(before, after) == [
         "~ wpilib.A(wpilib.B)  is now  (wpilib.C)",
         "- wpilib.A.f(x)",
