@@ -76,6 +76,7 @@ def test_a_mentor_looks_through_a_run_that_failed(page: Any, recorded: Any) -> N
         page.locator("[data-path='pwm[0].value'] .number"),
         page.locator(".legend li", has_text="left motor"),
     )
+    page.get_by_role("tab", name="Devices").click()
     timeline = page.locator(".timeline")
     timeline.press("Home")
     page.locator(".clock", has_text="0:00.00").wait_for()

@@ -203,10 +203,10 @@ def test_menus_tabs_and_borders_by_keys_and_mouse(person: Seen) -> None:
     menu.focus()
     for key in ("Enter", "ArrowDown", "ArrowDown", "ArrowUp", "Escape"):
         page.keyboard.press(key)
-    page.locator(".menu-list").wait_for(state="detached")
+    page.locator(".menu-list:popover-open").wait_for(state="detached")
     expect(menu).to_be_focused()
     page.keyboard.press("Enter")
-    page.locator(".menu-list").wait_for()
+    page.locator(".menu-list:popover-open").wait_for()
     for key in ("ArrowDown", "ArrowDown", "ArrowDown", "Enter"):
         page.keyboard.press(key)
     expect(menu).to_have_text("Tuning")

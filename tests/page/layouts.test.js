@@ -10,7 +10,7 @@ const FOUR = ["driving", "tablet", "tuning", "dashboard"];
 
 test("what is driven has four layouts, and what is looked at one more, its own", () => {
   assert.deepEqual(offeredLayouts("simulation", true, {}), FOUR);
-  assert.deepEqual(offeredLayouts("simulation", false, {}), ["run", ...FOUR]);
+  assert.deepEqual(offeredLayouts("simulation", false, {}), ["log", ...FOUR]);
   assert.deepEqual(offeredLayouts("log", false, {}), ["log", ...FOUR]);
 });
 

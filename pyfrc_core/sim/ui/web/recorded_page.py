@@ -94,7 +94,7 @@ def _layout(saved: Any, collector: Collector) -> dict[str, Any]:
     if not any(plot.get("curves") for plot in plots.values()):
         curves = [{"path": path, "axis": "left", "color": color} for color, path in enumerate(_outputs(collector))]
         plots = {"plot:1": {"curves": curves, "seconds": 0}}
-    return {**layout, "version": 1, "layout": "run", "plots": plots}
+    return {**layout, "version": 1, "layout": "log", "plots": plots}
 
 
 def _outputs(collector: Collector) -> list[str]:

@@ -1,5 +1,5 @@
 // Canvases with sharp lines on dense screens.
-import { color, isDark } from "#js/settings.js";
+import { isDark } from "#js/settings.js";
 
 // An element's size without its borders, in pixels of the page. Asking the element itself in each drawing would have the
 // browser lay out the page at once, and again before it paints.
@@ -35,13 +35,16 @@ export class Picture {
   }
 }
 
-let rootScale = null; // of the page's texts; asking for it in each drawing would compute styles at once
-addEventListener("resize", () => (rootScale = null));
+let texts = null; // the font of the page's texts; asking for it in each drawing would compute styles at once
+addEventListener("resize", () => (texts = null));
 
 // The font of texts in canvases, in pixels of an ordinary screen: larger on huge ones, like all texts of the page.
 export function font(pixels, style = "") {
-  rootScale ??= parseFloat(getComputedStyle(document.documentElement).fontSize) / 13;
-  return `${style}${pixels * rootScale}px ${color("font")}`;
+  if (!texts) {
+    const { fontSize, fontFamily } = getComputedStyle(document.documentElement);
+    texts = { scale: parseFloat(fontSize) / 13, family: fontFamily };
+  }
+  return `${style}${pixels * texts.scale}px ${texts.family}`;
 }
 
 // Give a canvas this size in pixels of the page, clear it, and return its context.

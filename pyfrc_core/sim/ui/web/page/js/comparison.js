@@ -2,6 +2,7 @@
 import { compared } from "#js/compare.js";
 import { clock } from "#js/format.js";
 import { goTo } from "#js/input/moment_keys.js";
+import { nameOf } from "#js/names.js";
 import { html, render } from "#js/view.js";
 
 const SOURCES = [
@@ -11,11 +12,6 @@ const SOURCES = [
   ["real time", "Simulated in real time: differs in each run"],
   ["replay", "Only by the replay of AdvantageKit or PyKit"],
 ];
-
-// The name of a value for people.
-export function nameOf(path) {
-  return path.replace(/^nt:(\/SmartDashboard\/|\/)?/, "");
-}
 
 // The sentence about the first difference, which a click goes to.
 export function FirstDifference({ difference, found }) {

@@ -1,6 +1,6 @@
 // The curves of plots: which value, what is computed from it, and how it is drawn. A curve is an object in the settings:
 // { path, axis, color, key?, hidden?, math?: "derivative" | "integral", minus?: path, from?, to?: units }.
-import { plain } from "#js/format.js";
+import { numberIn } from "#js/format.js";
 import { nameOf, unitOfPath } from "#js/names.js";
 import { derivative, difference, integral, mapped } from "#js/plot_math.js";
 import { valueAt } from "#js/series.js";
@@ -93,13 +93,8 @@ function computed({ path, math, minus, from = unitOfPath(path), to }, raw, other
   return curve;
 }
 
-export function numbers({ t, v }) {
+function numbers({ t, v }) {
   return { t, v: v.map(numberIn) };
-}
-
-export function numberIn(value) {
-  const simple = plain(value);
-  return typeof simple === "number" && Number.isFinite(simple) ? simple : null;
 }
 
 // The value of a computed curve at a moment, or of one that is not loaded.

@@ -1,8 +1,8 @@
 // What is drawn on a canvas that fills the element around it.
-import { ElementSize, Picture } from "#js/canvas.js";
+import { ElementSize, Picture, sizeCanvas } from "#js/canvas.js";
 import { Live, createRef } from "#js/view.js";
 
-// Calls `draw` when its size has changed. `picture` says whether what it shows is something else than before.
+// Calls `draw`, and thereby `paint`, when its size has changed. `picture` says whether what it shows is something else than before.
 export class Drawn extends Live {
   canvas = createRef();
   picture = new Picture();
@@ -17,5 +17,10 @@ export class Drawn extends Live {
     this.size.disconnect();
   }
 
-  draw() {}
+  draw() {
+    const { width, height } = this.size ?? {};
+    if (this.canvas.current && width && height) this.paint(sizeCanvas(this.canvas.current, width, height), width, height);
+  }
+
+  paint(_context, _width, _height) {}
 }

@@ -19,9 +19,9 @@ export class FailureBar extends Live {
     const goesBack = failure.t > 0 && !UNREADABLE.test(failure.headline);
     const watch = model.hello.options.watch && model.isDriven;
     return html`<section class="failure" role="alert" aria-label="The robot program has failed">
-      <div class="failure-head">
+      <div class="failure-head flex">
         <${Icon} name="warning" />
-        <div class="failure-text">
+        <div class="failure-text column fill">
           <strong>${failure.headline}</strong>
           <span>The robot program ended at ${clock(failure.t)}. ${failure.file && html`<${SourceLink} file=${failure.file} line=${failure.line} />`}
             ${watch && " Save the corrected file, and the simulation goes on."}</span>

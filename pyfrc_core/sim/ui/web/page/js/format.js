@@ -28,6 +28,12 @@ export function plain(value) {
   return value;
 }
 
+// A finite number; null for any other value.
+export function numberIn(value) {
+  const simple = plain(value);
+  return typeof simple === "number" && Number.isFinite(simple) ? simple : null;
+}
+
 // A measured number with a fixed number of decimals, so that it does not jump.
 export function numberText(value, decimals = 2) {
   if (!Number.isFinite(value)) return String(value);

@@ -33,7 +33,7 @@ const WAITING = {
   lost: "There is no answer from pyfrc. Trying again…",
   refused: "This address is not valid any more. Open the one that pyfrc prints.",
   closed: "The simulation was closed.",
-  unreadable: "This file is not complete, or this browser is too old to read it. A browser of 2023 or later is needed.",
+  unreadable: "This file is not complete, or this browser is too old to read it. A browser of May 2024 or later is needed.",
 };
 
 function receive(message) {

@@ -23,7 +23,7 @@ export class Notice extends Live {
     const note = model.problem || (model.status.note !== this.seen ? model.status.note : "");
     const text = lost ?? note;
     if (!text) return null;
-    return html`<div class=${lost ? "notice bad" : "notice"} role="status">
+    return html`<div class=${lost ? "notice flex bad" : "notice flex"} role="status">
       <${Icon} name="warning" /><span>${text}</span>
       ${!lost && html`<button class="quiet" aria-label="Hide this message" onClick=${this.hide}><${Icon} name="close" /></button>`}
     </div>`;

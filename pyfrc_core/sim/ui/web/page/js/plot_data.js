@@ -1,5 +1,5 @@
 // The data of plots: curves with times of their own, as the columns that uPlot and CSV files need.
-import { plain } from "#js/format.js";
+import { numberIn, plain } from "#js/format.js";
 import { indexAfter } from "#js/times.js";
 
 const PER_PIXEL = 4; // points of a curve; of more, each pixel keeps its lowest, its highest and its last
@@ -16,16 +16,11 @@ export function aligned(curves, from, to, width) {
     let index = -1;
     for (let row = 0; row < times.length; row++) {
       while (index + 1 < t.length && t[index + 1] <= times[row]) index += 1;
-      column[row] = index < 0 || times[row] > until ? null : number(v[index]);
+      column[row] = index < 0 || times[row] > until ? null : numberIn(v[index]);
     }
     return column;
   });
   return [times, ...columns];
-}
-
-function number(value) {
-  const simple = plain(value);
-  return typeof simple === "number" && Number.isFinite(simple) ? simple : null;
 }
 
 // The points between two times, with the value in force at both.

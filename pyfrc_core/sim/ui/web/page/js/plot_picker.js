@@ -1,10 +1,10 @@
 // "Add a value": a search through everything that can be plotted, also the elements of lists; and what else is offered.
+import { SearchBox } from "#js/controls.js";
 import { valueText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { nameOf } from "#js/names.js";
 import { elementsOf, valueIn } from "#js/parts.js";
 import { Popup } from "#js/popup.js";
-import { SearchBox } from "#js/text_box.js";
 import { Icon, html } from "#js/view.js";
 
 const MOST = 60;
@@ -16,7 +16,6 @@ export class PlotPicker extends Popup {
   search = (search) => this.setState({ search });
 
   componentWillUnmount() {
-    super.componentWillUnmount();
     model.need(this, []);
   }
 
@@ -29,42 +28,29 @@ export class PlotPicker extends Popup {
     list.querySelector("input").focus();
   }
 
-  // more: [{ key, name, note, add() }], above the values
-  render({ label = "Add value", more = [] }, { open, search }) {
+  begin = (event) => event.newState === "open" && this.setState({ open: true, search: "" });
+
+  // add(path): called with the value that was chosen; more: [{ key, name, note, add() }], above the values
+  render({ label = "Add value", more = [], add }, { open, search }) {
     const found = open ? searched(search) : [];
     const others = open ? more.filter(({ name, note }) => matches(`${name} ${note}`, search)) : [];
-    return html`<div class="menu picker" ref=${this.element} onKeyDown=${this.key}>
-      <button class="quiet" aria-expanded=${open} onClick=${() => this.setState({ open: !open, search: "" })}><${Icon} name="plus" />${label}</button>
-      ${open && html`<div class="menu-list" popover="manual">
+    return html`<div class="menu picker" ref=${this.element} onKeyDown=${this.pressed}>
+      <button class="quiet" aria-expanded=${open} popovertarget=${this.id}><${Icon} name="plus" />${label}</button>
+      <div class="menu-list" ...${this.list}>${open && html`
         <${SearchBox} label="Search all values" text=${search} search=${this.search} />
-        <ul>${others.map(({ key, name, note, add }) => html`<li key=${key}><button title=${key} onClick=${() => this.choose(add)}><b>${name}</b><small>${note}</small></button></li>`)}
-          ${found.map((path) => html`<li key=${path}><button title=${path} onClick=${() => this.add(path)}>
+        <ul>${others.map(({ key, name, note, add: act }) => html`<li key=${key}><button title=${key} onClick=${() => this.choose(act)}><b>${name}</b><small>${note}</small></button></li>`)}
+          ${found.map((path) => html`<li key=${path}><button title=${path} onClick=${() => this.choose(() => add(path))}>
           <span class="long-name"><bdi>${nameOf(path)}</bdi></span><small>${valueText(valueIn(model.values, path)).slice(0, 24)}</small></button></li>`)}</ul>
         ${found.length === MOST && html`<p class="faint">Only ${MOST} values are listed: search for others.</p>`}
-        ${!found.length && !others.length && html`<p class="faint">No value is called that.</p>`}
-      </div>`}
+        ${!found.length && !others.length && html`<p class="faint">No value is called that.</p>`}`}
+      </div>
     </div>`;
   }
 
-  add(path) {
-    this.choose(() => this.props.add(path));
-  }
-
-  choose(act) {
-    this.close();
-    act();
-  }
-
-  key = (event) => {
-    if (!this.state.open) return;
-    const items = [...this.element.current.querySelectorAll("input, li button")];
-    const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (event.key === "Escape") this.close();
-    else if (event.key === "Enter" && event.target.matches("input")) items[1]?.click();
-    else if (by) items[(items.indexOf(document.activeElement) + by + items.length) % items.length].focus();
-    else return;
-    event.preventDefault();
-    event.stopPropagation();
+  pressed = (event) => {
+    if (event.key !== "Enter" || !event.target.matches("input")) return this.key(event, "input, li button");
+    event.preventDefault(); // the keyboard goes back to the button, which would open the list again
+    this.popover.querySelector("li button")?.click();
   };
 }
 

@@ -1,11 +1,12 @@
-// Lists and boxes of settings that open beside a button, above everything else on the page.
+// Lists and boxes of settings that open beside a button, above everything else on the page. The browser closes them by
+// Escape and by a click elsewhere, and gives the keyboard back.
 import { Component, Icon, classes, createRef, html } from "#js/view.js";
 
 const GAP = 5; // pixels between the button and its list
+let count = 0;
 
-// Show an element with popover="manual" below an anchor, or above it where there is more space.
-function showBeside(popup, anchor) {
-  if (!popup.matches(":popover-open")) popup.showPopover();
+// Place an open popover below an anchor, or above it where there is more space.
+function placeBeside(popup, anchor) {
   const box = anchor.getBoundingClientRect();
   const { width } = popup.getBoundingClientRect();
   const below = innerHeight - box.bottom - 2 * GAP;
@@ -17,102 +18,87 @@ function showBeside(popup, anchor) {
   popup.style.bottom = up ? `${innerHeight - box.top + GAP}px` : "auto";
 }
 
-// A button, and a `.menu-list` that is rendered while it is open. A click elsewhere closes it.
+// A button with `popovertarget=${this.id}`, and beside it an element with the attributes `list`, whose content is rendered
+// while it is open.
 export class Popup extends Component {
   state = { open: false };
-  element = createRef();
+  id = `popup${count++}`;
+  element = createRef(); // has both
 
-  componentDidMount() {
-    document.addEventListener("pointerdown", this.outside);
+  get list() {
+    return { id: this.id, popover: "auto", onBeforeToggle: this.begin, onToggle: this.end };
   }
 
-  componentWillUnmount() {
-    document.removeEventListener("pointerdown", this.outside);
+  get popover() {
+    return this.element.current.querySelector("[popover]");
   }
 
-  // `opened` is called once each time.
+  begin = (event) => event.newState === "open" && this.setState({ open: true });
+
+  // When it is closed, and not before: the browser has given the keyboard back then.
+  end = (event) => event.newState === "closed" && this.setState({ open: false });
+
+  // Its content is there before the browser shows it, which it does before the next frame.
   componentDidUpdate(_, before) {
-    if (!this.state.open) return;
-    const list = this.element.current.querySelector(".menu-list");
-    showBeside(list, this.element.current);
-    if (!before.open) this.opened(list);
+    if (this.state.open) requestAnimationFrame(() => this.#place(!before.open));
   }
 
+  #place(isNew) {
+    if (!this.element.current || !this.popover.matches(":popover-open")) return;
+    placeBeside(this.popover, this.element.current);
+    if (isNew) this.opened(this.popover);
+  }
+
+  // Called once each time.
   opened(_list) {}
 
-  toggle = () => this.setState({ open: !this.state.open });
+  close = () => this.popover.hidePopover();
 
-  close = () => this.setState({ open: false });
-
-  outside = (event) => {
-    if (this.state.open && !this.element.current.contains(event.target)) this.close();
-  };
-}
-
-// A button that opens a list of actions; arrow keys move in it.
-export class Menu extends Popup {
-  render({ label, title, items, icon, disabled }, { open }) {
-    return html`<div class="menu" ref=${this.element} onKeyDown=${this.key}>
-      <button class="quiet" aria-haspopup="menu" aria-expanded=${open} title=${title} disabled=${disabled} onClick=${this.toggle}>
-        ${icon && html`<${Icon} name=${icon} />`}<span>${label}</span><i class="caret"></i></button>
-      ${open && html`<ul class="menu-list" popover="manual" role="menu">
-        ${items.map((item, index) => item.separator
-          ? html`<li key=${index} class="menu-separator" role="separator"></li>`
-          : html`<li key=${index} role="none"><button role=${item.checked === undefined ? "menuitem" : "menuitemcheckbox"}
-              aria-checked=${item.checked} disabled=${item.disabled} onClick=${() => this.act(item)}>
-              <i class=${classes({ tick: true, on: item.checked })}></i><span>${item.text}</span>
-              ${item.note && html`<small>${item.note}</small>`}</button></li>`)}
-      </ul>`}
-    </div>`;
-  }
-
-  act(item) {
+  // Do something that a person has chosen.
+  choose(act) {
     this.close();
-    item.act();
+    act();
   }
 
-  key = (event) => {
-    if (!this.state.open) return;
-    const buttons = [...this.element.current.querySelectorAll(".menu-list button:not(:disabled)")];
+  // Arrow keys move among the elements that a selector finds.
+  key(event, selector) {
+    const items = [...this.element.current.querySelectorAll(selector)];
     const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (event.key === "Escape") {
-      this.close();
-      this.element.current.querySelector("button").focus();
-    } else if (by) buttons[(buttons.indexOf(document.activeElement) + by + buttons.length) % buttons.length]?.focus();
-    else return;
+    if (!this.state.open || !by) return;
+    items[(items.indexOf(document.activeElement) + by + items.length) % items.length]?.focus();
     event.preventDefault();
     event.stopPropagation();
-  };
+  }
 }
 
-// A button with a box of settings below it.
+// A button that opens a list of actions.
+export class Menu extends Popup {
+  render({ label, title, items, icon, disabled }, { open }) {
+    return html`<div class="menu" ref=${this.element} onKeyDown=${(event) => this.key(event, ".menu-list button:not(:disabled)")}>
+      <button class="quiet" aria-haspopup="menu" aria-expanded=${open} title=${title} disabled=${disabled} popovertarget=${this.id}>
+        ${icon && html`<${Icon} name=${icon} />`}<span>${label}</span><i class="caret"></i></button>
+      <ul class="menu-list" role="menu" ...${this.list}>
+        ${open && items.map((item, index) => item.separator
+          ? html`<li key=${index} class="menu-separator" role="separator"></li>`
+          : html`<li key=${index} role="none"><button role=${item.checked === undefined ? "menuitem" : "menuitemcheckbox"}
+              aria-checked=${item.checked} disabled=${item.disabled} onClick=${() => this.choose(item.act)}>
+              <i class=${classes({ tick: true, on: item.checked })}></i><span>${item.text}</span>
+              ${item.note && html`<small>${item.note}</small>`}</button></li>`)}
+      </ul>
+    </div>`;
+  }
+}
+
+// A button with a box of settings below it. `content` returns what the box shows, and is given a function that closes it.
 export class Dropdown extends Popup {
-  componentDidMount() {
-    super.componentDidMount();
-    document.addEventListener("keydown", this.key); // a list that was chosen from gives the keyboard back to driving
-  }
-
-  componentWillUnmount() {
-    super.componentWillUnmount();
-    document.removeEventListener("keydown", this.key);
-  }
-
   opened(box) {
     box.querySelector("select, input, button").focus();
   }
 
-  // `content` returns what the box shows, and is given a function that closes it.
   render({ label, title, name, className = "quiet", content }, { open }) {
     return html`<div class="menu dropdown" ref=${this.element}>
-      <button class=${className} aria-expanded=${open} aria-label=${name} title=${title} onClick=${this.toggle}>${label}</button>
-      ${open && html`<div class="menu-list settings-box" popover="manual" role="group" aria-label=${title}>${content(this.close)}</div>`}
+      <button class=${className} aria-expanded=${open} aria-label=${name} title=${title} popovertarget=${this.id}>${label}</button>
+      <div class="menu-list settings-box" role="group" aria-label=${title} ...${this.list}>${open && content(this.close)}</div>
     </div>`;
   }
-
-  key = (event) => {
-    if (!this.state.open || event.key !== "Escape") return;
-    event.preventDefault();
-    this.close();
-    this.element.current.querySelector("button").focus();
-  };
 }

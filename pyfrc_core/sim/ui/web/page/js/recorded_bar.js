@@ -15,7 +15,7 @@ const KINDS = { simulation: "Recorded run", log: "Log", robot: "Robot" };
 export function SourceLabel() {
   const { source, version } = model.hello;
   const when = source.when ? new Date(source.when).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" }) : "";
-  return html`<div class="recorded" title=${[source.title, source.when, `pyfrc ${version}`].filter(Boolean).join(", ")}>
+  return html`<div class="recorded flex" title=${[source.title, source.when, `pyfrc ${version}`].filter(Boolean).join(", ")}>
     <span class="chip">${KINDS[source.kind]}</span><code>${source.title}</code>${when && html`<span>${when}</span>`}
     ${isRecorded && html`<span>pyfrc ${version}</span>`}</div>`;
 }
@@ -31,7 +31,7 @@ export class RecordedTimeBar extends Live {
       lookByPackets(packets);
     };
     return html`<footer class="timebar">
-      <div class="transport">
+      <div class="transport flex">
         <button class="quiet" title="To the beginning" aria-label="To the beginning" onClick=${() => look(0)}><${Icon} name="first" /></button>
         <button class="quiet" title="Look at the packet before" aria-label="Look at the packet before" onClick=${step(-1)}><${Icon} name="stepBack" /></button>
         <button class="play" title=${playing ? "Pause: the space bar" : "Play: the space bar"} aria-label=${playing ? "Pause" : "Play"}

@@ -135,8 +135,16 @@ export function color(name) {
     colorsFor = theme;
     colorsOf = {};
   }
-  colorsOf[name] ??= getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
-  return colorsOf[name];
+  return (colorsOf[name] ??= resolved(name));
+}
+
+function resolved(name) {
+  const probe = document.createElement("i");
+  probe.style.color = `var(--${name})`;
+  document.body.append(probe);
+  const found = getComputedStyle(probe).color;
+  probe.remove();
+  return found;
 }
 
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

@@ -22,10 +22,10 @@ export class StationBar extends Live {
   render() {
     const { text, kind } = robotState();
     const left = model.past || model.isOver || model.connection !== "open" ? "" : matchLeft(model.station);
-    return html`<header class="station">
-      <div class="brand" title=${model.hello.project.root || model.hello.project.name}><img src=${ICON} alt="" /><span>${model.hello.project.name}</span></div>
+    return html`<header class="station flex">
+      <div class="brand flex" title=${model.hello.project.root || model.hello.project.name}><img src=${ICON} alt="" /><span>${model.hello.project.name}</span></div>
       ${model.isDriven ? this.driving() : html`<${SourceLabel} />`}
-      <div class=${`state ${kind}`} role="status" aria-live="polite">
+      <div class=${`state flex ${kind}`} role="status" aria-live="polite">
         <i class="lamp"></i><b>${shortText(text)}</b>
         ${model.past && !model.isOver && html`<em>past</em>`}
         ${left && html`<span class="countdown">${left}</span>`}
@@ -85,7 +85,7 @@ function TuneSwitch() {
     if (await command("tune", { on })) model.set("tuning", on);
     model.announce("hello", "tuning");
   };
-  return html`<label class=${classes({ tune: true, on: model.tuning })} title="While it is on, this page can set values on the robot. It never enables it.">
+  return html`<label class=${classes({ tune: true, flex: true, on: model.tuning })} title="While it is on, this page can set values on the robot. It never enables it.">
     <span class="switch"><input type="checkbox" role="switch" checked=${model.tuning} disabled=${model.connection !== "open"} onChange=${set} /><i></i></span>Tune</label>`;
 }
 

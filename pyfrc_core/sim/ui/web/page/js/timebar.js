@@ -24,7 +24,7 @@ export class TimeBar extends Live {
     const locked = !model.mayDrive;
     const running = status.wants_to_run;
     return html`<footer class=${past ? "timebar past" : "timebar"}>
-      <div class="transport">
+      <div class="transport flex">
         <button class="quiet" title="Look at the packet before" aria-label="Look at the packet before" onClick=${() => lookByPackets(-1)}><${Icon} name="stepBack" /></button>
         ${model.isDriven && html`<button class="play" disabled=${locked} title=${running ? "Pause: F5" : "Run: F5"} aria-label=${running ? "Pause" : "Run"}
           onClick=${() => command("toggle")}><${Icon} name=${running ? "pause" : "play"} /></button>`}

@@ -1,5 +1,5 @@
 // The timeline: modes as colours, marks, and the moment that the panels show.
-import { font, sizeCanvas } from "#js/canvas.js";
+import { font } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
 import { Drawn } from "#js/drawn.js";
 import { clock, clockTick } from "#js/format.js";
@@ -15,7 +15,6 @@ const MODE_COLORS = { autonomous: "mode-auto", teleop: "mode-teleop", test: "mod
 const MARK_COLORS = { failure: "red", error: "red", warning: "amber", overrun: "amber", press: "accent", own: "own", run: "muted" };
 const NEAR = 5; // pixels between the pointer and a mark
 const MOST_NAMED = 5; // marks beside the pointer
-const HEIGHT = 46;
 const EDGE = 8; // pixels at both ends
 const LIVE_INTERVAL = 150; // milliseconds: the present moves slowly
 const SHORTEST = 10; // seconds on the timeline at least, until it is over
@@ -55,7 +54,7 @@ export class Timeline extends Drawn {
         aria-valuemax=${Math.ceil(length())} aria-valuenow=${t.toFixed(2)} aria-valuetext=${model.past ? clock(t) : `live, ${clockTick(t)}`}
         onPointerDown=${this.begin} onPointerMove=${this.move} onPointerUp=${this.end} onPointerLeave=${this.leave} onKeyDown=${this.key}>
       <canvas ref=${this.canvas}></canvas>
-      ${hover && html`<div class="timeline-tip" style=${{ left: `${hover.left}px` }}>
+      ${hover && html`<div class="timeline-tip column" style=${{ left: `${hover.left}px` }}>
         <b>${clock(hover.t)}</b>${isForgotten(hover.t) && html`<span>Values forgotten</span>`}${this.marksNear(hover.t).map((mark, index) => html`<span key=${index} class=${`mark-${mark.kind}`}>${mark.text}</span>`)}</div>`}
     </div>`;
   }
@@ -79,10 +78,7 @@ export class Timeline extends Drawn {
     return EDGE + (t / this.whole) * (this.width - 2 * EDGE);
   }
 
-  draw() {
-    const canvas = this.canvas.current;
-    if (!canvas || !this.size?.width) return;
-    const context = sizeCanvas(canvas, this.width, HEIGHT);
+  paint(context) {
     this.drawModes(context);
     this.drawMarks(context);
     this.drawTicks(context);

@@ -35,15 +35,15 @@ export class WidgetFrame extends Component {
     const side = y > 0 ? "above" : h < rows ? "below" : "inside"; // of its tools, for fingers
     const edit = arranging && { tabindex: "0", onFocusIn: () => board.choose(index), onPointerDown: this.begin("move"), onPointerMove: this.drag, onPointerUp: this.end, onPointerCancel: this.end, onKeyDown: this.key };
     const help = arranging ? `${title}. Arrow keys move this widget, with Shift they change its size, Delete removes it` : title;
-    return html`<section class=${classes({ widget: true, [`widget-${widget.kind}`]: true, arranging, chosen, blocked })} style=${style} ref=${this.element}
+    return html`<section class=${classes({ widget: true, column: true, [`widget-${widget.kind}`]: true, arranging, chosen, blocked })} style=${style} ref=${this.element}
         aria-label=${help} data-topic=${widget.topic} data-kind=${widget.kind} ...${edit || {}}>
-      <header><span class="widget-title" title=${widget.topic}>${title}</span>
+      <header class="flex"><span class="widget-title" title=${widget.topic}>${title}</span>
         ${arranging && html`<span class=${`widget-tools ${side}`} onPointerDown=${(event) => event.stopPropagation()} onKeyDown=${(event) => event.key !== "Escape" && event.stopPropagation()}>
           <${Dropdown} label=${html`<${Icon} name="gear" />`} name=${`Settings of ${title}`} title="Settings" className="tool always"
             content=${() => html`<${WidgetSettings} widget=${widget} change=${(changes) => board.change(index, changes)} />`} />
           <button class="tool always" aria-label=${`Remove ${title}`} title="Remove" onClick=${() => board.remove(index)}><${Icon} name="close" /></button></span>`}
       </header>
-      <div class="widget-body" inert=${arranging}>${this.content(widget, index, title)}</div>
+      <div class="widget-body fill" inert=${arranging}>${this.content(widget, index, title)}</div>
       ${arranging && html`<i class=${classes({ "widget-corner": true, right: x + w === columns, bottom: y + h === rows })} onPointerDown=${this.begin("size")}></i>`}
     </section>`;
   }

@@ -4,10 +4,11 @@ import {
   AlertsWidget, CameraWidget, ChooserWidget, CommandWidget, FieldWidget, GraphWidget, MatchTime, MechanismWidget, PidWidget,
   RobotState, SwerveWidget, ValuesWidget,
 } from "#js/dashboard/panel_widgets.js";
-import { Gauge, InputBox, Lamp, NumberText, Switch, Text } from "#js/dashboard/value_widgets.js";
+import { Gauge, InputBox, Lamp, NumberText, SwitchWidget, Text } from "#js/dashboard/value_widgets.js";
 import { typeOf } from "#js/dashboard/topics.js";
 import { plain } from "#js/format.js";
 import { model } from "#js/model.js";
+import { CAMERAS, cameraNames } from "#js/panels/cameras.js";
 import { valueIn } from "#js/parts.js";
 
 /** @type {Record<string, { title: string, size: [number, number], component: any, settings?: string[], alone?: boolean }>} */
@@ -16,7 +17,7 @@ export const KINDS = {
   text: { title: "Text", size: [3, 1], component: Text },
   input: { title: "Box to type into", size: [3, 1], component: InputBox },
   lamp: { title: "Lamp", size: [1, 1], component: Lamp },
-  switch: { title: "Switch", size: [2, 1], component: Switch },
+  switch: { title: "Switch", size: [2, 1], component: SwitchWidget },
   gauge: { title: "Gauge", size: [2, 2], component: Gauge, settings: ["min", "max", "unit", "decimals"] },
   graph: { title: "Graph", size: [4, 3], component: GraphWidget, settings: ["more", "seconds", "min", "max"] },
   chooser: { title: "Chooser", size: [3, 1], component: ChooserWidget },
@@ -53,8 +54,7 @@ const BY_STRUCT = [
 
 // The tables of cameras, and the structs that widgets show, such as an array of module states: { path, name, type }.
 export function otherTables() {
-  const streams = [...model.values.keys()].filter((path) => path.startsWith("nt:/CameraPublisher/") && path.endsWith("/streams"));
-  const cameras = streams.map((path) => path.slice(0, -"/streams".length)).map((path) => ({ path, name: path.split("/").pop(), type: "Camera" }));
+  const cameras = cameraNames().map((name) => ({ path: `${CAMERAS}${name}`, name, type: "Camera" }));
   const paths = Object.keys(model.types).filter((path) => path.startsWith("nt:") && BY_STRUCT.some(([pattern]) => pattern.test(model.types[path])));
   return [...cameras, ...paths.map((path) => ({ path, name: path.split("/").pop(), type: model.types[path].replace("struct:", "") }))];
 }

@@ -1,5 +1,6 @@
 // Widgets that show more than one value: the page's own panels without their tools, and cards of what robot code publishes.
 import { command, write } from "#js/connection.js";
+import { Select } from "#js/controls.js";
 import { boundPath, pathOf, topicOf, typeOf } from "#js/dashboard/topics.js";
 import { countdown, plain } from "#js/format.js";
 import { robotState } from "#js/link.js";
@@ -40,7 +41,7 @@ export class RobotState extends Live {
 
   render() {
     const { text, kind } = robotState();
-    return html`<div class=${`robot-state ${kind}`}><i class="lamp"></i><b>${(text ?? "").replace(/, -?\d+ s$/, "")}</b></div>`;
+    return html`<div class=${`robot-state centered ${kind}`}><i class="lamp"></i><b>${(text ?? "").replace(/, -?\d+ s$/, "")}</b></div>`;
   }
 }
 
@@ -101,6 +102,5 @@ export const ChooserWidget = tableWidget(({ path, name }, values) => {
   const published = ["active", "selected/value", "default"].map((name) => values.get(`${path}/${name}`)); // the last two from 2027 on
   const active = chooser?.active ?? published.find((each) => each !== undefined) ?? "";
   const choose = (option) => (chooser ? command("choose", { chooser: chooser.name, option }) : write({ [`${path}/${model.hello.options.dashboard.choice}`]: option }));
-  return html`<div class="chooser-widget"><select aria-label=${name} value=${active} disabled=${!model.mayWrite} onChange=${(event) => choose(event.target.value)}>
-    ${options.map((option) => html`<option key=${option} value=${option} selected=${option === active}>${option}</option>`)}</select></div>`;
+  return html`<div class="chooser-widget centered"><${Select} aria-label=${name} value=${active} options=${options} disabled=${!model.mayWrite} set=${choose} /></div>`;
 });

@@ -1,5 +1,6 @@
 // Widgets of a single value: number, text, box, lamp, switch, gauge.
 import { write } from "#js/connection.js";
+import { Switch } from "#js/controls.js";
 import { numberText, plain, valueText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { unitOfPath } from "#js/names.js";
@@ -64,15 +65,15 @@ export class NumberText extends ValueWidget {
 export class Text extends ValueWidget {
   render() {
     const text = valueText(this.value);
-    return html`<div class="big-text" style=${{ "--letters": Math.min(Math.max(text.length, 6), 24) }}>${text}</div>`;
+    return html`<div class="big-text centered" style=${{ "--letters": Math.min(Math.max(text.length, 6), 24) }}>${text}</div>`;
   }
 }
 
 export class InputBox extends ValueWidget {
   render({ path, title }) {
     const { value } = this;
-    if (typeof value === "boolean") return html`<${Switch} ...${this.props} />`;
-    return html`<div class="input-widget"><${ValueBox} class=${typeof value === "number" ? "number" : ""} path=${path} label=${title} /></div>`;
+    if (typeof value === "boolean") return html`<${SwitchWidget} ...${this.props} />`;
+    return html`<div class="input-widget centered"><${ValueBox} class=${typeof value === "number" ? "number" : ""} path=${path} label=${title} /></div>`;
   }
 }
 
@@ -83,10 +84,9 @@ export class Lamp extends ValueWidget {
   }
 }
 
-export class Switch extends ValueWidget {
+export class SwitchWidget extends ValueWidget {
   render({ path, title }) {
-    return html`<div class="switch-widget"><label class="switch"><input type="checkbox" role="switch" aria-label=${title} checked=${Boolean(this.value)}
-      disabled=${!model.mayWrite} onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label></div>`;
+    return html`<div class="switch-widget centered"><${Switch} label=${title} on=${Boolean(this.value)} disabled=${!model.mayWrite} set=${(on) => write({ [path]: on })} /></div>`;
   }
 }
 

@@ -1,9 +1,9 @@
 // The settings of a widget: what it shows, and how.
+import { Select, TextBox } from "#js/controls.js";
 import { KINDS, kindsFor } from "#js/dashboard/kinds.js";
 import { pathOf, topicOf } from "#js/dashboard/topics.js";
 import { typedNumber } from "#js/format.js";
 import { model } from "#js/model.js";
-import { TextBox } from "#js/text_box.js";
 import { html } from "#js/view.js";
 
 const MOST_OFFERED = 500;
@@ -12,9 +12,8 @@ const NUMBERS = { min: "Minimum", max: "Maximum", decimals: "Decimals", seconds:
 export function WidgetSettings({ widget, change }) {
   const kinds = [...new Set([widget.kind, ...kindsFor(pathOf(widget.topic ?? ""))])].filter((kind) => KINDS[kind]);
   const settings = KINDS[widget.kind]?.settings ?? [];
-  return html`<div class="form widget-settings">
-    <label>Show as <select value=${widget.kind} onChange=${(event) => change({ kind: event.target.value })}>
-      ${kinds.map((kind) => html`<option key=${kind} value=${kind} selected=${kind === widget.kind}>${KINDS[kind].title}</option>`)}</select></label>
+  return html`<div class="form  widget-settings">
+    <label>Show as <${Select} value=${widget.kind} options=${kinds.map((kind) => [kind, KINDS[kind].title])} set=${(kind) => change({ kind })} /></label>
     <${TextSetting} label="Title" text=${widget.title} set=${(title) => change({ title })} />
     <${TextSetting} label="Topic" text=${widget.topic} list="topics" set=${(topic) => change({ topic })} />
     ${settings.includes("more") && html`<${TextSetting} label=${widget.kind === "graph" ? "Further curves" : "Further topics"} text=${(widget.more ?? []).join(", ")}
@@ -26,23 +25,19 @@ export function WidgetSettings({ widget, change }) {
 }
 
 function TextSetting({ label, text, set, list = undefined }) {
-  return html`<label>${label} <${TextBox} text=${text ?? ""} list=${list} spellcheck="false" onKeyDown=${commit} onChange=${(event) => set(event.target.value.trim())} /></label>`;
+  return html`<label>${label} <${TextBox} text=${text ?? ""} list=${list} set=${(typed) => set(typed.trim())} /></label>`;
 }
 
 function NumberSetting({ name, value, change }) {
-  const set = (event) => {
+  const set = (text) => {
     try {
-      const number = event.target.value.trim() ? typedNumber(event.target.value) : undefined;
+      const number = text.trim() ? typedNumber(text) : undefined;
       change({ [name]: name === "decimals" && number !== undefined ? Math.min(Math.max(Math.round(number), 0), 8) : number });
     } catch (error) {
       model.set("problem", `${NUMBERS[name]}: ${error.message}.`);
     }
   };
-  return html`<label>${NUMBERS[name]} <${TextBox} class="number" inputmode="decimal" text=${value ?? ""} onKeyDown=${commit} onChange=${set} /></label>`;
-}
-
-function commit(event) {
-  if (event.key === "Enter") event.target.blur();
+  return html`<label>${NUMBERS[name]} <${TextBox} class="number" inputmode="decimal" text=${value ?? ""} set=${set} /></label>`;
 }
 
 function offered() {

@@ -246,7 +246,7 @@ function drawLine(context, view, drawing) {
 function drawText(context, view, drawing) {
   const style = `${drawing.italic ? "italic " : ""}${drawing.bold ? "bold " : ""}`;
   const pixels = Math.min(Math.max((drawing.size * 4) / 3, 6), 96);
-  context.font = `${style}${pixels}px ${color("font")}`;
+  context.font = font(pixels, style);
   // Black on a dark carpet cannot be read.
   context.fillStyle = drawing.color === "#000000" ? color("text") : drawing.color;
   context.translate(...view.toScreen([drawing.x, drawing.y]));

@@ -38,7 +38,7 @@ export function labelOf(pad, pads) {
   return same.length > 1 ? `${pad.id} #${same.indexOf(pad) + 1}` : pad.id;
 }
 
-export function nameOf(pad) {
+export function padName(pad) {
   return pad.id.replace(/\s*\((STANDARD GAMEPAD )?.*Vendor:.*\)$/, "") || pad.id;
 }
 

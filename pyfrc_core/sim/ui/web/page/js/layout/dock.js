@@ -18,9 +18,9 @@ export class Dock extends Live {
     const narrow = innerWidth <= NARROW || innerHeight <= LOW;
     const tree = narrow ? stackedTree() : settings.tree;
     if (tree.kind === "tabs" && !tree.panels.length) {
-      return html`<main class="dock"><p class="empty">No panel is open. Choose one under “Panels”.</p></main>`;
+      return html`<main class="dock fill"><p class="empty">No panel is open. Choose one under “Panels”.</p></main>`;
     }
-    return html`<main class="dock"><${Node} node=${tree} place=${[]} narrow=${narrow} /></main>`;
+    return html`<main class="dock fill"><${Node} node=${tree} place=${[]} narrow=${narrow} /></main>`;
   }
 }
 
@@ -100,10 +100,10 @@ class Tabs extends Component {
   render({ node, narrow }, { over }) {
     const active = node.panels.includes(node.active) ? node.active : node.panels[0];
     const kind = PANELS[active?.split(":")[0]];
-    return html`<section class="tabs" onDragOver=${this.over} onDragLeave=${this.leave} onDrop=${this.drop}
+    return html`<section class="tabs column" onDragOver=${this.over} onDragLeave=${this.leave} onDrop=${this.drop}
         data-panel=${active} aria-label=${panelTitle(active)}>
       <div class="tab-list" role="tablist">
-        ${node.panels.map((panel) => html`<div key=${panel} class=${classes({ tab: true, active: panel === active })}
+        ${node.panels.map((panel) => html`<div key=${panel} class=${classes({ tab: true, flex: true, active: panel === active })}
             draggable=${!narrow} onDragStart=${(event) => this.carry(event, panel)}>
           <button role="tab" aria-selected=${panel === active} onClick=${() => this.front(panel)}
             onKeyDown=${(event) => this.key(event, panel)}>${panelTitle(panel)}</button>
@@ -111,7 +111,7 @@ class Tabs extends Component {
             aria-label=${`Close ${panelTitle(panel)}`} onClick=${() => this.close(panel)}><${Icon} name="close" /></button>`}
         </div>`)}
       </div>
-      <div class="panel" role="tabpanel" key=${active}>
+      <div class="panel fill" role="tabpanel" key=${active}>
         ${kind && html`<${kind.component} key=${active} id=${active} />`}
       </div>
       ${over && html`<div class=${`drop-mark ${over}`}></div>`}

@@ -12,12 +12,12 @@ export function column(sizes, ...children) {
   return { kind: "column", sizes, children };
 }
 
-// With `looks`, a layout is only for what cannot be driven, and is this: a robot, a log, a run that is over.
-/** @type {Record<string, { title: string, looks?: string, tree: any }>} */
+// With `looks`, a layout is only for these sources that cannot be driven: a robot, or what is over, a log or a run.
+/** @type {Record<string, { title: string, looks?: string[], tree: any }>} */
 export const PRESETS = {
   robot: {
     title: "Robot",
-    looks: "robot",
+    looks: ["robot"],
     tree: row(
       [24, 44, 32],
       tabs("networktables"),
@@ -26,23 +26,13 @@ export const PRESETS = {
     ),
   },
   log: {
-    title: "Log",
-    looks: "log",
+    title: "Review",
+    looks: ["log", "simulation"],
     tree: row(
       [24, 48, 28],
       tabs("networktables", "changes", "devices"),
       column([50, 50], tabs("field", "mechanism"), tabs("plot:1", "plot:2")),
       column([58, 42], tabs("console"), tabs("joysticks", "match", "widgets")),
-    ),
-  },
-  run: {
-    title: "Review",
-    looks: "simulation",
-    tree: row(
-      [22, 46, 32],
-      tabs("devices", "networktables"),
-      column([64, 36], tabs("field", "mechanism"), tabs("console")),
-      column([58, 42], tabs("plot:1", "plot:2"), tabs("joysticks", "match", "widgets")),
     ),
   },
   driving: {
@@ -79,7 +69,7 @@ export const PRESETS = {
 
 // The names of the layouts to choose from: also those that a person has arranged when there were more of them.
 export function offeredLayouts(kind, isDriven, trees) {
-  const offered = Object.keys(PRESETS).filter((name) => !PRESETS[name].looks || (!isDriven && PRESETS[name].looks === kind));
+  const offered = Object.keys(PRESETS).filter((name) => !PRESETS[name].looks || (!isDriven && PRESETS[name].looks.includes(kind)));
   return [...offered, ...Object.keys(trees).filter((name) => !PRESETS[name])];
 }
 

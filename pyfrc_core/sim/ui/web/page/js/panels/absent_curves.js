@@ -16,7 +16,7 @@ export function AbsentCurves({ curves, remove }) {
   if (!curves.length) return null;
   const [where, what] = model.isOver ? ["in this log", "log"] : ["from this robot", "robot"];
   return html`<${Dropdown} label=${html`<${Icon} name="warning" />${curves.length}<span> not ${where}</span>`} name=${`${curves.length} not ${where}`} title=${`Curves whose values this ${what} does not have`} className="quiet absent"
-    content=${(close) => html`<div class="form"><ul class="absent-list">${curves.map((curve) => html`<li key=${keyOf(curve)} title=${curve.path}>${titleOf(curve)}</li>`)}</ul>
+    content=${(close) => html`<div class="form "><ul class="absent-list">${curves.map((curve) => html`<li key=${keyOf(curve)} title=${curve.path}>${titleOf(curve)}</li>`)}</ul>
       <p class="faint">They are kept for ${model.isOver ? "logs that have them" : "the simulation, or a log"}.</p>
       <button onClick=${() => { close(); remove(); }}>Remove ${curves.length === 1 ? "it" : "them"}</button></div>`} />`;
 }

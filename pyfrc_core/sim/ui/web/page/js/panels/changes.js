@@ -4,8 +4,9 @@ import { clock, valueText } from "#js/format.js";
 import { goTo } from "#js/input/moment_keys.js";
 import { model } from "#js/model.js";
 import { nameOf } from "#js/names.js";
-import { addToPlot, carryPath } from "#js/plotting.js";
-import { Icon, Live, html } from "#js/view.js";
+import { PlotButton, Select } from "#js/controls.js";
+import { carryPath } from "#js/plotting.js";
+import { Live, html } from "#js/view.js";
 
 const REACHES = [0.1, 0.5, 2]; // seconds before and after the moment
 const LIVE_INTERVAL = 500; // milliseconds
@@ -38,20 +39,19 @@ export class ChangesPanel extends Live {
 
   render(_, { reach, t, changes }) {
     this.interval = model.past ? 0 : LIVE_INTERVAL;
-    return html`<div class="networktables changes">
-      <div class="changes-head"><span>Changed around ${clock(Math.max(t, 0))}</span>
-        <select aria-label="How far around" value=${reach} onChange=${(event) => this.setState({ reach: Number(event.target.value) })}>
-          ${REACHES.map((each) => html`<option key=${each} value=${each} selected=${each === reach}>± ${each} s</option>`)}</select></div>
-      <div class="scroll" role="list">${changes.map((change) => html`<${Change} key=${change.path} ...${change} />`)}
+    return html`<div class="networktables content column changes">
+      <div class="changes-head flex"><span>Changed around ${clock(Math.max(t, 0))}</span>
+        <${Select} aria-label="How far around" value=${reach} options=${REACHES.map((each) => [each, `± ${each} s`])} set=${(each) => this.setState({ reach: Number(each) })} /></div>
+      <div class="scroll fill" role="list">${changes.map((change) => html`<${Change} key=${change.path} ...${change} />`)}
         ${!changes.length && html`<p class="empty">Nothing has changed then. What changes rarely comes first here.</p>`}</div>
     </div>`;
   }
 }
 
 function Change({ path, t, before, after, count }) {
-  return html`<div class="nt-row change" role="listitem" title=${`${path}, ${count} changes in all`} draggable="true" onDragStart=${(event) => carryPath(event, path)} data-path=${path}>
+  return html`<div class="nt-row flex change" role="listitem" title=${`${path}, ${count} changes in all`} draggable="true" onDragStart=${(event) => carryPath(event, path)} data-path=${path}>
     <span class="row-label long-name"><bdi>${nameOf(path)}</bdi></span>
     <span class="faint">${valueText(before)} → ${valueText(after)}</span>
-    <span class="row-tools"><button class="tool" title="Plot this value" aria-label=${`Plot ${nameOf(path)}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button></span>
+    <span class="row-tools"><${PlotButton} name=${nameOf(path)} paths=${[path]} /></span>
     <button class="quiet when" title="Look at the moment of this change" onClick=${() => goTo(t)}>${clock(t)}</button></div>`;
 }

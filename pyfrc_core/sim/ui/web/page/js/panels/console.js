@@ -4,7 +4,7 @@ import { goTo } from "#js/input/moment_keys.js";
 import { model } from "#js/model.js";
 import { settings } from "#js/settings.js";
 import { SourceLink } from "#js/source.js";
-import { SearchBox } from "#js/text_box.js";
+import { SearchBox } from "#js/controls.js";
 import { Live, classes, createRef, html } from "#js/view.js";
 
 const LEVELS = [["info", "Output"], ["warning", "Warnings"], ["error", "Errors"], ["pyfrc", "pyfrc"]];
@@ -38,8 +38,8 @@ export class ConsolePanel extends Live {
     const until = model.past ? model.past.t + 1e-6 : Infinity;
     const lines = model.console.filter((line) => levels.has(line.level) && line.t <= until && (!wanted || line.text.toLowerCase().includes(wanted)));
     const visible = lines.slice(-shown);
-    return html`<div class="console">
-      <div class="panel-tools">
+    return html`<div class="console content column">
+      <div class="panel-tools flex">
         <${SearchBox} label="Search the output" text=${search} search=${this.search} />
         <div class="segments small" role="group" aria-label="Levels">
           ${LEVELS.map(([level, text]) => html`<button key=${level} aria-pressed=${levels.has(level)}
@@ -47,7 +47,7 @@ export class ConsolePanel extends Live {
             <small>${count(level)}</small></button>`)}
         </div>
       </div>
-      <div class="lines scroll" ref=${this.list} onScroll=${this.scrolled} tabindex="0" role="log" aria-label="Output of the robot">
+      <div class="lines fill scroll" ref=${this.list} onScroll=${this.scrolled} tabindex="0" role="log" aria-label="Output of the robot">
         ${model.dropped > 0 && html`<p class="faint">${model.dropped} lines were left out: the robot prints faster than anyone can read.</p>`}
         ${lines.length > visible.length && html`<button class="link" onClick=${() => this.setState({ shown: shown + MOST_SHOWN })}>Show earlier lines (${lines.length - visible.length})</button>`}
         ${visible.map((line) => html`<${Line} key=${line.n} line=${line} />`)}

@@ -46,7 +46,7 @@ export class DashboardPanel extends Live {
   render(_, { full }) {
     const { shown, problem } = dashboards;
     this.interval = dashboards.draft ? 0 : QUIET_INTERVAL;
-    return html`<div class=${classes({ dashboard: true, full })} ref=${this.element}>
+    return html`<div class=${classes({ dashboard: true, column: true, full })} ref=${this.element}>
       ${full ? html`<button class="leave-full quiet" title="Leave the full screen: Escape" aria-label="Leave the full screen" onClick=${this.leaveFull}><${Icon} name="close" /></button>` : this.tools(shown)}
       ${full && html`<${NotPresent} />`}
       ${problem && html`<p class="dashboard-problem" role="alert"><${Icon} name="warning" /><span>${problem}\n${this.remedy(shown)}</span></p>`}
@@ -58,7 +58,7 @@ export class DashboardPanel extends Live {
   tools(shown) {
     const { arranging } = this;
     const { readonly } = model;
-    return html`<div class="panel-tools">
+    return html`<div class="panel-tools flex">
       ${arranging ? html`<b class="dashboard-name">${dashboards.name}</b>` : html`<${Menu} label=${dashboards.name || "Dashboards"} title="Dashboards of this project" items=${this.items()} />`}
       <div class="spacer"></div>
       ${arranging
@@ -130,7 +130,7 @@ export class DashboardPanel extends Live {
     const { arranging } = this;
     const board = { arranging, chosen: dashboards.chosen, choose: this.choose, cell: this.cell, change: this.change, remove: this.remove };
     const style = { "--columns": shown.columns, "--rows": shown.rows };
-    return html`<div class=${classes({ grid: true, arranging })} ref=${this.grid} style=${style} onPointerDown=${this.leaveWidgets} onDragOver=${this.over} onDrop=${this.drop}>
+    return html`<div class=${classes({ grid: true, fill: true, arranging })} ref=${this.grid} style=${style} onPointerDown=${this.leaveWidgets} onDragOver=${this.over} onDrop=${this.drop}>
       ${shown.widgets.map((widget, index) => html`<${WidgetFrame} key=${index} widget=${widget} index=${index} board=${board} />`)}
       ${!shown.widgets.length && html`<p class="empty grid-empty">${arranging ? "Drag a value here from NetworkTables, or choose “Add widget”." : "This dashboard has no widgets. Choose “Arrange”."}</p>`}
     </div>`;
@@ -140,7 +140,7 @@ export class DashboardPanel extends Live {
     const box = (name, value) => html`<label>${name === "columns" ? "Columns" : "Rows"}
       <input type="number" min="1" max=${MOST_CELLS} value=${value} onKeyDown=${(event) => event.stopPropagation()}
         onChange=${(event) => dashboards.change({ [name]: Math.min(Math.max(Math.round(Number(event.target.value)) || 1, 1), MOST_CELLS) })} /></label>`;
-    return html`<div class="form">${box("columns", columns)}${box("rows", rows)}</div>`;
+    return html`<div class="form ">${box("columns", columns)}${box("rows", rows)}</div>`;
   }
 
   // -- widgets

@@ -1,8 +1,9 @@
 // One row of the devices: its label, its value drawn by kind, and for inputs the control that sets it.
 import { write } from "#js/connection.js";
+import { PlotButton, Switch } from "#js/controls.js";
 import { numberText, plain, valueText } from "#js/format.js";
 import { model } from "#js/model.js";
-import { addToPlot, carryPath } from "#js/plotting.js";
+import { carryPath } from "#js/plotting.js";
 import { ValueBox } from "#js/value_box.js";
 import { Component, Icon, classes, createRef, html } from "#js/view.js";
 
@@ -17,12 +18,12 @@ export class DeviceRow extends Component {
     const Kind = KINDS[row.kind] ?? KINDS.text;
     const label = row.label.trim();
     const name = named && row.heading ? `${row.heading} ${label}` : label;
-    return html`<div class=${classes({ row: true, [`kind-${row.kind}`]: true, indented: row.label.startsWith(" ") && !named })}
+    return html`<div class=${classes({ row: true, flex: true, [`kind-${row.kind}`]: true, indented: row.label.startsWith(" ") && !named })}
         title=${row.tooltip} draggable="true" onDragStart=${(event) => carryPath(event, path)} data-path=${path}>
       <span class="row-label">${name}</span>
       <${Kind} row=${row} label=${name} />
       <span class="row-tools">
-        <button class="tool" title="Plot this value" aria-label=${`Plot ${name}`} onClick=${() => row.paths.forEach((each) => addToPlot(each))}><${Icon} name="plus" /></button>
+        <${PlotButton} name=${name} paths=${row.paths} />
         <button class=${classes({ tool: true, on: pinned })} title=${pinned ? "Unpin" : "Pin to the top"} aria-label=${`Pin ${name}`}
           aria-pressed=${pinned} onClick=${pin}><${Icon} name="pin" /></button>
       </span>
@@ -68,7 +69,7 @@ export class Meter extends Painted {
   }
 
   render({ row }) {
-    return html`<span class="meter" ref=${this.element}>
+    return html`<span class="meter flex" ref=${this.element}>
       <span class=${row.low < 0 ? "bar centered" : "bar"}><i></i></span><span class="number"></span><span class="unit">${row.unit}</span></span>`;
   }
 }
@@ -145,14 +146,13 @@ class Text extends Painted {
   }
 }
 
-class Switch extends Painted {
+class Toggle extends Painted {
   paint(value) {
     this.element.current.checked = Boolean(value);
   }
 
   render({ row, label }) {
-    return html`<label class="switch"><input type="checkbox" role="switch" ref=${this.element} aria-label=${label} disabled=${!model.mayDrive}
-      onChange=${(event) => write({ [row.paths[0]]: event.target.checked })} /><i></i></label>`;
+    return html`<${Switch} elementRef=${this.element} label=${label} disabled=${!model.mayDrive} set=${(on) => write({ [row.paths[0]]: on })} />`;
   }
 }
 
@@ -169,7 +169,7 @@ class Slider extends Painted {
   }
 
   render({ row, label }) {
-    return html`<span class="slider" ref=${this.element}>
+    return html`<span class="slider flex" ref=${this.element}>
       <input type="range" min=${row.low} max=${row.high} step="any" aria-label=${label} disabled=${!model.mayDrive}
         onPointerDown=${() => (this.dragging = true)} onPointerUp=${() => (this.dragging = false)} onInput=${this.slide} />
       <${ValueBox} class="number" inputmode="decimal" path=${row.paths[0]} label=${`${label}, as a number`} disabled=${!model.mayDrive} />
@@ -184,5 +184,5 @@ class Slider extends Painted {
 
 const KINDS = {
   meter: Meter, lamp: Lamp, lamps: Lamps, relay: Relay, bars: Bars, leds: Leds, text: Text,
-  switch: Switch, slider: Slider, number: NumberBox,
+  switch: Toggle, slider: Slider, number: NumberBox,
 };

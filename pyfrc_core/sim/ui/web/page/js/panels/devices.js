@@ -1,11 +1,11 @@
 // Every motor and sensor: outputs as bars and lamps, inputs to set. Values are drawn without rendering the rows again.
+import { PlotButton, SearchBox } from "#js/controls.js";
 import { numberText, valueText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { motorsOf } from "#js/motors.js";
 import { DeviceRow, Meter, Painted } from "#js/panels/device_row.js";
-import { addToPlot, carryPath } from "#js/plotting.js";
+import { carryPath } from "#js/plotting.js";
 import { settings } from "#js/settings.js";
-import { SearchBox } from "#js/text_box.js";
 import { Icon, Live, classes, html } from "#js/view.js";
 
 const READINGS = ["current", "velocity", "temperature"]; // of a motor
@@ -27,9 +27,9 @@ export class DevicesPanel extends Live {
     const motors = motorsOf(model.panels).filter(({ name, device }) => words.every((word) => `motors ${name} ${device}`.toLowerCase().includes(word)));
     const isClosed = (title, rows) => !words.length && (closed[title] ?? rows.length > MANY);
     const toggle = (title, rows) => this.setState({ closed: { ...closed, [title]: !isClosed(title, rows) } });
-    return html`<div class="devices">
+    return html`<div class="devices content column">
       <${SearchBox} label="Search devices" text=${search} search=${this.search} />
-      <div class="scroll">
+      <div class="scroll fill">
         ${pinned.length > 0 && html`<${Group} title="Pinned" rows=${pinned} pins=${pins} />`}
         ${motors.length > 0 && html`<${Group} key="Motors" title="Motors" rows=${motors} closed=${isClosed("Motors", [])} toggle=${() => toggle("Motors", [])}
           content=${() => html`<${MotorTable} motors=${motors} />`} />`}
@@ -98,8 +98,7 @@ function MotorTable({ motors }) {
       <th scope="row" title=${motor.device}>${motor.name}</th>
       <${Cell} row=${motor.output} part=${Meter} />
       ${READINGS.map((name) => html`<${Cell} key=${name} row=${motor[name]} part=${Reading} />`)}
-      <td><button class="tool" title="Plot these values" aria-label=${`Plot ${motor.device}`}
-        onClick=${() => [motor.output, ...READINGS.map((name) => motor[name])].forEach((row) => addToPlot(row?.paths[0]))}><${Icon} name="plus" /></button></td>
+      <td><${PlotButton} title="Plot these values" name=${motor.device} paths=${[motor.output, ...READINGS.map((name) => motor[name])].map((row) => row?.paths[0])} /></td>
     </tr>`)}</tbody>
   </table>`;
 }

@@ -1,5 +1,5 @@
 // The field: the season's picture, the robot, its path, and what robot code publishes. The wheel zooms, dragging moves.
-import { font, sizeCanvas } from "#js/canvas.js";
+import { font } from "#js/canvas.js";
 import { command } from "#js/connection.js";
 import { Drawn } from "#js/drawn.js";
 import { numberText } from "#js/format.js";
@@ -94,13 +94,13 @@ export class FieldPanel extends Drawn {
     const choices = Object.entries(COORDINATES).map(([name, text]) => ({ text, checked: name === coordinates, act: () => settings.set("coordinates", name) }));
     layers.push({ separator: true }, ...choices);
     layers.push({ separator: true }, { text: "Turn the field round", checked: Boolean(this.view?.turned), act: this.turnRound });
-    return html`<div class="field">
-      <div class="field-canvas" tabindex="0" role="application" aria-label="Field. Arrow keys move the robot, with Shift they turn it"
+    return html`<div class="field column">
+      <div class="field-canvas fill" tabindex="0" role="application" aria-label="Field. Arrow keys move the robot, with Shift they turn it"
         onPointerDown=${this.begin} onPointerMove=${this.drag} onPointerUp=${this.end} onPointerCancel=${this.end}
         onDblClick=${this.whole} onContextMenu=${(event) => event.preventDefault()} onKeyDown=${this.key}>
         <canvas ref=${this.canvas}></canvas>
       </div>
-      ${!bare && html`<div class="field-line">
+      ${!bare && html`<div class="field-line flex">
         <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose.x)} ${pose.unit}</b><i>y</i><b>${numberText(pose.y)} ${pose.unit}</b><i class="long">heading</i><b>${numberText(pose.degrees, 1)}°</b>` : WITHOUT_POSE[model.hello.source?.kind] ?? ""}</span>
         <button class="quiet" title="Show the whole field: double click" aria-label="Show the whole field" onClick=${this.whole}><${Icon} name="fit" /></button>
         <${Menu} label="Show" title="What is drawn" items=${layers} />
@@ -124,11 +124,7 @@ export class FieldPanel extends Drawn {
     image.src = address;
   }
 
-  draw() {
-    const canvas = this.canvas.current;
-    const { width, height } = this.size ?? {};
-    if (!canvas || !width || !height) return;
-    const context = sizeCanvas(canvas, width, height);
+  paint(context, width, height) {
     const { view } = this;
     const { field } = model.hello;
     view.field = field;

@@ -1,7 +1,8 @@
 // The six joysticks: their gamepads, axes, buttons and POV.
 import { command, write } from "#js/connection.js";
+import { Select } from "#js/controls.js";
 import { numberText, plain } from "#js/format.js";
-import { assignedTo, gamepads, labelOf, nameOf } from "#js/input/gamepads.js";
+import { assignedTo, gamepads, labelOf, padName } from "#js/input/gamepads.js";
 import { model } from "#js/model.js";
 import { settings } from "#js/settings.js";
 import { Bound, Live, classes, createRef, html } from "#js/view.js";
@@ -21,14 +22,14 @@ export class JoysticksPanel extends Live {
     const axisNumbers = Object.keys(axes).map(Number);
     const { first } = model.hello.options.buttons;
     const buttonNumbers = [...new Set([...Array.from({ length: BUTTONS }, (_, index) => first + index), ...Object.keys(buttons).map(Number)])].sort((one, other) => one - other);
-    return html`<div class="joysticks">
+    return html`<div class="joysticks content column">
       <div class="segments small" role="tablist" aria-label="Joystick">
         ${[0, 1, 2, 3, 4, 5].map((number) => html`<button key=${number} role="tab" aria-selected=${number === stick}
           class=${classes({ chosen: number === stick, has: assignedTo(number) !== null })} onClick=${() => this.setState({ stick: number })}>${number}</button>`)}
       </div>
-      <div class="scroll" key=${stick}>
+      <div class="scroll fill" key=${stick}>
         ${model.isDriven && html`<${GamepadChoice} stick=${stick} plugged=${plugged} />`}
-        <div class="stick-row">
+        <div class="stick-row flex">
           <${StickPad} stick=${stick} x=${0} y=${1} label="Axes 0 and 1" />
           <${Pov} stick=${stick} />
         </div>
@@ -44,20 +45,21 @@ export class JoysticksPanel extends Live {
 function GamepadChoice({ stick, plugged }) {
   const pads = gamepads();
   const assigned = assignedTo(stick, pads);
-  const choose = (event) => {
+  const choose = (given) => {
     const { [stick]: _, ...others } = settings.get("gamepads");
-    settings.set("gamepads", event.target.value === "auto" ? others : { ...others, [stick]: event.target.value });
+    settings.set("gamepads", given === "auto" ? others : { ...others, [stick]: given });
   };
   const chosen = settings.get("gamepads")[stick] ?? "auto";
-  return html`<div class="gamepad">
+  const options = [
+    ["auto", assigned && chosen === "auto" ? padName(assigned) : "Automatic: no gamepad"],
+    ["none", "Keyboard and mouse only"],
+    ...pads.map((pad) => [labelOf(pad, pads), padName(pad)]),
+  ];
+  if (!options.some(([value]) => value === chosen)) options.push([chosen, `${chosen} (not connected)`]);
+  return html`<div class="gamepad flex">
     <label class="check"><input type="checkbox" checked=${plugged} disabled=${!model.mayDrive}
       onChange=${(event) => command("plug", { stick, plugged: event.target.checked })} />Plugged in</label>
-    <select aria-label=${`Gamepad of joystick ${stick}`} value=${chosen} onChange=${choose} disabled=${!model.mayDrive}>
-      <option value="auto" selected=${chosen === "auto"}>${assigned && chosen === "auto" ? nameOf(assigned) : "Automatic: no gamepad"}</option>
-      <option value="none" selected=${chosen === "none"}>Keyboard and mouse only</option>
-      ${pads.map((pad) => html`<option key=${labelOf(pad, pads)} value=${labelOf(pad, pads)} selected=${chosen === labelOf(pad, pads)}>${nameOf(pad)}</option>`)}
-      ${!["auto", "none", ...pads.map((pad) => labelOf(pad, pads))].includes(chosen) && html`<option value=${chosen} selected>${chosen} (not connected)</option>`}
-    </select></div>`;
+    <${Select} aria-label=${`Gamepad of joystick ${stick}`} value=${chosen} options=${options} set=${choose} disabled=${!model.mayDrive} /></div>`;
 }
 
 class Axis extends Bound {
@@ -75,7 +77,7 @@ class Axis extends Bound {
   }
 
   render({ stick, axis, label }) {
-    return html`<label class="axis" ref=${this.element}><span class="row-label">${label}</span><span class="slider">
+    return html`<label class="axis flex" ref=${this.element}><span class="row-label">${label}</span><span class="slider flex">
       <input type="range" min="-1" max="1" step="0.01" aria-label=${`Axis ${label}`} disabled=${!model.mayDrive}
         onInput=${(event) => write({ [axisTarget(stick, axis)]: Number(event.target.value) })}
         onDblClick=${() => write({ [axisTarget(stick, axis)]: 0 })} />

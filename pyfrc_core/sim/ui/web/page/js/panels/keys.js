@@ -1,4 +1,5 @@
 // The keys that drive: the chosen layout, and the person's own bindings.
+import { Select } from "#js/controls.js";
 import { bindings, keyName, takenBy } from "#js/input/keys.js";
 import { model } from "#js/model.js";
 import { settings } from "#js/settings.js";
@@ -27,9 +28,7 @@ export class KeysPanel extends Live {
     const own = new Set(added.map((each) => each.key));
     return html`<div class="keys scroll form">
       <label>Keys that drive
-        <select value=${layout.name} onChange=${(event) => change({ chosen: event.target.value })}>
-          ${keyboard.layouts.map((each) => html`<option key=${each.name} value=${each.name} selected=${each.name === layout.name}>${each.name}</option>`)}
-        </select></label>
+        <${Select} value=${layout.name} options=${keyboard.layouts.map(({ name }) => name)} set=${(chosen) => change({ chosen })} /></label>
       <p class="faint">${layout.help}</p>
       <table><thead><tr><th>Key</th><th>Does</th><th></th></tr></thead><tbody>
         ${Object.entries(axes).map(([key, moves]) => html`<tr key=${`axis ${key}`}><td><kbd>${NAMES[key] ?? key.toUpperCase()}</kbd></td>
@@ -40,10 +39,9 @@ export class KeysPanel extends Live {
           <td><${Remove} name=${key} /></td></tr>`)}
       </tbody></table>
       <fieldset ref=${this.fields} disabled=${!model.mayDrive}><legend>Add a key</legend>
-        <div class="binding">
+        <div class="binding flex">
           <input type="text" readonly value=${state.key ? (NAMES[state.key] ?? state.key.toUpperCase()) : ""} placeholder="Press a key" aria-label="Key" onKeyDown=${this.takeKey} />
-          <select aria-label="Kind" value=${state.kind} onChange=${(event) => this.setState({ kind: event.target.value, control: event.target.value === "button" ? first : 0 })}>
-            <option value="axis">axis</option><option value="button">button</option></select>
+          <${Select} aria-label="Kind" value=${state.kind} options=${["axis", "button"]} set=${(kind) => this.setState({ kind, control: kind === "button" ? first : 0 })} />
           <label>joystick <input type="number" required min="0" max="5" value=${state.stick} onInput=${(event) => this.setState({ stick: event.target.value })} /></label>
           <label>number <input type="number" required min=${state.kind === "axis" ? 0 : first} max=${state.kind === "axis" ? 11 : first + most - 1} value=${state.control} onInput=${(event) => this.setState({ control: event.target.value })} /></label>
           ${state.kind === "axis" && html`<label>by <input type="number" required min="-1" max="1" step="any" value=${state.by} onInput=${(event) => this.setState({ by: event.target.value })} /></label>`}

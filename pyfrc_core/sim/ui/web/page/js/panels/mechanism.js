@@ -1,5 +1,5 @@
 // The Mechanism2d drawings that robot code publishes.
-import { font, sizeCanvas } from "#js/canvas.js";
+import { font } from "#js/canvas.js";
 import { Drawn } from "#js/drawn.js";
 import { plain } from "#js/format.js";
 import { model } from "#js/model.js";
@@ -22,11 +22,7 @@ export class MechanismPanel extends Drawn {
       ${!this.found.length && html`<p class="empty">A Mechanism2d that the robot publishes with ${model.hello.options.dashboard.publishing} appears here.</p>`}</div>`;
   }
 
-  draw() {
-    const canvas = this.canvas.current;
-    const { width, height } = this.size ?? {};
-    if (!canvas || !width) return;
-    const context = sizeCanvas(canvas, width, height);
+  paint(context, width, height) {
     const { found } = this;
     const columns = Math.ceil(Math.sqrt(found.length)) || 1;
     const rows = Math.ceil(found.length / columns) || 1;

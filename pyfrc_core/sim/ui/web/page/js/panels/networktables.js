@@ -1,13 +1,13 @@
 // NetworkTables as a tree. Numbers, texts, switches and lists can be edited; any value can be plotted. Structs come as
 // their parts, which only robot code changes; the elements of a list are below it.
 import { write } from "#js/connection.js";
+import { PlotButton, SearchBox, Switch } from "#js/controls.js";
 import { putOnDashboard, takesTopics } from "#js/dashboard/adding.js";
 import { plain, valueText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { elementsOf } from "#js/parts.js";
-import { addToPlot, carryPath, carryTable } from "#js/plotting.js";
+import { carryPath, carryTable } from "#js/plotting.js";
 import { ValueBox } from "#js/value_box.js";
-import { SearchBox } from "#js/text_box.js";
 import { Bound, Icon, Live, classes, createRef, html } from "#js/view.js";
 
 const START = "nt:";
@@ -33,9 +33,9 @@ export class NetworkTablesPanel extends Live {
       }
     };
     visit(tree, 0);
-    return html`<div class="networktables">
+    return html`<div class="networktables content column">
       <${SearchBox} label="Search NetworkTables" text=${search} search=${this.search} />
-      <div class="scroll" role="tree">${rows}${!rows.length && html`<p class="empty">${search ? "No value is called that." : "The robot has published nothing yet."}</p>`}</div>
+      <div class="scroll fill" role="tree">${rows}${!rows.length && html`<p class="empty">${search ? "No value is called that." : "The robot has published nothing yet."}</p>`}</div>
     </div>`;
   }
 
@@ -85,7 +85,7 @@ function ToDashboard({ path, name }) {
 
 function Folder({ boards, node, depth, open, toggle }) {
   const type = model.shown.values.get(`${node.path}/.type`) ?? model.types[node.path]?.replace("struct:", "");
-  return html`<div class="nt-row folder" role="treeitem" aria-expanded=${open} draggable="true" onDragStart=${(event) => carryTable(event, node.path)} style=${{ paddingLeft: `${depth * 14}px` }}>
+  return html`<div class="nt-row flex folder" role="treeitem" aria-expanded=${open} draggable="true" onDragStart=${(event) => carryTable(event, node.path)} style=${{ paddingLeft: `${depth * 14}px` }}>
     <button class=${classes({ fold: true, closed: !open })} onClick=${toggle}><${Icon} name="chevron" /><span>${node.name}</span></button>
     ${typeof type === "string" && html`<span class="chip">${type}</span>`}
     ${boards && html`<span class="row-tools"><${ToDashboard} path=${node.path} name=${node.name} /></span>`}</div>`;
@@ -139,18 +139,17 @@ class Leaf extends Bound {
   render({ path, name, depth, open, toggle, boards }) {
     const kind = this.controlOf(this.value);
     this.kind = kind;
-    return html`<div class="nt-row" role="treeitem" ref=${this.element} aria-expanded=${toggle ? open : undefined} style=${{ paddingLeft: `${depth * 14 + (toggle ? 0 : 18)}px` }}
+    return html`<div class="nt-row flex" role="treeitem" ref=${this.element} aria-expanded=${toggle ? open : undefined} style=${{ paddingLeft: `${depth * 14 + (toggle ? 0 : 18)}px` }}
         title=${`${path} ${model.types[path] ?? ""}`} draggable="true" onDragStart=${(event) => carryPath(event, path)} data-path=${path}>
       ${toggle
         ? html`<button class=${classes({ fold: true, "row-label": true, closed: !open })} title="The elements of this list" onClick=${toggle}><${Icon} name="chevron" /><span>${name}</span></button>`
         : html`<span class="row-label">${name}</span>`}
       ${kind === "switch"
-        ? html`<label class="switch"><input type="checkbox" role="switch" class="nt-value" aria-label=${name} disabled=${!model.mayWrite}
-            onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label>`
+        ? html`<${Switch} className="nt-value" label=${name} disabled=${!model.mayWrite} set=${(on) => write({ [path]: on })} />`
         : kind === "none"
           ? html`<span class="nt-value faint"></span>`
           : html`<${ValueBox} class=${`nt-value ${kind}`} path=${path} label=${name} />`}
-      <span class="row-tools"><button class="tool to-plot" title="Plot this value" aria-label=${`Plot ${name}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button>
+      <span class="row-tools"><${PlotButton} name=${name} paths=${[path]} />
         ${boards && html`<${ToDashboard} path=${path} name=${name} />`}</span>
     </div>`;
   }

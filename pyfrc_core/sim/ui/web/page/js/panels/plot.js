@@ -3,7 +3,8 @@
 import { ElementSize, Picture } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
 import { ask } from "#js/connection.js";
-import { Computed, curveValue, isComputed, keyOf, numberIn, pathsOf, titleOf, unitOf } from "#js/curves.js";
+import { Computed, curveValue, isComputed, keyOf, pathsOf, titleOf, unitOf } from "#js/curves.js";
+import { numberIn } from "#js/format.js";
 import { gapsOf } from "#js/gaps.js";
 import { goTo } from "#js/input/moment_keys.js";
 import { model } from "#js/model.js";
@@ -91,8 +92,8 @@ export class PlotPanel extends Live {
     const moment = at ?? model.past?.t ?? model.t;
     const isNumber = ({ path }) => this.isNumber(path);
     const plot = { curves, x: this.config.x, isNumber, change: this.change, remove: this.remove, setX: this.setX, copy: (curve) => addCurve(id, { ...curve, hidden: undefined }) };
-    return html`<div class=${classes({ plot: true, over })} onDragOver=${this.over} onDragLeave=${() => this.setState({ over: false })} onDrop=${this.drop}>
-      ${!widget && html`<div class="panel-tools">
+    return html`<div class=${classes({ plot: true, content: true, column: true, over })} onDragOver=${this.over} onDragLeave=${() => this.setState({ over: false })} onDrop=${this.drop}>
+      ${!widget && html`<div class="panel-tools flex">
         <div class="segments small" role="group" aria-label="Time that is shown">
           ${SPANS.map(([span, text]) => html`<button key=${span} class=${classes({ chosen: !this.zoom && seconds === span })} aria-pressed=${!this.zoom && seconds === span}
             onClick=${() => this.follow(span)}>${text}</button>`)}
@@ -109,7 +110,7 @@ export class PlotPanel extends Live {
       </div>`}
       <${PlotLegend} plot=${plot} bare=${Boolean(widget)} isTable=${isTable && curves.length > 0} hasBranch=${compared.id !== null} isNumber=${isNumber}
         shownOf=${(curve) => this.valueOf(curve, moment)} statisticsOf=${(curve) => this.statisticsOf(curve)} />
-      <div class="plot-area" ref=${this.area}>
+      <div class="plot-area fill" ref=${this.area}>
         ${!curves.length && html`<p class="empty">Drag a value here, choose <b class="plus">+</b> beside it, or search with “Add value”.</p>`}
       </div>
       <canvas class="plot-bands" ref=${this.bands} onClick=${this.goToState}></canvas>

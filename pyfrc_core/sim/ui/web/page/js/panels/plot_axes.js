@@ -1,8 +1,8 @@
 // The limits of a plot's axes: automatic, or those that the person has typed or locked.
+import { TextBox } from "#js/controls.js";
 import { Dropdown } from "#js/popup.js";
 import { shownNumber, typedNumber } from "#js/format.js";
 import { model } from "#js/model.js";
-import { TextBox } from "#js/text_box.js";
 import { html } from "#js/view.js";
 
 const NAMES = { x: "X", left: "Left", right: "Right" };
@@ -19,9 +19,9 @@ export function PlotAxes({ axes, ranges, limits, setRange, hold, setHold }) {
 // What is typed into one box goes with the other limit of that moment, which may not be drawn yet.
 function Axis({ axis, locked, range, setRange }) {
   const [low, high] = range();
-  const typed = (make) => ({ target }) => {
+  const typed = (make) => (text) => {
     try {
-      const [from, to] = make(typedNumber(target.value));
+      const [from, to] = make(typedNumber(text));
       if (!(from < to)) throw new Error(`the axis ends at ${shownNumber(to)}, which is not above ${shownNumber(from)}`);
       setRange(axis, [from, to]);
     } catch (error) {
@@ -29,8 +29,8 @@ function Axis({ axis, locked, range, setRange }) {
     }
   };
   return html`<div class="axis-line"><span>${NAMES[axis]}</span>
-    <${TextBox} aria-label=${`${NAMES[axis]} axis from`} text=${short(low)} onChange=${typed((value) => [value, range()[1]])} />
-    <${TextBox} aria-label=${`${NAMES[axis]} axis to`} text=${short(high)} onChange=${typed((value) => [range()[0], value])} />
+    <${TextBox} aria-label=${`${NAMES[axis]} axis from`} text=${short(low)} set=${typed((value) => [value, range()[1]])} />
+    <${TextBox} aria-label=${`${NAMES[axis]} axis to`} text=${short(high)} set=${typed((value) => [range()[0], value])} />
     <label><input type="checkbox" aria-label=${`Lock the ${NAMES[axis].toLowerCase()} axis`} checked=${locked} onChange=${() => setRange(axis, locked ? null : range())} /> Lock</label></div>`;
 }
 

@@ -1,4 +1,5 @@
 // The curves of a plot: their names, values and settings, as a list or as a table with what is in view.
+import { Select } from "#js/controls.js";
 import { CURVE_COLORS, LINES, keyOf, swatchOf, titleOf, unitOf } from "#js/curves.js";
 import { shownNumber, valueText } from "#js/format.js";
 import { nameOf, unitOfPath } from "#js/names.js";
@@ -82,16 +83,16 @@ function CurveName({ curve }) {
 
 function Settings({ curve, plot, close }) {
   const change = (changes) => plot.change(curve, changes);
-  const chosen = (name) => (event) => change({ [name]: event.target.value || undefined });
+  const chosen = (name) => (value) => change({ [name]: value || undefined });
   const { path, color, math = "", minus = "", from = unitOfPath(path), to = from } = curve;
   const others = [...new Set(plot.curves.filter(plot.isNumber).map((each) => each.path))].filter((each) => each !== path || each === minus);
   const line = Math.floor(color / CURVE_COLORS) % LINES.length;
   const isX = plot.x === keyOf(curve);
   return html`<div class="curve-settings">
-    <label><span>Show</span><select aria-label="Show" value=${math} onChange=${chosen("math")}>${MATH.map(([value, text]) => html`<option key=${value} value=${value}>${text}</option>`)}</select></label>
-    <label><span>Minus</span><select aria-label="Minus" value=${minus} onChange=${chosen("minus")}><option value="">nothing</option>${others.map((each) => html`<option key=${each} value=${each}>${nameOf(each)}</option>`)}</select></label>
-    <label><span>Measured in</span><select aria-label="Measured in" value=${from} onChange=${(event) => change({ from: event.target.value, to: undefined })}><option value="">no unit</option>${optionsOf(UNITS, from)}</select></label>
-    <label><span>Shown in</span><select aria-label="Shown in" value=${to} disabled=${!unitsLike(from).length} onChange=${chosen("to")}>${optionsOf(unitsLike(from), to)}</select></label>
+    <label><span>Show</span><${Select} aria-label="Show" value=${math} options=${MATH} set=${chosen("math")} /></label>
+    <label><span>Minus</span><${Select} aria-label="Minus" value=${minus} options=${[["", "nothing"], ...others.map((each) => [each, nameOf(each)])]} set=${chosen("minus")} /></label>
+    <label><span>Measured in</span><${Select} aria-label="Measured in" value=${from} options=${[["", "no unit"], ...withChosen(UNITS, from)]} set=${(unit) => change({ from: unit, to: undefined })} /></label>
+    <label><span>Shown in</span><${Select} aria-label="Shown in" value=${to} options=${withChosen(unitsLike(from), to)} disabled=${!unitsLike(from).length} set=${chosen("to")} /></label>
     <div class="choices" role="group" aria-label="Colour">${Array.from({ length: CURVE_COLORS }, (_, number) => html`<button key=${number} aria-label=${`Colour ${number + 1}`}
       class=${classes({ chosen: color % CURVE_COLORS === number })} onClick=${() => change((now) => ({ color: now.color - (now.color % CURVE_COLORS) + number }))}><i class="swatch" style=${swatchOf({ color: number })}></i></button>`)}</div>
     <div class="choices" role="group" aria-label="Line">${LINE_NAMES.map((name, number) => html`<button key=${name} aria-label=${`Line: ${name}`} title=${name}
@@ -101,7 +102,6 @@ function Settings({ curve, plot, close }) {
   </div>`;
 }
 
-function optionsOf(units, chosen) {
-  const all = units.includes(chosen) || !chosen ? units : [chosen, ...units];
-  return all.map((each) => html`<option key=${each} value=${each}>${each}</option>`);
+function withChosen(units, chosen) {
+  return units.includes(chosen) || !chosen ? units : [chosen, ...units];
 }

@@ -1,5 +1,4 @@
 // A swerve drive from above: measured and wanted states of its modules, the chassis' speeds, the robot's heading.
-import { sizeCanvas } from "#js/canvas.js";
 import { Drawn } from "#js/drawn.js";
 import { arrow } from "#js/field/draw.js";
 import { swerveDrive, swerveNeeds } from "#js/field/swerve.js";
@@ -29,19 +28,15 @@ export class SwervePanel extends Drawn {
       ...(speeds ? [["vx", speeds.vx, "m/s"], ["vy", speeds.vy, "m/s"], ["ω", speeds.omega, "rad/s"]] : []),
       ...(heading === null ? [] : [["heading", heading * DEGREES, "°"]]),
     ];
-    return html`<div class="swerve">
-      <div class="swerve-canvas"><canvas ref=${this.canvas} role="img" aria-label="Swerve drive from above"></canvas></div>
+    return html`<div class="swerve column">
+      <div class="swerve-canvas fill"><canvas ref=${this.canvas} role="img" aria-label="Swerve drive from above"></canvas></div>
       ${isEmpty && html`<p class="empty">Publish an array of SwerveModuleState as a struct, or a table of the type “SwerveDrive”: it appears here.</p>`}
       ${!isEmpty && html`<div class="swerve-facts">${facts.map(([name, value, unit]) => html`<span key=${name}><i>${name}</i><b>${numberText(value, unit === "°" ? 1 : 2)}</b><small>${unit}</small></span>`)}
         ${measured && html`<span class="swerve-key"><i class="swatch measured"></i>measured</span>`}${wanted && html`<span class="swerve-key"><i class="swatch wanted"></i>wanted</span>`}</div>`}
     </div>`;
   }
 
-  draw() {
-    const canvas = this.canvas.current;
-    const { width, height } = this.size ?? {};
-    if (!canvas || !width || !height || !this.drive) return;
-    const context = sizeCanvas(canvas, width, height);
+  paint(context, width, height) {
     const { measured, wanted, speeds, heading } = this.drive;
     if (!measured && !wanted && !speeds) return;
     const half = Math.min(width, height) * 0.28; // of the robot

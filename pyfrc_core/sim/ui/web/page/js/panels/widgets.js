@@ -1,8 +1,8 @@
 // What robot code has put on the dashboard: choosers, PID controllers, commands, alerts and single values, as cards.
 import { write } from "#js/connection.js";
+import { PlotButton, Switch } from "#js/controls.js";
 import { plain, valueText } from "#js/format.js";
 import { model } from "#js/model.js";
-import { addToPlot } from "#js/plotting.js";
 import { typedTables } from "#js/tables.js";
 import { ValueBox } from "#js/value_box.js";
 import { Icon, Live, html } from "#js/view.js";
@@ -46,13 +46,13 @@ export function sendables(values) {
 
 export function Alerts({ folder, values }) {
   const lines = ALERTS.flatMap(([kind, name]) => (plain(values.get(`${folder.path}/${kind}`)) ?? []).map((text) => ({ name, text })));
-  return html`<div class="card"><h4>${folder.name}</h4>${lines.map(({ name, text }, index) => html`<p key=${index} class=${`alert ${name}`}><${Icon} name="warning" />${text}</p>`)}
+  return html`<div class="card"><h4>${folder.name}</h4>${lines.map(({ name, text }, index) => html`<p key=${index} class=${`alert flex ${name}`}><${Icon} name="warning" />${text}</p>`)}
     ${!lines.length && html`<p class="faint">No alerts.</p>`}</div>`;
 }
 
 export function CommandCard({ folder, values }) {
   const running = Boolean(values.get(`${folder.path}/running`));
-  return html`<div class="card command"><h4>${folder.name}</h4>
+  return html`<div class="card command flex"><h4>${folder.name}</h4>
     <button class=${running ? "stop" : "go"} disabled=${!model.mayWrite} onClick=${() => write({ [`${folder.path}/running`]: !running })}>${running ? "Cancel" : "Run"}</button></div>`;
 }
 
@@ -69,13 +69,13 @@ function ValueRow({ path, name, value }) {
   const number = typeof value === "number";
   const nudge = (by) => write({ [path]: Number((value + by).toPrecision(10)) });
   const step = number && value ? 10 ** Math.floor(Math.log10(Math.abs(value)) - 0.3) / (Math.abs(value) >= 1 ? 10 : 1) : 0.1;
-  return html`<div class="row"><span class="row-label">${name}</span>
+  return html`<div class="row flex"><span class="row-label">${name}</span>
     ${typeof value === "boolean"
-      ? html`<label class="switch"><input type="checkbox" role="switch" aria-label=${name} checked=${value} disabled=${!model.mayWrite} onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label>`
+      ? html`<${Switch} label=${name} on=${value} disabled=${!model.mayWrite} set=${(on) => write({ [path]: on })} />`
       : number || typeof value === "string"
         ? html`<span class="number-box">${number && html`<button class="tool always" aria-label=${`Less ${name}`} disabled=${!model.mayWrite} onClick=${() => nudge(-step)}>−</button>`}
             <${ValueBox} class=${number ? "number" : ""} path=${path} label=${name} />
             ${number && html`<button class="tool always" aria-label=${`More ${name}`} disabled=${!model.mayWrite} onClick=${() => nudge(step)}>+</button>`}</span>`
         : html`<span class="faint">${valueText(value)}</span>`}
-    <span class="row-tools"><button class="tool" aria-label=${`Plot ${name}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button></span></div>`;
+    <span class="row-tools"><${PlotButton} name=${name} paths=${[path]} /></span></div>`;
 }
