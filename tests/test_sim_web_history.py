@@ -218,3 +218,5 @@ def test_marks_forget_what_another_run_leaves_and_keep_the_persons_own() -> None
     marks.look_at_buttons(1.1, "joysticks[2].buttons", (False, False, False))
     marks.look_at_buttons(1.2, "joysticks[2].buttons", (False, True, False))
     assert marks.all()[-1].text == "joystick 2, button 1"
+    marks.add(1.23456, "own", "here")
+    assert marks.all()[-1].plain() == {"n": 3003, "t": 1.235, "kind": "own", "text": "here"}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
     CHOOSER,
-    HOSTILE,
     Seen,
     missing_browser,
     page_of,
@@ -13,7 +12,6 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
     shared_browser,
     shared_server,
 )
-from playwright.sync_api import expect
 from skips import requires
 
 pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
@@ -176,41 +174,6 @@ def test_devices_are_found_set_and_pinned(person: Seen) -> None:
     page.locator(".group h3", has_text="Pinned").wait_for()
 
 
-def test_networktables_are_edited_live(person: Seen) -> None:
-    page = person.page
-    person.tab("NetworkTables").click()
-    box = person.row("nt:/SmartDashboard/kP").locator("input")
-    person.set_number(box, "1.25")
-    page.wait_for_function(
-        "() => document.querySelector(\"[data-path='nt:/SmartDashboard/doubled'] input\").value === '2.5'"
-    )
-    box.click()
-    box.fill("many")
-    box.press("Enter")
-    page.locator("[data-path='nt:/SmartDashboard/kP'] input.wrong").wait_for()
-    box.press("Escape")
-    assert box.input_value() == "1.25"
-    flag = person.row("nt:/SmartDashboard/flag").locator("input")
-    flag.check()
-    page.wait_for_function("() => document.querySelector(\"[data-path='nt:/SmartDashboard/flag'] input\").checked")
-    page.get_by_label("Search NetworkTables").fill("pivot angle")
-    page.locator("[data-path='nt:/SmartDashboard/Arm/pivot/arm/angle']").wait_for()
-
-
-def test_gains_are_changed_on_the_dashboard(person: Seen) -> None:
-    page = person.page
-    person.choose("Layout", "Tuning")
-    box = page.locator(".card", has_text="PIDController").get_by_label("p", exact=True)
-    person.shows(box, "2")
-    person.set_number(box, "")  # no number: nothing is written
-    person.set_number(box, "three")
-    person.set_number(box, "3,5")
-    target = "nt:/SmartDashboard/Turn/p"
-    person.until(lambda: any(target in step.writes for step in person.simulation.script().steps))
-    written = [step.writes[target] for step in person.simulation.script().steps if target in step.writes]
-    assert written == [3.5]
-
-
 def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> None:
     found = person.page.evaluate(
         """async () => {
@@ -245,20 +208,6 @@ def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> 
     assert found["swerve"] == pytest.approx({"speed": 1.0, "angle": 0.7})
     assert found["mechanism"] == ["Arm"]
     assert found["alike"] == ["Elevator/Drawing", "Arm/Drawing"]
-
-
-def test_nothing_of_the_robot_is_ever_html(person: Seen) -> None:
-    page = person.page
-    page.locator(".line-text", has_text=HOSTILE).first.wait_for()
-    expect(page.get_by_label(CHOOSER).first.locator("option")).to_have_text([HOSTILE, "Forward", "Nothing"])
-    person.tab("NetworkTables").click()
-    person.shows(person.row("nt:/SmartDashboard/text").locator("input"), HOSTILE)
-    person.choose("Layout", "Tuning")
-    page.locator(".alert", has_text="the battery is low").wait_for()
-    person.page.keyboard.press("Control+e")
-    person.until(lambda: person.simulation.snapshot.enabled)
-    assert page.locator("#app script, #app b:text-is('bold'), #app label img, #app .line-text > *").count() == 0
-    assert "broken" not in page.title()
 
 
 def test_joysticks_by_mouse(person: Seen) -> None:

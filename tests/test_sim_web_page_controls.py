@@ -292,45 +292,6 @@ def test_the_field_is_moved_zoomed_and_turned_round(person: Seen) -> None:
     person.until(lambda: person.simulation.snapshot.scene.robot.y == pytest.approx(robot.y - 0.25))
 
 
-def test_the_past_by_keys_buttons_and_the_console(person: Seen) -> None:
-    page = person.page
-    person.button("Enable").click()
-    person.until(lambda: person.simulation.snapshot.time > 2.5)
-    person.pause()
-    timeline = page.get_by_role("slider", name="Timeline")
-    clock = page.locator(".clock")
-    timeline.focus()
-    page.keyboard.press("Home")
-    expect(clock).to_have_text("0:00.00")
-    page.keyboard.press("Shift+ArrowRight")
-    expect(clock).to_have_text("0:01.00")
-    page.keyboard.press("PageUp")
-    expect(clock).to_have_text("0:02.00")
-    page.keyboard.press("PageDown")
-    expect(clock).to_have_text("0:01.00")
-    page.keyboard.press("ArrowLeft")
-    expect(clock).to_have_text("0:00.98")
-    page.get_by_label("Look at the packet before").click()
-    expect(clock).to_have_text("0:00.96")
-    person.button("Step").click()
-    expect(clock).to_have_text("0:00.98")
-    page.keyboard.press("Tab")
-    timeline.focus()
-    page.keyboard.press("Escape")
-    page.locator(".live-now").wait_for()
-    page.get_by_label("Look at the packet before").click()
-    person.button("Live").click()
-    page.locator(".live-now").wait_for()
-    # 200 lines were printed, 150 of which are shown.
-    person.tab("Console").click()
-    lines = page.locator(".line")
-    expect(lines).to_have_count(150)
-    page.get_by_text("Show earlier lines").click()
-    lines.filter(has_text="line 0").first.wait_for()
-    lines.first.get_by_title("Look at this moment").click()
-    expect(clock).to_have_text("0:00.00")
-
-
 def test_a_lost_driver_station_and_a_restart_after_a_failure(person: Seen) -> None:
     page = person.page
     person.choose("Restart, save, end", "Disconnect the driver station")

@@ -8,19 +8,6 @@ from browser_pages import ROBOT, Seen, page_of, person_at_page, shared_browser, 
 from web_pages import served
 
 
-def test_places_are_written_as_robot_code_has_them(person: Seen) -> None:
-    page = person.page
-    page.locator(".pose b", has_text="10.00 ft").wait_for()
-    person.choose("What is drawn", "Metres, blue corner")
-    page.locator(".pose b", has_text="3.05 m").wait_for()
-    y = person.simulation.snapshot.scene.field.height - 12
-    page.locator(".pose b", has_text=f"{y * 0.3048:.2f} m").wait_for()
-    page.reload()
-    page.locator(".pose b", has_text="3.05 m").wait_for()
-    person.choose("What is drawn", "Feet, y downwards, clockwise")
-    page.locator(".pose b", has_text="12.00 ft").wait_for()
-
-
 def test_the_project_says_how_places_are_written(browser: Any, make_shared_project: Any) -> None:
     config = ROBOT["sim/config.json"].replace('"robot":', '"field": {"coordinates": "alliance"}, "robot":')
     with (

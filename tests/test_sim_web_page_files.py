@@ -8,7 +8,7 @@ import re
 
 import pytest
 
-from pyfrc_core.sim.ui.web.single_file import PAGE
+from pyfrc_core.sim.ui.web.single_file import PAGE, data_url
 
 pytestmark = pytest.mark.bare
 
@@ -60,3 +60,9 @@ def test_the_page_needs_no_network_no_build_and_makes_no_html_of_texts() -> None
                 for each in re.findall(r"\w+", names):
                     exported = rf"^export (?:async )?(?:function\*?|class|const) {each}\b|^export \{{.*\b{each}\b"
                     assert re.search(exported, other.read_text("utf-8"), re.MULTILINE), (file, name, each)
+
+
+def test_a_file_becomes_an_address_of_its_kind(tmp_path) -> None:
+    for name, kind in (("field.png", "image/png"), ("main.js", "text/javascript"), ("font.woff2", "font/woff2")):
+        (tmp_path / name).write_bytes(b"abc")
+        assert data_url(tmp_path / name) == f"data:{kind};base64,YWJj"

@@ -1,12 +1,9 @@
-"""The emergency stop and the robot's state are in sight in windows of any size, in each layout, dark and light."""
+"""The emergency stop and the robot's state are in sight in windows of any size, in each layout."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import pytest
-from browser_pages import Seen, page_of, shared_browser, shared_server  # noqa: F401 - `browser`, `server`
+from browser_pages import Seen, person_at_page, shared_browser, shared_server  # noqa: F401 - `person`, `browser`, `server`
 
 LAYOUTS = ["Driving", "Tablet", "Tuning", "Dashboard"]
 #: Also those of 1366 by 768 at 150 %, and of 1280 by 800 at 133 %.
@@ -41,15 +38,8 @@ CROWDED = """async () => {
 }"""
 
 
-@pytest.fixture(name="person")
-def person_with_a_theme(browser: Any, server: Any, theme: str) -> Iterator[Seen]:
-    with page_of(browser, server, color_scheme=theme) as person:
-        yield person
-
-
 @pytest.mark.parametrize("layout", LAYOUTS)
-@pytest.mark.parametrize("theme", ["light", "dark"])
-def test_the_emergency_stop_is_in_sight_in_each_window(layout: str, theme: str, person: Seen) -> None:
+def test_the_emergency_stop_is_in_sight_in_each_window(layout: str, person: Seen) -> None:
     person.choose("Layout", layout)
     person.button("Practice").click()
     person.state("Autonomous enabled")

@@ -141,27 +141,6 @@ def test_curves_have_no_holes_when_they_are_added_or_a_run_goes_on(person: Seen)
     same_series(person, "sim.pose[0]")
 
 
-def test_looking_back_shows_the_past_everywhere_and_changes_nothing(person: Seen) -> None:
-    page = person.page
-    drive(person)
-    end = person.simulation.snapshot.time
-    x = person.simulation.snapshot.scene.robot.x
-    timeline = page.get_by_role("slider", name="Timeline")
-    timeline.focus()
-    page.keyboard.press("Home")
-    page.locator(".clock", has_text="0:00.00").wait_for()
-    page.locator(".state em", has_text="past").wait_for()
-    page.locator(".state.disabled").wait_for()
-    page.locator(".pose b", has_text="10.00 ft").wait_for()
-    for _ in range(3):
-        page.keyboard.press("ArrowRight")
-    page.locator(".clock", has_text="0:00.06").wait_for()
-    assert person.simulation.snapshot.time == end
-    person.button("Live").click()
-    page.locator(".pose b", has_text=f"{x:.2f} ft").wait_for()
-    page.locator(".state em").wait_for(state="detached")
-
-
 def test_marks_and_moments_are_found_on_the_timeline(person: Seen) -> None:
     page = person.page
     drive(person)

@@ -7,8 +7,6 @@ from typing import Any
 
 import pytest
 from browser_pages import (  # noqa: F401 - `person`, `browser`
-    INJECTED,
-    REFUSED,
     Seen,
     missing_browser,
     person_at_page,
@@ -53,22 +51,3 @@ def test_a_file_that_is_there_is_replaced_after_a_question(replaces: bool, perso
     if replaces:
         person.page.get_by_text("Saved drive.jsonl").wait_for()
     assert (file.read_text() == "mine") is not replaces
-
-
-def test_a_flood_of_prints_leaves_the_warnings(person: Seen) -> None:
-    person.button("Enable").click()
-    person.state("Teleoperated")
-    person.simulation.set_button(0, 9, True)  # three thousand lines in each packet
-    person.tab("Console").first.click()
-    person.page.get_by_text("lines were left out").wait_for()
-    person.simulation.set_button(0, 9, False)
-    person.page.get_by_role("button", name="Output").click()  # without plain output
-    person.page.get_by_text("Warning: this is a warning").first.wait_for()
-
-
-def test_a_driver_and_a_viewer_run_the_pages_own_scripts_only(person: Seen) -> None:
-    with person.page.context.new_page() as viewing:
-        Seen(viewing, person.server).open(person.server.viewing_address)
-        for page in (person.page, viewing):
-            assert page.evaluate(INJECTED) == REFUSED
-    person.wrong.clear()  # the console has a line for each

@@ -25,6 +25,7 @@ if missing_tkinter():  # some imports below need it
 from pyfrc_core.project import Project
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.ui.choose import FRONT_ENDS
+from pyfrc_core.sim.ui.tk import theme
 from pyfrc_core.sim.ui.tk.window import Window
 
 if TYPE_CHECKING:
@@ -351,6 +352,8 @@ def test_devices_are_shown_and_set(user: User) -> None:
     assert user.row("2  Arm").kind == "meter"
     user.click_row("3  Limit")
     user.until(lambda: user.snapshot.values["dio[4].value"] is False)
+    lamp = next(item for item in devices.items if item.row.paths == ("dio[4].value",))
+    user.until(lambda: devices.canvas.itemcget(lamp._lamp, "fill") == theme.LAMP_OFF)
     user.until(lambda: user.snapshot.values["custom.Arm"] == "down")
     user.click_row("Encoder 0")
     user.until(lambda: user.window.root.focus_get().winfo_class() == "Entry")
@@ -391,6 +394,7 @@ def test_devices_are_shown_and_set(user: User) -> None:
 def test_the_field_and_what_robot_code_draws(user: User) -> None:
     field = user.window.field
     canvas, start = field.canvas, user.snapshot.scene.robot
+    assert canvas.winfo_height() > 2 * user.window.console.text.winfo_height()
     assert start is not None
     user.press("ctrl+e")
     user.until(lambda: canvas.find_withtag("drawing"))

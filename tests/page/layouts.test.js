@@ -5,7 +5,6 @@ import "./browser.js";
 import { PRESETS, layoutTitle, offeredLayouts, tabs } from "#js/layout/presets.js";
 import { settings } from "#js/settings.js";
 
-Object.assign(globalThis, { sessionStorage: { getItem: () => null, setItem() {} } });
 const FOUR = ["driving", "tablet", "tuning", "dashboard"];
 
 test("what is driven has four layouts, and what is looked at one more, its own", () => {

@@ -1,28 +1,13 @@
 // The timeline: moments as places, marks near the pointer, keys, and a past that is forgotten.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { drawFrame } from "./browser.js";
+import { drawFrame, serve } from "./browser.js";
 
 const { model } = await import("#js/model.js");
 const { Timeline } = await import("#js/timeline.js");
 const { connect } = await import("#js/connection.js");
 
-// A server that answers with the time as a value.
-class Server {
-  static OPEN = 1;
-  readyState = 1;
-
-  constructor() {
-    queueMicrotask(() => this.onopen());
-  }
-
-  send(text) {
-    const { id, t } = JSON.parse(text);
-    queueMicrotask(() => this.onmessage({ data: JSON.stringify({ type: "answer", id, t, values: { t } }) }));
-  }
-}
-globalThis.WebSocket = Server;
-globalThis.setInterval = () => 0; // the connection's ticks
+serve();
 connect(() => {}, () => {});
 
 let timeline;

@@ -93,7 +93,7 @@ class Model {
   // Have the server send the values whose paths begin with one of these, as long as `owner` needs them; [] ends it. What is
   // bound comes in any case, and each value when it is new.
   need(owner, beginnings) {
-    if (beginnings.join() === (this.#needed.get(owner) ?? []).join()) return;
+    if (JSON.stringify(beginnings) === JSON.stringify(this.#needed.get(owner) ?? [])) return;
     if (beginnings.length) this.#needed.set(owner, beginnings);
     else this.#needed.delete(owner);
     this.announce("needs");

@@ -16,12 +16,12 @@ export class PlotPicker extends Popup {
   search = (search) => this.setState({ search });
 
   componentWillUnmount() {
+    super.componentWillUnmount();
     model.need(this, []);
   }
 
-  componentDidUpdate(props, before) {
+  componentDidUpdate() {
     model.need(this, this.state.open ? [""] : []);
-    super.componentDidUpdate(props, before);
   }
 
   opened(list) {

@@ -38,13 +38,22 @@ export class Popup extends Component {
   // When it is closed, and not before: the browser has given the keyboard back then.
   end = (event) => event.newState === "closed" && this.setState({ open: false });
 
-  // Its content is there before the browser shows it, which it does before the next frame.
-  componentDidUpdate(_, before) {
-    if (this.state.open) requestAnimationFrame(() => this.#place(!before.open));
+  // Its size is known when the browser shows it, before it is painted, and changes with its content.
+  #sizes = new ResizeObserver(() => this.#place());
+  #isPlaced = false;
+
+  componentDidMount() {
+    this.#sizes.observe(this.popover);
   }
 
-  #place(isNew) {
-    if (!this.element.current || !this.popover.matches(":popover-open")) return;
+  componentWillUnmount() {
+    this.#sizes.disconnect();
+  }
+
+  #place() {
+    const isNew = !this.#isPlaced;
+    this.#isPlaced = this.popover.matches(":popover-open");
+    if (!this.#isPlaced) return;
     placeBeside(this.popover, this.element.current);
     if (isNew) this.opened(this.popover);
   }
@@ -98,7 +107,8 @@ export class Dropdown extends Popup {
   render({ label, title, name, className = "quiet", content }, { open }) {
     return html`<div class="menu dropdown" ref=${this.element}>
       <button class=${className} aria-expanded=${open} aria-label=${name} title=${title} popovertarget=${this.id}>${label}</button>
-      <div class="menu-list settings-box" role="group" aria-label=${title} ...${this.list}>${open && content(this.close)}</div>
+      <div class="menu-list" ...${this.list}>
+        ${open && html`<div class="settings-box" role="group" aria-label=${title}>${content(this.close)}</div>`}</div>
     </div>`;
   }
 }
