@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import hashlib
 import json
 import re
@@ -63,6 +64,7 @@ def test_the_page_needs_no_network_no_build_and_makes_no_html_of_texts() -> None
 
 
 def test_a_file_becomes_an_address_of_its_kind(tmp_path) -> None:
-    for name, kind in (("field.png", "image/png"), ("main.js", "text/javascript"), ("font.woff2", "font/woff2")):
-        (tmp_path / name).write_bytes(b"abc")
-        assert data_url(tmp_path / name) == f"data:{kind};base64,YWJj"
+    picture = b"\x89PNG\r\n\x1a\n"
+    for name, content, kind in (("field.png", picture, "image/png"), ("main.js", b"abc", "text/javascript")):
+        (tmp_path / name).write_bytes(content)
+        assert data_url(tmp_path / name) == f"data:{kind};base64,{base64.b64encode(content).decode()}"
