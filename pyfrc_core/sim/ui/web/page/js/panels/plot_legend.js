@@ -88,7 +88,7 @@ function Settings({ curve, plot, close }) {
   const others = [...new Set(plot.curves.filter(plot.isNumber).map((each) => each.path))].filter((each) => each !== path || each === minus);
   const line = Math.floor(color / CURVE_COLORS) % LINES.length;
   const isX = plot.x === keyOf(curve);
-  return html`<div class="curve-settings">
+  return html`<div class="form">
     <label><span>Show</span><${Select} aria-label="Show" value=${math} options=${MATH} set=${chosen("math")} /></label>
     <label><span>Minus</span><${Select} aria-label="Minus" value=${minus} options=${[["", "nothing"], ...others.map((each) => [each, nameOf(each)])]} set=${chosen("minus")} /></label>
     <label><span>Measured in</span><${Select} aria-label="Measured in" value=${from} options=${[["", "no unit"], ...withChosen(UNITS, from)]} set=${(unit) => change({ from: unit, to: undefined })} /></label>
