@@ -113,6 +113,7 @@ def test_a_lost_connection_is_a_mode_and_history_goes_on_after_it() -> None:
     robot = Robot()
     robot.connect(TYPE, Received(WORD, "int", 33, ON - 1), number("/x", 1.0, ON - 1))
     robot.take(number("/x", 2.0, ON + 3_000_000))
+    robot.take(clock_us=ON + 4_000_000)
     robot.runs.lose()
     # Between the two, the robot has set x at 5 s, and y for the first time.
     again = ON + 8_000_000
@@ -120,7 +121,7 @@ def test_a_lost_connection_is_a_mode_and_history_goes_on_after_it() -> None:
         TYPE, number("/x", 3.0, ON + 5_000_000), number("/y", 1.0, ON + 6_000_000),
         Received(WORD, "int", 33, ON - 1), number("/x", 4.0, again + 100_000), clock_us=again,
     )  # fmt: skip
-    assert robot.changes(MODE) == [(0.0, "teleop"), (3.0, NO_CONNECTION), (8.0, "teleop")]
+    assert robot.changes(MODE) == [(0.0, "teleop"), (4.0, NO_CONNECTION), (8.0, "teleop")]
     assert robot.changes("nt:/x") == [(0.0, 1.0), (3.0, 2.0), (5.0, 3.0), (8.1, 4.0)]
     assert robot.changes("nt:/y") == [(6.0, 1.0)]
     assert sum(isinstance(each, RunBegan) for each in robot.read) == 1

@@ -208,6 +208,12 @@ def test_no_difference_is_said_only_where_most_was_compared(case: str, tmp_path:
     ]
 
 
+def test_eight_names_are_named_and_then_how_many_more(tmp_path: Path) -> None:
+    for names, rest in (("abcdefgh", ""), ("abcdefghi", " and 1 more (-v names all)")):
+        said = report(tmp_path, a_run(topics("x", *names), {}), a_run(topics("x"), {}, LOG))
+        assert said[-1] == f"here only: {', '.join(f'{name} (0:01.00)' for name in names[:8])}{rest}"
+
+
 def test_what_is_gone_before_the_log_has_it_is_not_compared(tmp_path: Path) -> None:
     log = a_run(topics("a") | {"nt:/b": [(0.1, 1.0), (20.0, 1.0)]}, {}, LOG)
     here = a_run(topics("a"), {})

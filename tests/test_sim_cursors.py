@@ -170,14 +170,3 @@ def test_consumers_learn_that_time_was_turned_back(make_project) -> None:
     assert times(late) == [time for time in given_up if time <= 1] + after
     assert isinstance(again[0], RunBegan)
     assert (again[0].number, again[0].time) == (3, 0.0)
-
-
-def test_a_run_that_never_came_up_is_passed_over(make_project) -> None:
-    """Nothing is waited for that will not come: the robot was restarted before it was there."""
-    made = make_project(FILES)
-    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
-        cursor = simulation.change_cursor()
-        simulation.restart()
-        settle(simulation)
-        numbers = [event.number for event in cursor.read() if isinstance(event, RunBegan)]
-        assert numbers[-1] == simulation.status.starts

@@ -86,30 +86,6 @@ def test_memory_grows_little_with_time(make_project, tmp_path: Path, monkeypatch
     assert "The trace equals the recorded one." in replayed.stdout, replayed.output
 
 
-def test_what_was_told_is_read_back(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(history, "_BLOCK", 4)
-    made = make_project(FILES)
-    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
-        simulation.choose_mode("teleop")
-        simulation.enable()
-        for number in range(40):
-            simulation.write({"joysticks[0].axes[1]": number / 100})
-            run(simulation, 0.1)
-        whole = simulation.script()
-        simulation.rewind(2)
-        settle(simulation)
-        half = simulation.script()
-        simulation.write({"joysticks[0].axes[1]": 1.0})
-        run(simulation, 0.5)
-        other = simulation.script()
-        assert simulation.recordings == (whole,)
-    axes = [value for step in whole.steps for path, value in step.writes.items() if path == "joysticks[0].axes[1]"]
-    assert axes == [number / 100 for number in range(1, 40)]
-    assert half.steps == tuple(step for step in whole.steps if step.at_us <= 2_000_000)
-    assert other.steps[: len(half.steps)] == half.steps
-    assert other.steps[-1].writes["joysticks[0].axes[1]"] == 1
-
-
 def test_a_long_trail_is_thinned_out(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(snapshot_builder, "_RECENT_POINTS", 64)
     monkeypatch.setattr(snapshot_builder, "_OLDER_POINTS", 128)

@@ -219,6 +219,30 @@ def test_a_wrong_joystick_value_is_refused_while_the_robot_is_disabled(play: Pla
     assert (seen.last.mode, seen.last.station.sticks) == ("teleop", {})
 
 
+def test_all_values_are_sent_only_while_time_stands(play: Play, world: World) -> None:
+    world._arrived += [commands.Resume(packets=1), commands.Write({"fpga_button": True})]
+    play(commands.Write({"fpga_button": False}), job=PAUSED)
+    assert [(each.time_us, each.base is not None) for each in world.updates] == [
+        (0, True),
+        (20_000, False),
+        (20_000, True),
+    ]
+
+
+def test_what_a_replay_does_in_networktables_is_known(play: Play) -> None:
+    values = iter(range(99))
+    seen = play(
+        commands.Resume(packets=1),
+        periodic=lambda motor: wpilib.SmartDashboard.putNumber("turn", next(values)),
+        job={**PAUSED, "forward_to_us": 100_000},
+        network_values=True,
+    )
+    first, *others = seen.updates
+    assert first.network_base is not None
+    assert (first.network_base["nt:/SmartDashboard/turn"], first.network_changes) == (4, ())
+    assert [change.values["nt:/SmartDashboard/turn"] for each in others for change in each.network_changes] == [5]
+
+
 def test_a_replay_is_reported_only_where_code_has_changed(play: Play, world: World) -> None:
     inputs = InputScript((Step(20_000, {"mode": "teleop"}), Step(40_000, {"fpga_button": True})), 100_000)
 
