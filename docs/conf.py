@@ -49,6 +49,7 @@ html_show_sphinx = False
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_js_files = ["copy.js"]
+html_search_scorer = str(Path(__file__).with_name("scorer.js"))
 
 
 #: `pyfrc` re-exports names: the comments of these modules' constants are in the modules that define them.

@@ -77,3 +77,12 @@ def test_a_test_reads_each_page_with_commands_or_examples() -> None:
     assert [page for page in with_code if page not in tests] == []
     indented = [page for page, text in PAGES.items() if re.search("^ +```(?:console|python)$", text, re.MULTILINE)]
     assert indented == [], "the tests do not find these"
+
+
+def test_names_are_spelled_as_their_owners_do() -> None:
+    names = "roboRIO SystemCore WPILib NetworkTables PathPlanner PhotonVision AdvantageScope Shuffleboard navX CANcoder"
+    for page, text in PAGES.items():
+        prose = re.sub(r"^```.*?^```|`[^`\n]*`|\]\([^)]*\)", "", text, flags=re.MULTILINE | re.DOTALL)
+        for name in names.split():
+            found = set(re.findall(rf"\b{name}\b(?!-)", prose, re.IGNORECASE)) - {name, name.lower()}
+            assert not found, (page, found)
