@@ -23,7 +23,7 @@ ROOT = Path(__file__).parents[1]
 OLD = "2026.0.3"
 PAGE = (ROOT / "docs/how_to/install.md").read_text("utf-8")
 #: A line that has pip install something, up to what ends a command in prose, tables and code.
-INSTALLS = re.compile(r"pip install ([^`\n(|&;]+)")
+INSTALLS = re.compile(r"pip install ([^`'\n(|&;]+)")
 PYFRC = re.compile(r"""(?<![/\\])["']?pyfrc\b(?!-|/)[^"'\s;&]*["']?""")
 
 
