@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from zipfile import ZipFile
 
 import paramiko
 import pytest
@@ -27,6 +28,7 @@ from pyfrc_core.deploy.host_keys import HostKey
 from pyfrc_core.deploy.installing import Environment
 from pyfrc_core.deploy.local_checks import DeployOptions, ImportCheck, prepare
 from pyfrc_core.deploy.login import Credentials, log_in
+from pyfrc_core.deploy.manifest import Entry
 from pyfrc_core.deploy.progress import DeployProgress, JsonProgress, Phase, Questions, UserInterface, ask_to_continue
 from pyfrc_core.deploy.robot_checks import carry_out
 from pyfrc_core.deploy.session import _confirm, _deployed, _plan_as_text, _replace_program, _upload
@@ -193,9 +195,19 @@ def test_the_projects_tests_are_run_with_its_options(
         return passed
 
     monkeypatch.setattr(local_checks, "_run", run)
-    project = find_project(made.path)
+    project, own_output = find_project(made.path), list[str]()
+
+    class Progress(DeployProgress):
+        """As at a terminal, on which the tests print."""
+
+        @contextlib.contextmanager
+        def _shown(self, phase: Phase, own: bool) -> Iterator[Phase]:
+            own_output.extend([phase.name] * own)
+            yield phase
+
     if passed:
-        checked = prepare(project, DeployOptions(builtin=True), NOT_ASKED)
+        checked = prepare(project, DeployOptions(builtin=True), UserInterface(Progress(io.StringIO())))
+        assert own_output == ["tests"]
         assert (checked.main, checked.importing) == ("robot.py", None)
     else:
         with pytest.raises(RefusedError, match=r"^not deployed: the tests failed\n.*--skip-tests$"):
@@ -402,6 +414,19 @@ def test_when_a_robot_has_all_that_the_lock_asks_for() -> None:
     assert not is_met(None, "3.14.2")
     assert not is_met(None, packages={"wpilib": "1"})
     assert not is_met(None, packages={**there, "six": "1"})
+
+
+def test_what_a_wheel_takes_on_the_disk(tmp_path: Path) -> None:
+    """Whole blocks of 4096 bytes, and for a source as many again for its compiled file."""
+    wheel = tmp_path / "x-1-py3-none-any.whl"
+    with ZipFile(wheel, "w") as archive:
+        for name, size in (("a.py", 1), ("b.py", 4096), ("c.bin", 8191), ("d.txt", 0)):
+            archive.writestr(name, bytes(size))
+    entry = Entry(wheel.name, 1, "", False, wheel)
+    assert installing._unpacked_size(entry) == 4096 * (2 + 4 + 2 + 1)
+    wheel.write_bytes(b"PK")
+    with pytest.raises(RefusedError, match=r"x-1-py3-none-any\.whl is not a wheel: .*\n  Remove it; then: pyfrc sync"):
+        installing._unpacked_size(entry)
 
 
 class PythonChannel:

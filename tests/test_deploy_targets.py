@@ -19,7 +19,8 @@ from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.layout import Layout
 from pyfrc_core.deploy.connection import VIRTUAL_ROBOT_GREETING, Connection
 from pyfrc_core.deploy.discovery import Address
-from pyfrc_core.deploy.targets import CONTROLLERS, ControllerKind
+from pyfrc_core.deploy.errors import ConnectionFailedError
+from pyfrc_core.deploy.targets import CONTROLLERS, MAX_TEAM, ControllerKind, team_of_host
 from pyfrc_core.deploy.targets.controller import remove_remains
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
@@ -184,3 +185,24 @@ def test_the_hosts_of_a_team_belong_to_it(controller: ControllerKind) -> None:
     teams = {host: controller.team_of_host(host) for host in hosts}
     assert {host for host in hosts if teams[host] is None} == set(controller.shared_hosts)
     assert set(teams.values()) <= {1234, None}
+
+
+def test_the_team_of_an_address() -> None:
+    teams = {"10.0.1.2": 1, "10.255.99.2": MAX_TEAM, "roboRIO-254-FRC.local": 254, "roborio-1-frc": 1}
+    nothing = ("10.0.0.2", "10.12.34.3", "roborio-0-frc", "roborio-25600-frc", "172.22.11.2", "robot.local")
+    assert {host: team_of_host(host) for host in (*teams, *nothing)} == {**teams, **dict.fromkeys(nothing)}
+
+
+def test_a_channel_is_closed_whatever_happens() -> None:
+    events: list[str] = []
+    channel = SimpleNamespace(
+        settimeout=lambda seconds: None, exec_command=events.append, close=lambda: events.append("closed")
+    )
+    transport: Any = SimpleNamespace(open_session=lambda timeout: channel, is_active=lambda: True)
+    connection = Connection(transport, Address("10.0.0.2"), ROBORIO, *(3 * [None]))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="odd"), connection.opened("command"):
+        raise ValueError("odd")
+    assert events == ["command", "closed"]
+    channel.exec_command = None
+    with pytest.raises(ConnectionFailedError, match="the robot does not run commands over SSH: "):
+        connection.open("command")

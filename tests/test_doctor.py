@@ -280,6 +280,14 @@ def test_what_is_wrong_in_files_that_are_not_run(make_project) -> None:
     assert "robot.w" in config.text
     (dashboard,) = problems(robot_project._dashboards(project))
     assert "a.rows = 0" in dashboard.text
+    made.write({"sim/dashboards.json": '{"dashboards": {"drivers": {}}}', "sim/config.json": "{}"})
+    assert [each.text for each in robot_project._dashboards(project)] == ["dashboards: drivers"]
+    assert [each.text for each in robot_project._sim_config(project)] == ["no mistakes"]
+    for file in ("dashboards.json", "config.json"):
+        (made.path / "sim" / file).unlink()
+    assert list(robot_project._dashboards(project)) == []
+    (none,) = robot_project._sim_config(project)
+    assert (none.status, none.remedy) == ("hint", "pyfrc create-physics")
     click, missing = problems(robot_project._asked_for(project, find_installed(), None))
     assert "requires click>99, but " in click.text
     assert "click>99" in click.remedy
