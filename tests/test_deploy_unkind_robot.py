@@ -1,4 +1,4 @@
-"""Deploys to a look-alike whose kill script is slow or fails, or whose console is silent."""
+"""Deploys to a look-alike whose kill script fails, whose console is silent, or that has programs in Java and C++."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def test_a_program_that_survives_the_kill_script_is_ended_and_the_script_replace
     require_roborio()
     project = make_project({})
     script = Path("usr/local/frc/bin/frcKillRobot.sh")
-    with Roborio.unkind(LETS_PROGRAMS_SURVIVE, driver_station=True) as robot:
+    with Roborio(kill_script=LETS_PROGRAMS_SURVIVE) as robot:
         assert write_and_deploy(project, "the first", robot).code == 0
         robot.said("this is the first")
         result = write_and_deploy(project, "the second", robot)

@@ -1,36 +1,24 @@
-"""The look-alike's first process: its SSH server, its robot program, its console. Run in its namespaces, by machine.py.
-
-It is not run inside its root folder, so that it may use this machine's Python; what it starts is.
-"""
+"""The first process of a roboRIO's look-alike: `lvrt`, and the console. Run in its namespaces, by `machine`."""
 
 from __future__ import annotations
 
-import contextlib
-import fcntl
 import os
-import selectors
-import shutil
-import signal
 import socket
-import struct
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[2]))  # run without site-packages
+sys.path.insert(0, str(Path(__file__).parents[1]))  # run without site-packages
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+from first_process import FirstProcess
 
 from pyfrc_core.deploy.agent.console import text_frame
 
-ROOT = sys.argv[1]
-HAS_DRIVER_STATION = sys.argv[2] == "driver-station"  # connected all the time
-SSH, DRIVER_STATION, *CONSOLES = (socket.socket(fileno=int(number)) for number in sys.argv[3:])
-CHROOT = shutil.which("chroot", path="/usr/sbin:/usr/bin:/sbin:/bin") or "chroot"
-LVUSER = ("--userspec=500:500", "--groups=")
-# What the robot's own start script does: one line, run as lvuser.
-PID_FILE = Path(ROOT, "run/natinst/FRC_UserProgram.pid")
-SUPERVISOR_SETTINGS = Path(ROOT, "etc/natinst/share/lvrt.conf")
 DRIVER_STATION_LOST = 10.0  # seconds without a packet of its: more than a busy machine keeps a sender waiting
+# What the robot's own start script does: one line, run as lvuser.
 PROGRAM = """
 cd /home/lvuser
 if [ -e /tmp/frcdebug ]; then file=robotDebugCommand; else file=robotCommand; fi
@@ -39,145 +27,89 @@ eval "exec $(head -n 1 $file)"
 """
 
 
-def set_up() -> int:
-    """Mount what no power cycle survives; the pipe through which frcKillRobot.sh speaks to us."""
-    for name, mode in (("tmp", "1777"), ("run", "755")):
-        subprocess.run(["mount", "-t", "tmpfs", "-o", f"mode={mode},size=64m", "tmpfs", f"{ROOT}/{name}"], check=True)
-    Path(ROOT, "run/sshd").mkdir(0o755)
-    PID_FILE.parent.mkdir(0o755)
-    os.chown(PID_FILE.parent, 500, 500)  # scripts that run as lvuser remove the file
-    with socket.socket() as any_socket:  # loopback up: ifreq with IFF_UP, by SIOCSIFFLAGS
-        fcntl.ioctl(any_socket, 0x8914, struct.pack("16sH14x", b"lo", 1))
-    os.mkfifo(f"{ROOT}/run/robot-program")
-    Path(ROOT, "run/robot-program").chmod(0o666)
-    return os.open(f"{ROOT}/run/robot-program", os.O_RDWR | os.O_NONBLOCK)
+class Roborio(FirstProcess):
+    """Starts a program that has ended again at once, as lvrt does unless its settings say otherwise.
 
+    :param has_driver_station: whether one is connected all the time
+    """
 
-class Program:
-    """The robot program: wanted or not, running or not."""
+    def __init__(
+        self,
+        root: str,
+        ssh: socket.socket,
+        has_driver_station: bool,
+        driver_station: socket.socket,
+        *consoles: socket.socket,
+    ) -> None:
+        super().__init__(root, ssh, ("lvuser", 500))
+        self._pid_file = self.root / "run/natinst/FRC_UserProgram.pid"
+        self._pid_file.parent.mkdir(0o755)
+        os.chown(self._pid_file.parent, 500, 500)  # scripts that run as lvuser remove the file
+        self._packet_at = float("inf") if has_driver_station else float("-inf")
+        self._station = driver_station
+        self._clients: list[socket.socket] = []
+        self._number, self._unfinished = 0, b""
+        self.listen(driver_station, self._hear)
+        for each in (*consoles, *(socket.create_server(("0.0.0.0", port)) for port in (1740, 1741))):
+            self.listen(each, partial(self._accept, each))
+        self.pipe("run/robot-program", 0o666, self._control)
+        self._lvrt = self._start_lvrt()
+        self._start_soon()
 
-    def __init__(self) -> None:
-        self.process: subprocess.Popen[bytes] | None = None
-        self.output = -1
-        self.start_at: float | None = time.monotonic() if starts_programs() else None
+    def _start_lvrt(self) -> subprocess.Popen[bytes]:
+        """Start a process of this name: scripts end it to have it start the program again."""
+        nothing = subprocess.DEVNULL
+        return self.inside("/usr/local/natinst/bin/lvrt", stdin=subprocess.PIPE, stdout=nothing, stderr=nothing)
 
-    def start(self) -> None:
-        """Start it, if there is a start command; `output` is then its output's descriptor."""
-        self.start_at = None
-        self.output, its_end = os.pipe()
-        self.process = subprocess.Popen(
-            [CHROOT, *LVUSER, ROOT, "/bin/bash", "-c", PROGRAM],
-            stdin=subprocess.DEVNULL,
-            stdout=its_end,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-            env={"HOME": "/home/lvuser", "USER": "lvuser", "PATH": "/usr/local/bin:/usr/bin:/bin"},
-        )
-        os.close(its_end)
-        PID_FILE.write_text(f"{self.process.pid}\n", encoding="utf-8")
-
-    def ended(self) -> None:
-        """Start it again at once, as lvrt does unless its settings say otherwise."""
-        self.process = None
-        PID_FILE.unlink(missing_ok=True)
-        if starts_programs():
+    def _start_soon(self) -> None:
+        """Start the program, unless the supervisor's settings say otherwise; scripts change them with nirtcfg."""
+        settings = self.root / "etc/natinst/share/lvrt.conf"
+        lines = settings.read_text(encoding="utf-8").splitlines() if settings.exists() else []
+        if "RTTarget.LaunchAppAtBoot=False" not in lines:
             self.start_at = time.monotonic()
 
-    def forget(self) -> None:
-        """Let the program run without supervision."""
-        self.start_at = None
-        self.process = None
+    def begin(self) -> None:
+        self.start("/bin/bash", "-c", PROGRAM)
+        assert self.program is not None
+        self._pid_file.write_text(f"{self.program.pid}\n", encoding="utf-8")
 
-    def stop(self) -> None:
-        """Stop it, if it runs."""
-        self.start_at = None
-        if self.process is not None:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(self.process.pid, signal.SIGKILL)
-            self.process = None
+    def ended(self, status: int) -> None:
+        self._pid_file.unlink(missing_ok=True)
+        self._start_soon()
 
+    def other_ended(self, process: int) -> None:
+        if process == self._lvrt.pid:
+            self._lvrt = self._start_lvrt()
+            if self.program is None:
+                self._start_soon()
 
-def starts_programs() -> bool:
-    """Whether the supervisor's settings have it start programs; scripts change them with nirtcfg."""
-    try:
-        return "RTTarget.LaunchAppAtBoot=False" not in SUPERVISOR_SETTINGS.read_text(encoding="utf-8").splitlines()
-    except FileNotFoundError:
-        return True
+    def _control(self, words: bytes) -> None:
+        if b"stop" in words:
+            self.stop()
+        if b"forget" in words:  # the program runs without supervision
+            self.start_at = self.program = None
+        if b"start" in words:
+            self.start_at = time.monotonic()
 
+    def _hear(self) -> None:
+        self._station.recv(1024)
+        self._packet_at = max(self._packet_at, time.monotonic())
 
-def supervisor() -> subprocess.Popen[bytes]:
-    """A process called lvrt: scripts end it to have it start the program again."""
-    command = [CHROOT, *LVUSER, ROOT, "/usr/local/natinst/bin/lvrt"]
-    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    def _accept(self, console: socket.socket) -> None:
+        self._clients.append(console.accept()[0])
 
-
-def main() -> None:
-    control = set_up()
-    CONSOLES.extend(socket.create_server(("0.0.0.0", port)) for port in (1740, 1741))
-    for each in (DRIVER_STATION, SSH, *CONSOLES):
-        each.setblocking(False)
-    selector = selectors.DefaultSelector()
-    selector.register(sys.stdin, selectors.EVENT_READ, "owner")
-    selector.register(control, selectors.EVENT_READ, "control")
-    selector.register(DRIVER_STATION, selectors.EVENT_READ, "driver station")
-    selector.register(SSH, selectors.EVENT_READ, "ssh")
-    for each in CONSOLES:
-        selector.register(each, selectors.EVENT_READ, "console")
-    listeners: list[socket.socket] = []
-    program, lvrt = Program(), supervisor()
-    number, unfinished, packet_at = 0, b"", float("-inf")
-    os.write(1, b"ready\n")
-    while True:
-        if program.start_at is not None and time.monotonic() >= program.start_at:
-            program.start()
-            selector.register(program.output, selectors.EVENT_READ, "output")
-        for key, _ in selector.select(0.1):
-            if key.data == "owner":
-                return  # the parent process has ended
-            if key.data == "control":
-                for words in os.read(control, 4096).split(b"\n"):
-                    if b"stop" in words:
-                        program.stop()
-                    if b"forget" in words:
-                        program.forget()
-                    if b"start" in words:
-                        program.start_at = time.monotonic()
-            elif key.data == "driver station":
-                DRIVER_STATION.recv(1024)
-                packet_at = time.monotonic()
-            elif key.data == "ssh":
-                connection, _ = SSH.accept()
-                with connection:
-                    connection.setblocking(True)
-                    server = [CHROOT, ROOT, "/usr/sbin/sshd", "-i", "-E", "/run/sshd.log", "-f", "/etc/ssh/sshd_config"]
-                    subprocess.Popen(server, stdin=connection, stdout=connection, stderr=subprocess.DEVNULL)
-            elif key.data == "console":
-                listeners.append(key.fileobj.accept()[0])
-            elif key.data == "output":
-                piece = os.read(key.fd, 8192)
-                if not piece:
-                    selector.unregister(key.fd)
-                    os.close(key.fd)
-                    if program.process is not None and program.output == key.fd:
-                        program.ended()
-                    continue
-                os.write(1, piece)
-                *lines, unfinished = (unfinished + piece).split(b"\n")
-                if not HAS_DRIVER_STATION and time.monotonic() - packet_at > DRIVER_STATION_LOST:
-                    continue
-                for line in lines:
-                    number += 1
-                    for listener in list(listeners):
-                        try:
-                            listener.sendall(text_frame(line, number))
-                        except OSError:
-                            listeners.remove(listener)
-        with contextlib.suppress(ChildProcessError):
-            while (ended := os.waitpid(-1, os.WNOHANG)[0]) != 0:
-                if ended == lvrt.pid:
-                    lvrt = supervisor()
-                    if program.process is None and starts_programs():
-                        program.start_at = time.monotonic()
+    def printed(self, piece: bytes) -> None:
+        *lines, self._unfinished = (self._unfinished + piece).split(b"\n")
+        if time.monotonic() - self._packet_at > DRIVER_STATION_LOST:
+            return
+        for line in lines:
+            self._number += 1
+            for client in list(self._clients):
+                try:
+                    client.sendall(text_frame(line, self._number))
+                except OSError:
+                    self._clients.remove(client)
 
 
-main()
+ssh, *others = (socket.socket(fileno=int(number)) for number in sys.argv[3:])
+Roborio(sys.argv[1], ssh, sys.argv[2] == "driver-station", *others).serve()

@@ -19,7 +19,6 @@ __all__ = [
     "KILL_SCRIPT",
     "LETS_PROGRAMS_SURVIVE",
     "PATIENCE",
-    "TAKES_TWO_SECONDS",
     "Roborio",
     "missing_here",
     "python_package",
@@ -28,7 +27,6 @@ __all__ = [
 HERE = Path(__file__).parent
 #: Files to take for ``frcKillRobot.sh``; the first is the default one, which takes no time.
 KILL_SCRIPT = HERE / "files/usr/local/frc/bin/frcKillRobot.sh"
-TAKES_TWO_SECONDS = HERE / "kill_scripts/takes_two_seconds.sh"
 LETS_PROGRAMS_SURVIVE = HERE / "kill_scripts/lets_programs_survive.sh"
 _LVUSER = 500
 _PASSWD = """\
@@ -116,11 +114,6 @@ class Roborio(Computer):
         self._driver_station, self._blank = driver_station, blank
         self._wpilib, self._image, self._password, self._kill_script = wpilib, image, password, kill_script
         super().__init__(host=host, port=port, python=python, disk_size=disk_size, authorized_key=authorized_key)
-
-    @classmethod
-    def unkind(cls, kill_script: Path = TAKES_TWO_SECONDS, driver_station: bool = False) -> Roborio:
-        """One that spares us nothing: a kill that takes its time, no Driver Station."""
-        return cls(kill_script=kill_script, driver_station=driver_station)
 
     def _listeners(self) -> list[socket.socket]:
         packets = socket.socket(type=socket.SOCK_DGRAM)
