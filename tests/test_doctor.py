@@ -24,6 +24,7 @@ from pyfrc_core.doctor.installed import Installed, Package, find_installed
 from pyfrc_core.doctor.packages import NEWEST, OLDEST, check_imports, check_pyfrc, check_python, check_wpilib
 from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.doctor.steps import Step, first_missing, next_step
+from pyfrc_core.errors import ProjectError
 from pyfrc_core.project import Project, find_project
 from pyfrc_core.season import CURRENT
 
@@ -144,8 +145,10 @@ def test_packages_of_other_kinds_have_no_season() -> None:
     others = [package("requests", "25.1.0"), package("robotpy-helpers", "0.3", "wpilib")]
     (finding,) = check_wpilib(Installed([WPILIB, HAL, *others]))
     assert finding.status == "ok"
-    assert "robotpy-helpers 0.3" in finding.text
-    assert "requests" not in finding.text
+    assert finding.text == "2026.2.2, and its 1 companions fit; with robotpy-helpers 0.3"
+    native = package("robotpy-native-wpihal", "1.0", "wpilib")
+    (finding,) = check_wpilib(Installed([WPILIB, HAL, native]))
+    assert finding.text == "2026.2.2, and its 2 companions fit"
 
 
 def test_another_pyfrc_beside_this_one() -> None:
@@ -440,3 +443,22 @@ def test_downloads_that_are_missing_or_differ(make_project, monkeypatch: pytest.
 def test_settings_that_cannot_be_read_fit_no_season(make_project) -> None:
     made = make_project({"robot.py": ROBOT, "pyproject.toml": "[tool.robotpy]\nrobotpy_version = 5\n"})
     assert _season_settings(find_project(made.path)) == _season_settings(None) == []
+
+
+@pytest.mark.parametrize(
+    ("error", "text"),
+    [
+        (ProjectError("no class", where="robot.py:1", remedy="Add one."), "robot.py:1: no class"),
+        (OSError("no process"), "no process"),
+        (ValueError("odd"), "robot.py cannot be imported: odd"),
+    ],
+)
+def test_a_file_that_cannot_be_looked_at(error: Exception, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(robot_project, "run_in_subprocess", fail)
+    found = robot_project._imported(lambda project, log: None, None, "program", "robot.py", "it")  # type: ignore[arg-type]
+    assert isinstance(found, CheckResult)
+    assert (found.topic, found.status, found.text) == ("program", "problem", text)
+    assert found.remedy
