@@ -196,7 +196,7 @@ def test_a_command_that_fails_keeps_its_exit_code_and_is_reported(make_project: 
     ],
 )
 def test_what_cannot_be_is_said(project: RobotProject, words: tuple[str, ...], complaint: str) -> None:
-    result = project.run("coverage", *words)
+    result = project.run_here("coverage", *words)
     assert result.code == 2
     assert complaint in result.stderr
     assert "Traceback" not in result.output

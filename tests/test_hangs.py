@@ -202,26 +202,6 @@ def test_threads_that_end_and_event_loops_are_fine(report: Result, test: str) ->
     assert report.outcomes()[f"tests/test_it.py::{test}"] == "PASSED", report.output
 
 
-@pytest.mark.slow
-def test_in_a_new_interpreter_a_thread_that_cannot_be_ended_is_explained_and_nothing_more(
-    make_project: MakeProject,
-) -> None:
-    tests = """
-        import threading
-        import time
-
-        import robot
-
-
-        def test_it():
-            threading.Thread(target=lambda: time.sleep(1000)).start()
-    """
-    project = make_project({"robot.py": ROBOT, "tests/test_it.py": tests})
-    explained = project.run("test", "--isolation", "reuse", cold=True).blocks()["test_it"].partition("\n---")[0]
-    assert "a thread that the test has started is still running" in explained
-    assert explained.endswith("\nEnd it in the test, or make it a daemon: threading.Thread(..., daemon=True)")
-
-
 STUCK_TESTS = """
     import threading
 

@@ -160,48 +160,6 @@ def test_what_failed_runs_until_it_passes(project) -> None:
     assert ran(project) == ALL
 
 
-@pytest.mark.slow
-def test_another_seed_runs_everything(project) -> None:
-    assert ran(project, "--seed", "5") == ALL
-
-
-@pytest.mark.slow
-def test_a_new_test_runs_and_a_new_module_runs_everything(project) -> None:
-    (project.path / "tests/test_more.py").write_text("def test_more():\n    pass\n")
-    assert ran(project) == {"more"}
-    (project.path / "parts/more.py").write_text("")
-    assert ran(project) == ALL | {"more"}
-
-
-@pytest.mark.slow
-def test_a_library_beside_the_project_counts(make_project, tmp_path: Path) -> None:
-    library = tmp_path / "library"
-    library.mkdir()
-    (library / "teamlib.py").write_text("SPEED = 1\n")
-    robot = f"import sys; sys.path.append({str(library)!r})\nimport teamlib\nimport wpilib\n"
-    robot += "class MyRobot(wpilib.TimedRobot):\n    pass\n"
-    made = make_project({"robot.py": robot, "tests/test_a.py": "def test_a(robot):\n    pass\n"})
-    assert ran(made) == {"a"}
-    assert ran(made) == set()
-    (library / "teamlib.py").write_text("SPEED = 2\n")
-    assert ran(made) == {"a"}
-
-
-@pytest.mark.slow
-def test_a_file_that_changes_during_the_run_is_named(make_project) -> None:
-    robot = "import wpilib\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
-    test = """
-        from pathlib import Path
-
-        def test_a():
-            Path("notes.txt").write_text(Path("notes.txt").read_text() + "x")
-    """
-    made = make_project({"robot.py": robot, "notes.txt": "x", "tests/test_a.py": test})
-    result = made.run("test", "--changed")
-    assert "the passes are not remembered, because notes.txt changed during the run" in result.output
-    assert ran(made) == {"a"}
-
-
 @pytest.mark.parametrize(
     ("options", "expected"),
     [
@@ -213,57 +171,6 @@ def test_what_does_not_go_together(make_project, options: list[str], expected: s
     result = make_project(FILES).run("test", "--changed", *options)
     assert result.code in (2, 4)
     assert expected in result.output
-
-
-@pytest.mark.slow
-def test_a_spoiled_memory_is_ignored(project) -> None:
-    for content in ("", "{}", "[1]", '{"format": 2, "tests": [7]}', '{"format": 1, "reads": [[1]]}'):
-        (project.path / ".pyfrc/passes.json").write_text(content)
-        assert ran(project) == ALL
-
-
-LOGS = """
-    import wpilib
-    from pathlib import Path
-
-    class MyRobot(wpilib.TimedRobot):
-        def robotInit(self):
-            wpilib.DataLogManager.start(str(Path(__file__).with_name("logs")), "robot.wpilog")
-"""
-
-
-@pytest.mark.slow
-def test_logs_of_the_robot_are_no_changes(make_project) -> None:
-    test = "def test_a(control, robot):\n    with control.run_robot():\n        control.step_timing(seconds=0.1)\n"
-    test = test.replace("seconds=0.1", "seconds=0.1, autonomous=True, enabled=True")
-    made = make_project({"robot.py": LOGS, "tests/test_a.py": test})
-    assert ran(made) == {"a"}
-    log = made.path / "logs" / "robot.wpilog"
-    assert log.is_file()
-    assert ran(made) == set()
-    edit(made, "tests/test_a.py", "0.1", "0.2")
-    assert ran(made) == {"a"}, "it has written the log again"
-    assert ran(made) == set()
-    log.write_bytes(b"")
-    assert ran(made) == {"a"}
-
-
-@pytest.mark.slow
-def test_a_report_of_the_tests_is_no_change(project) -> None:
-    for _ in range(2):
-        assert ran(project, "--", "--junitxml=report.xml") == set()
-    assert (project.path / "report.xml").is_file()
-
-
-@pytest.mark.slow
-def test_what_a_test_imports_late_from_outside_the_project_counts(make_project, tmp_path: Path) -> None:
-    (tmp_path / "latelib.py").write_text("SPEED = 1\n")
-    test = f"import sys\n\ndef test_a(robot):\n    sys.path.append({str(tmp_path)!r})\n    import latelib\n"
-    made = make_project({"robot.py": SMALL, "tests/test_a.py": test})
-    assert ran(made) == {"a"}
-    assert ran(made) == set()
-    (tmp_path / "latelib.py").write_text("SPEED = 20\n")
-    assert ran(made) == {"a"}
 
 
 # -- deploys ---------------------------------------------------------------------------------------------------------
@@ -313,25 +220,6 @@ def test_a_source_that_is_saved_while_the_tests_run_is_not_deployed_untested(mak
     assert "Run the command again." in result.stderr
     assert "1 passed" in (again := made.run(*NO_ROBOT)).output
     assert again.first_error.startswith("no robot found"), "the tests write the same again"
-
-
-@pytest.mark.slow
-def test_what_the_tests_write_themselves_prevents_no_deploy(make_project) -> None:
-    made = small_project(make_project, "log.txt", "file.read_text() + 'a run'")
-    result = made.run(*NO_ROBOT)
-    assert "warning: files have changed since the tests began: log.txt\n" in result.output
-    assert result.first_error.startswith("no robot found")
-
-
-@pytest.mark.slow
-def test_a_deploy_runs_all_tests_after_a_run_that_left_some_out(make_project) -> None:
-    """They may have read the file that has changed, as data."""
-    made = make_project(FILES)
-    assert made.run("test").code == 0
-    with (made.path / "tests/test_robot.py").open("a", encoding="utf-8") as file:
-        file.write("# changed\n")
-    assert "passed before" in made.run("test", "--changed").stdout
-    assert "4 passed" in made.run(*NO_ROBOT).output
 
 
 @pytest.mark.slow

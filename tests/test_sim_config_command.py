@@ -12,12 +12,12 @@ ROBOT = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
 
 def test_check_tells_warnings_and_mistakes(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT})
-    none = project.run("config", "check")
+    none = project.run_here("config", "check")
     assert (none.code, none.stderr) == (0, "")
     assert none.stdout == "sim/config.json: the file does not exist, so all values are defaults\n"
 
     project.write({"sim/config.json": '{"pyfrc": {\n"robt": {}}}'})
-    warned = project.run("config", "check")
+    warned = project.run_here("config", "check")
     assert warned.code == 0, warned.output
     assert warned.stdout == (
         "warning: sim/config.json:2: unknown key 'pyfrc.robt'\n  did you mean 'robot'?\n"
@@ -26,14 +26,14 @@ def test_check_tells_warnings_and_mistakes(make_project: MakeProject) -> None:
 
     shape = '{"color": "gren", "rect": [1, 1, 2, 2]}'
     project.write({"sim/config.json": '{"pyfrc": {"field": {"objects": [\n' + shape + "]}}}"})
-    assert project.run("config", "check").stdout == (
+    assert project.run_here("config", "check").stdout == (
         'warning: sim/config.json:2: pyfrc.field.objects[0].color = "gren": there is no such colour: '
         "did you mean 'green'?\nsim/config.json: no mistakes, but 1 warning\n"
     )
 
     project.write({"sim/config.json": '{"pyfrc": {"robot": {\n"w": -1}, "pwm": {\n"20": "x"}}}'})
     for subcommand in ("check", "show"):
-        wrong = project.run("config", subcommand)
+        wrong = project.run_here("config", subcommand)
         assert wrong.code == 2
         assert wrong.stdout == ""
         assert wrong.stderr == (
@@ -60,7 +60,7 @@ def test_show_tells_each_value_and_where_it_comes_from(make_project: MakeProject
     }
     """
     project = make_project({"robot.py": ROBOT, "sim/config.json": config})
-    result = project.run("config", "show")
+    result = project.run_here("config", "show")
     assert result.code == 0, result.output
     rows = {path: rest for path, *rest in (line.split(maxsplit=2) for line in result.stdout.splitlines())}
     assert rows["pyfrc.robot.w"] == ["2.0", "default"]
@@ -71,7 +71,7 @@ def test_show_tells_each_value_and_where_it_comes_from(make_project: MakeProject
     assert rows["pyfrc.joysticks.0.axes.0"] == ['"turn"', "sim/config.json:11 (joysticks.0.axes.x)"]
     assert rows["pyfrc.joysticks.0.buttons.1"] == ['"Trigger"', "default"]
 
-    as_json = project.run("config", "show", "--json")
+    as_json = project.run_here("config", "show", "--json")
     assert as_json.code == 0, as_json.output
     shown = json.loads(as_json.stdout)
     assert shown["pyfrc"]["robot"]["l"] == 4
@@ -80,7 +80,7 @@ def test_show_tells_each_value_and_where_it_comes_from(make_project: MakeProject
 
 def test_show_says_default_where_the_only_start_position_says_nothing(make_project: MakeProject) -> None:
     config = '{"pyfrc": {"robot": {"start_positions": [{"name": "a", "x": 1, "y": 2}]}}}'
-    result = make_project({"robot.py": ROBOT, "sim/config.json": config}).run("config", "show", "--json")
+    result = make_project({"robot.py": ROBOT, "sim/config.json": config}).run_here("config", "show", "--json")
     sources = json.loads(result.stdout)["sources"]
     assert sources["pyfrc.robot.starting_y"] == "sim/config.json:1 (robot.start_positions[0].y)"
     assert sources["pyfrc.robot.starting_angle"] == "default"
@@ -88,12 +88,12 @@ def test_show_says_default_where_the_only_start_position_says_nothing(make_proje
 
 def test_what_show_prints_as_json_is_a_config_without_warnings(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, "sim/config.json": '{"pyfrc": {"field": {"season": 2018}}}'})
-    shown = project.run("config", "show", "--json").stdout
+    shown = project.run_here("config", "show", "--json").stdout
     assert json.loads(shown)["season"] == {"w": 30, "h": 27, "px_per_ft": 15}
     project.write({"sim/config.json": shown})
-    checked = project.run("config", "check", "--strict")
+    checked = project.run_here("config", "check", "--strict")
     assert (checked.code, checked.stdout) == (0, "sim/config.json: no mistakes\n")
-    again = json.loads(project.run("config", "show", "--json").stdout)
+    again = json.loads(project.run_here("config", "show", "--json").stdout)
     assert again["pyfrc"] == json.loads(shown)["pyfrc"]
 
 
@@ -101,9 +101,9 @@ def test_strict_makes_warnings_fail(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT})
     for config, code in [("{}", 0), ('{"pyfrc": {"robt": {}}}', 1), ('{"pyfrc": {"robot": {"w": 0.3}}}', 1), ("", 2)]:
         project.write({"sim/config.json": config})
-        assert project.run("config", "check", "--strict").code == code
+        assert project.run_here("config", "check", "--strict").code == code
     project.write({"sim/config.json": json.dumps({"pyfrc": {f"key{n}": n for n in range(30)}})})
-    many = project.run("config", "check")
+    many = project.run_here("config", "check")
     assert many.code == 0
     assert many.stdout.endswith("sim/config.json: no mistakes, but more than 20 warnings\n")
 
@@ -115,26 +115,26 @@ def test_a_file_in_the_wrong_place_is_told(make_project: MakeProject, place: str
     project = make_project({"robot.py": ROBOT, place: '{"pyfrc": {}}'})
     if (project.path / "sim/config.json").exists():
         pytest.skip("this file system does not tell capital letters from others")
-    checked = project.run("config", "check", "--strict")
+    checked = project.run_here("config", "check", "--strict")
     assert checked.code == 1
     assert checked.stdout == (
         f"warning: {place}: pyfrc does not read this file\n  Move it to sim/config.json\n"
         "sim/config.json: the file does not exist, so all values are defaults, but 1 warning\n"
     )
     project.write({place: '{"other": 1}'})  # another tool's
-    assert project.run("config", "check", "--strict").code == 0
+    assert project.run_here("config", "check", "--strict").code == 0
 
 
 def test_a_file_beside_the_directory_of_the_code_is_told(make_project: MakeProject) -> None:
     project = make_project({"src/robot.py": ROBOT, "sim/config.json": '{"pyfrc": {}}'})
     told = "warning: sim/config.json: pyfrc does not read this file\n  Move it to src/sim/config.json\n"
-    assert told in project.run("config", "check", "--project", "src").stdout
+    assert told in project.run_here("config", "check", "--project", "src").stdout
     project.write({"robot.py": ROBOT})  # whose it then is
-    assert told not in project.run("config", "check", "--project", "src").stdout
+    assert told not in project.run_here("config", "check", "--project", "src").stdout
 
 
 def test_show_without_a_season_tells_whose_field_it_is(make_project: MakeProject) -> None:
-    result = make_project({"robot.py": ROBOT}).run("config", "show", "--json")
+    result = make_project({"robot.py": ROBOT}).run_here("config", "show", "--json")
     assert json.loads(result.stdout)["sources"]["pyfrc.field.w"] == "default: season 2026"
 
 

@@ -39,7 +39,7 @@ def test_a_wrong_setting_is_told_with_its_line(
     make_project: MakeProject, settings: str, line: int, message: str, remedy: str
 ) -> None:
     project = make_project({"robot.py": ROBOT, "tests/test_a.py": ANY_TEST, "pyproject.toml": settings})
-    result = project.run("test")
+    result = project.run_here("test")
     assert result.code == 2, result.output
     assert result.first_error.startswith(f"pyproject.toml:{line}: {message}")
     assert remedy in result.stderr
@@ -48,7 +48,7 @@ def test_a_wrong_setting_is_told_with_its_line(
 
 def test_a_broken_pyproject_toml_is_told_with_its_line(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, "pyproject.toml": "[tool.pyfrc]\nmain =\n"})
-    result = project.run("test")
+    result = project.run_here("test")
     assert result.code == 2, result.output
     assert result.first_error.startswith("pyproject.toml")
     assert "not valid TOML: " in result.first_error
@@ -100,21 +100,21 @@ def test_a_project_without_tests_is_told_where_they_are_looked_for(make_project:
     ],
 )
 def test_an_option_that_is_given_twice_is_refused(words: str, make_project: MakeProject) -> None:
-    result = make_project({"robot.py": ROBOT}).run(*words.split())
+    result = make_project({"robot.py": ROBOT}).run_here(*words.split())
     assert result.code == 2
     option = "--page" if "--page" in words else "--log"
     assert f"Error: {option} is given twice: give it once." in result.stderr
 
 
 def test_a_mistyped_command_is_told_the_nearest(make_project: MakeProject) -> None:
-    result = make_project({"robot.py": ROBOT}).run("tset")
+    result = make_project({"robot.py": ROBOT}).run_here("tset")
     assert result.code == 2
     assert "There is no command 'tset'. Did you mean 'test'?" in result.stderr
 
 
 def test_outside_of_a_project_there_is_a_remedy(make_project: MakeProject) -> None:
     project = make_project({"notes.txt": "No robot here."})
-    result = project.run("test")
+    result = project.run_here("test")
     assert result.code == 2
     assert f"there is no robot.py in or above {project.path}" in result.first_error
     for remedy in ("--project", "pyfrc init"):
@@ -132,7 +132,7 @@ def test_outside_of_a_project_there_is_a_remedy(make_project: MakeProject) -> No
     ],
 )
 def test_a_wrong_option_is_told(make_project: MakeProject, args: list[str], message: str) -> None:
-    result = make_project({"robot.py": ROBOT}).run("test", *args)
+    result = make_project({"robot.py": ROBOT}).run_here("test", *args)
     assert result.code == 2
     assert message in result.stderr
     assert "Traceback" not in result.stderr
@@ -161,7 +161,7 @@ def test_a_wrong_option_is_told(make_project: MakeProject, args: list[str], mess
 def test_what_other_tools_call_otherwise_leads_to_what_exists(
     make_project: MakeProject, words: str, remedy: str
 ) -> None:
-    result = make_project({"robot.py": ROBOT, "tests/a.wpilog": ""}).run(*words.split())
+    result = make_project({"robot.py": ROBOT, "tests/a.wpilog": ""}).run_here(*words.split())
     assert (result.code, result.stdout) == (2, "")
     assert "Did you mean" not in result.stderr
     assert remedy in result.stderr.splitlines()[-1]

@@ -8,6 +8,8 @@ import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from hypothesis import example, given
@@ -18,6 +20,8 @@ from pyfrc_core.passes import memory
 from pyfrc_core.passes.memory import Passes
 from pyfrc_core.project import Project
 from pyfrc_core.project.walk import LEFT_OUT
+from pyfrc_core.test_support.options import TestOptions
+from pyfrc_core.test_support.remembered_passes import RememberedPasses
 
 needs_links = pytest.mark.skipif(sys.platform == "win32", reason="links need a privilege there")
 
@@ -255,3 +259,105 @@ def test_a_part_of_the_tests_keeps_what_all_have_passed_with(tmp_path: Path) -> 
     log.write_text("a log")
     assert part.save([], [str(log)]) == ""
     assert stands(project)
+
+
+# -- what else a pass depends on ---------------------------------------------------------------------------------------
+
+
+def test_a_pass_counts_for_its_seed_and_its_choice_of_tests_only(tmp_path: Path) -> None:
+    project = make(tmp_path)
+    all_passed(project)
+    for options, valid in (((0, False), True), ((5, False), False), ((0, True), False)):
+        assert Passes(project, *options).is_valid("test_a", tmp_path / TEST) == valid, options
+
+
+def test_what_is_imported_from_outside_the_project_counts(tmp_path: Path) -> None:
+    (tmp_path / "project").mkdir()
+    project, library = make(tmp_path / "project"), tmp_path / "teamlib.py"
+    library.write_text("SPEED = 1\n")
+    passes = Passes(project)
+    passes.record("test_a", project.root / TEST)
+    passes.set_green(True)
+    assert passes.save([str(library)]) == ""
+    assert stands(project)
+    library.write_text("SPEED = 20\n")
+    assert not stands(project)
+
+
+def test_a_spoiled_memory_is_no_pass(tmp_path: Path) -> None:
+    project = make(tmp_path)
+    for content in ("", "{}", "[1]", "null", '{"format": 2, "tests": [7]}', '{"format": 3, "tests": [7]}'):
+        all_passed(project)
+        assert stands(project)
+        (tmp_path / ".pyfrc" / "passes.json").write_text(content)
+        assert not stands(project), content
+
+
+def test_a_failure_takes_back_a_pass(tmp_path: Path) -> None:
+    project = make(tmp_path)
+    all_passed(project)
+    failed = Passes(project)
+    failed.forget("test_a")
+    failed.set_green(False)
+    failed.save([])
+    assert not stands(project)
+
+
+class _Session:
+    def __init__(self, **options: object) -> None:
+        self.exitstatus: int = pytest.ExitCode.OK
+        self.config = SimpleNamespace(option=SimpleNamespace(**options))
+
+
+def run_of(project: Project, *tests: str, changed: bool = False, failed: str = "", args: tuple[str, ...] = ()) -> Any:
+    """Run these tests of one file, as pytest calls the plugin; return the session and the plugin."""
+    plugin = RememberedPasses(project, TestOptions(only_changed=changed), args)
+    items: list[Any] = [SimpleNamespace(nodeid=name, path=project.root / TEST) for name in tests]
+    plugin.pytest_collection_modifyitems(items)
+    for item in items:
+        outcome = "failed" if item.nodeid == failed else "passed"
+        report: Any = SimpleNamespace(nodeid=item.nodeid, outcome=outcome)
+        plugin.pytest_runtest_logreport(report)
+    session: Any = _Session(xmlpath=str(project.root / "report.xml"))
+    (project.root / "report.xml").write_text(str(len(items)))
+    status = pytest.ExitCode.NO_TESTS_COLLECTED if not items else pytest.ExitCode.OK
+    plugin.pytest_sessionfinish(session, pytest.ExitCode.TESTS_FAILED if failed else status)
+    return session, plugin, [item.nodeid for item in items]
+
+
+def test_only_tests_run_again_that_have_not_passed(tmp_path: Path) -> None:
+    project = make(tmp_path)
+    assert run_of(project, "test_a", "test_b", failed="test_b")[2] == ["test_a", "test_b"]
+    assert Passes(project).green_since() is None
+    session, _, ran = run_of(project, "test_a", "test_b", changed=True)
+    assert ran == ["test_b"]
+    session, plugin, ran = run_of(project, "test_a", "test_b", changed=True)
+    assert (ran, session.exitstatus) == ([], pytest.ExitCode.OK)
+    said: list[str] = []
+    plugin.pytest_terminal_summary(SimpleNamespace(write_line=lambda text, **style: said.append(text)))
+    assert said[0].startswith("2 tests passed before; ")
+    assert Passes(project).green_since() is None, "no run has passed with all of them"
+
+
+def test_a_run_of_all_tests_counts_for_a_deploy_and_one_of_some_does_not(tmp_path: Path) -> None:
+    project = make(tmp_path)
+    run_of(project, "test_a", args=("-k", "a"))
+    assert Passes(project).green_since() is None
+    run_of(project, "test_a", args=("-q", "--tb=short"))
+    assert Passes(project).green_since() is not None
+
+
+def test_robots_with_devices_in_real_time_are_not_remembered(tmp_path: Path) -> None:
+    project = make(tmp_path)
+    plugin = RememberedPasses(project, TestOptions(only_changed=True), ())
+    plugin.pytest_collection_modifyitems([SimpleNamespace(nodeid="test_a", path=project.root / TEST)])  # type: ignore[list-item]
+    plugin.record_real_time(["phoenix6"])
+    plugin.pytest_runtest_logreport(SimpleNamespace(nodeid="test_a", outcome="passed"))  # type: ignore[arg-type]
+    plugin.pytest_sessionfinish(_Session(), pytest.ExitCode.OK)  # type: ignore[arg-type]
+    assert not Passes(project).is_valid("test_a", project.root / TEST)
+    said: list[str] = []
+    plugin.pytest_terminal_summary(SimpleNamespace(write_line=lambda text, **style: said.append(text)))
+    assert said == [
+        "pyfrc: the passes are not remembered, because phoenix6 simulates devices in real time, "
+        "so this robot does not repeat exactly"
+    ]
