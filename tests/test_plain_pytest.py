@@ -53,15 +53,6 @@ def passed_as_without_pyfrc(result: Result) -> bool:
     return result.code == 0 and "3 passed" in result.stdout and "pyfrc:" not in result.stdout
 
 
-@pytest.mark.parametrize("mark", sampled(["pyproject.toml", "setup.py", "setup.cfg", ".git/HEAD"], "pyproject.toml"))
-@pytest.mark.parametrize("named", [False, True])
-def test_another_project_below_a_robot_is_left_alone(make_project: MakeProject, mark: str, named: bool) -> None:
-    project = make_project({"robot.py": ROBOT, f"scouting/{mark}": "", "scouting/tests/test_app.py": APPLICATION})
-    below = project.path / "scouting"
-    result = project.pytest("scouting/tests", cwd=project.path) if named else project.pytest(cwd=below)
-    assert passed_as_without_pyfrc(result), result.output
-
-
 @pytest.mark.parametrize(
     "not_a_robot",
     [
@@ -75,13 +66,6 @@ def test_another_project_below_a_robot_is_left_alone(make_project: MakeProject, 
 def test_a_robot_file_without_a_robot_class_is_left_alone(make_project: MakeProject, not_a_robot: str) -> None:
     project = make_project({"robot.py": not_a_robot, "app/test_app.py": APPLICATION})
     assert passed_as_without_pyfrc(project.pytest(cwd=project.path / "app"))
-
-
-@pytest.mark.slow
-def test_settings_above_a_robot_in_a_subdirectory_are_no_robot(make_project: MakeProject) -> None:
-    settings = "[tool.pyfrc.test]\nseed = 1\n"
-    project = make_project({"pyproject.toml": settings, "robot/robot.py": ROBOT, "test_app.py": APPLICATION})
-    assert passed_as_without_pyfrc(project.pytest())
 
 
 @pytest.mark.parametrize(

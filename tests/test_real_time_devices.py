@@ -179,19 +179,6 @@ def test_recordings_have_the_same_hash_and_mark_the_values(with_phoenix: Phoenix
     assert load_script(first).trace == expected
 
 
-@pytest.mark.slow
-def test_their_passes_are_not_remembered(with_phoenix: PhoenixProject) -> None:
-    tests = with_phoenix.path / "tests/test_robot.py"
-    tests.write_text(tests.read_text("utf-8").partition("def test_disabled")[0], "utf-8")  # one is enough
-    for isolation in ("auto", "reuse"):
-        for _ in range(2):
-            output = with_phoenix.output("test", "--changed", "--isolation", isolation)
-            assert "passed before" not in output
-            assert "not remembered, because phoenix6 simulates devices in real time" in output
-    passes = json.loads((with_phoenix.path / ".pyfrc/passes.json").read_text())
-    assert (passes["tests"], passes["green"]) == ({}, "")
-
-
 def test_their_values_are_no_inputs(with_phoenix: PhoenixProject) -> None:
     """The library may have written them while a test wrote its own inputs."""
     test = with_phoenix.path / "tests" / "test_robot.py"
@@ -291,13 +278,6 @@ def test_one_more_test_runs_at_a_time_than_there_are_processors(with_phoenix: Ph
 
 
 # -- the commands say it once ------------------------------------------------------------------------------------------
-
-
-@pytest.mark.slow
-def test_a_recorded_test_run_says_it_once(with_phoenix: PhoenixProject) -> None:
-    """Once for all tests, and not when nothing is recorded."""
-    assert with_phoenix.output("test", "--record", "recorded").count(SENTENCE) == 1
-    assert "do not repeat" not in with_phoenix.output("test")
 
 
 @pytest.mark.slow

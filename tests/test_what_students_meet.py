@@ -31,7 +31,7 @@ def explained(result: Result, code: int) -> str:
 def test_a_file_that_hides_a_library_is_named_before_it_is_imported(make_project: MakeProject, name: str) -> None:
     library = name.partition("/")[0].removesuffix(".py")
     project = make_project({"robot.py": ROBOT, **TESTS, name: "1 / 0\n"})
-    text = explained(project.run("test"), 2)
+    text = explained(project.run_here("test"), 2)
     assert f"error: {name} hides a library: import {library} finds it instead\n" in text
     assert "another name." in text
 
@@ -42,7 +42,7 @@ def test_each_command_that_runs_the_robot_names_such_a_file(make_project: MakePr
     if command == "--pytest":
         text = explained(project.run(program="pytest", cold=True), 4)
     else:
-        text = explained(project.run(*command.split()), 2)
+        text = explained(project.run_here(*command.split()), 2)
     assert "commands2.py hides a library: import commands2 finds it instead" in text
 
 
@@ -59,7 +59,7 @@ def test_files_with_names_of_their_own_and_rarely_used_ones_hide_nothing(make_pr
 
 
 def test_a_file_with_the_name_of_a_built_in_module_is_said_never_to_be_imported(make_project: MakeProject) -> None:
-    text = explained(make_project({"robot.py": ROBOT, **TESTS, "time.py": ""}).run("test"), 2)
+    text = explained(make_project({"robot.py": ROBOT, **TESTS, "time.py": ""}).run_here("test"), 2)
     assert "time.py has the name of a library: import time finds that, never this file" in text
 
 
@@ -99,7 +99,7 @@ def test_a_byte_order_mark_before_the_settings_does_no_harm(make_project: MakePr
 def test_settings_in_utf_16_are_explained(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, **TESTS})
     (project.path / "pyproject.toml").write_bytes("[tool.pyfrc]\n".encode("utf-16"))
-    text = explained(project.run("test"), 2)
+    text = explained(project.run_here("test"), 2)
     assert "pyproject.toml: not valid TOML: this file is in UTF-16" in text
     assert "Save it as UTF-8" in text
 
@@ -171,7 +171,7 @@ def test_a_wrong_value_is_reported_at_its_own_tables_line(make_project: MakeProj
 def test_the_file_and_the_class_are_named(
     make_project: MakeProject, files: dict[str, str], args: str, said: str, remedy: str
 ) -> None:
-    text = explained(make_project(files).run(*args.split()), 2)
+    text = explained(make_project(files).run_here(*args.split()), 2)
     assert said in text
     assert remedy in text
 

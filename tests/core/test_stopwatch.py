@@ -71,7 +71,7 @@ def test_what_is_computed_counts_and_what_holds_it_up_does_not(world: World) -> 
 def test_a_wait_counts_as_the_robot_time_that_passes(world: World) -> None:
     world.run(lambda: world.compute(2), lambda: world.sleep(500))
     assert list(world.figures.times[TELEOP]) == [502 * MS]
-    (overrun,) = [each for each in world.figures.overruns]
+    (overrun,) = world.figures.overruns
     assert (overrun.function, overrun.place, overrun.mode) == (TELEOP.name, TELEOP.place, "teleop")
     assert (overrun.loop_ms, overrun.function_ms, overrun.held_up_ms, overrun.period_ms) == (502, 502, 0, 20)
     assert overrun.robot_time_s == 0.1, "when the turn began"
@@ -80,7 +80,7 @@ def test_a_wait_counts_as_the_robot_time_that_passes(world: World) -> None:
 
 def test_an_overrun_by_what_holds_it_up_says_for_how_long(world: World) -> None:
     world.run(lambda: world.compute(4), lambda: world.be_held_up(50))
-    (overrun,) = [each for each in world.figures.overruns]
+    (overrun,) = world.figures.overruns
     assert (overrun.loop_ms, overrun.held_up_ms) == (54, 50)
 
 
