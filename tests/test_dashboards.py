@@ -80,6 +80,11 @@ def test_a_wrong_dashboard_changes_nothing(root: Path, wrong: dict[str, Any], me
         ('"topic"', '"topik"', "sim/dashboards.json:7: unknown key 'dashboards.Drive.widgets[0].topik'"),
         (', "w": 2', "", "sim/dashboards.json:7: dashboards.Drive.widgets[0]: the key 'w' is missing"),
         ('"Pit"', '"Drive"', "sim/dashboards.json:11: dashboards.Drive stands here again, after line 3"),
+        (
+            '"columns"',
+            '"colums"',
+            "sim/dashboards.json:4: unknown key 'dashboards.Drive.colums'\n  did you mean 'columns'?",
+        ),
         ("{\n", "<<<<<<< HEAD\n{\n", "sim/dashboards.json:1: not valid JSON: expected a value"),
     ],
 )

@@ -141,7 +141,9 @@ def test_stacks_of_code_that_runs_again_do_not_count_any_more(log: CrashLog, mon
             assert stands is not None
             assert (stands.place, stands.seconds, stands.hopeless) == ("robot.py:7", 3.0 * count, count == 3)
         log.forget_stacks()
+        forgotten = contents(log)
         log.forget_stacks()
+        assert contents(log) == forgotten, "it is written once"
     log.write("os._exit(3) was called")
     assert describe_exit(contents(log), 3, FILES, "meanwhile").endswith("meanwhile\n\nos._exit(3) was called")
     os.close(log.descriptor)

@@ -17,13 +17,14 @@ from functools import partial
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from pyfrc_core.errors import RobotCodeError, UsageError
-from pyfrc_core.processes import channel
-from pyfrc_core.processes.call import ForkedCall, run_in_subprocess
+from pyfrc_core.processes import channel, spawn
+from pyfrc_core.processes.call import Call, ForkedCall, begin_call, run_in_subprocess
 from pyfrc_core.processes.crash_report import CrashLog
 from pyfrc_core.processes.exit import (
     exit_by_signal,
@@ -381,3 +382,26 @@ def name_of(project: Project, log: CrashLog) -> str:
 def test_a_call_in_a_new_interpreter(tmp_path: Path) -> None:
     project = Project(tmp_path / "robot.py")
     assert run_in_subprocess(name_of, project, "meanwhile") == "robot.py"
+
+
+def test_a_call_in_an_interpreter_says_how_many_follow_and_whose_line_stands_still(tmp_path: Path) -> None:
+    begun: list[tuple[object, int]] = []
+    ended: list[object] = []
+    worker: Any = SimpleNamespace(finished=True, fileno=lambda: None)
+    interpreters: Any = SimpleNamespace(begin=lambda work, more: begun.append((work, more)) or worker, end=ended.append)
+    call: Call[str] = begin_call(interpreters, name_of, Project(tmp_path / "robot.py"), 4)
+    assert [more for _, more in begun] == [4]
+    call.close()
+    assert ended == [worker]
+
+
+def test_what_a_new_interpreter_prints_has_the_encoding_of_its_reader(monkeypatch: pytest.MonkeyPatch) -> None:
+    """That of this process if it prints beside it, else UTF-8."""
+
+    def encoding(stdout: int | None) -> str:
+        return spawn._output_encoding(spawn.Start(len, stdout=stdout))["PYTHONIOENCODING"]  # type: ignore[arg-type]
+
+    monkeypatch.setattr(sys, "stdout", SimpleNamespace(encoding="cp1252"))
+    assert [encoding(None), encoding(3)] == ["cp1252:backslashreplace", "utf-8:backslashreplace"]
+    monkeypatch.setattr(sys, "stdout", None)
+    assert encoding(None) == "utf-8:backslashreplace"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,6 +12,9 @@ import pytest
 from pyfrc_core.measure import stopwatch
 from pyfrc_core.measure.figures import WHOLE_LOOP, Figures, Measurand
 from pyfrc_core.measure.stopwatch import Stopwatch
+from pyfrc_core.measure.user_functions import UserFunctions
+from pyfrc_core.patch_table import PatchTable
+from pyfrc_core.project.robot_files import RobotFiles
 
 MS = 1_000_000
 TELEOP = Measurand("robot", "MyRobot.teleopPeriodic", "robot.py:3")
@@ -100,3 +104,24 @@ def test_what_raises_is_timed_too(world: World) -> None:
     with pytest.raises(KeyError):
         world.stopwatch.timed(fail, TELEOP)()
     assert list(world.figures.times[TELEOP]) == [6 * MS]
+
+
+def test_a_class_with_a_hook_of_its_own_for_derived_classes_keeps_it(world: World) -> None:
+    hooked: list[type] = []
+
+    class Hook:
+        def __init_subclass__(cls, **arguments: object) -> None:
+            hooked.append(cls)
+
+    class Base: ...
+
+    functions = UserFunctions(world.stopwatch, RobotFiles(Path(__file__).parent), lambda function: function)
+    table = PatchTable()
+    table.patch(Base, "__init_subclass__", classmethod(functions._when_derived_from(Base)))
+    try:
+
+        class Derived(Base, Hook): ...
+
+    finally:
+        table.undo()
+    assert hooked == [Derived]
