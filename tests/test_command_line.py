@@ -132,7 +132,7 @@ def test_the_same_option_is_of_the_same_kind_everywhere() -> None:
     ],
 )
 def test_a_mistyped_word_is_answered_with_the_right_one(wrong: list[str], meant: str, make_project) -> None:
-    result = make_project({}).run(*wrong)
+    result = make_project({}).run_here(*wrong)
     assert result.code == 2
     assert meant in result.stderr
     assert "Traceback" not in result.stderr
@@ -140,14 +140,14 @@ def test_a_mistyped_word_is_answered_with_the_right_one(wrong: list[str], meant:
 
 @pytest.mark.parametrize("command", ["sim", "deploy", "fuzz"])
 def test_a_robots_file_given_as_to_another_tool_is_answered_with_the_option_for_it(command: str, make_project) -> None:
-    result = make_project({}).run(command, "robot.py")
+    result = make_project({}).run_here(command, "robot.py")
     assert result.code == 2
     assert result.stderr.endswith("pyfrc finds the robot's file. Use --main FILE if it is not called robot.py.\n")
 
 
 @pytest.mark.parametrize("args", [["-v", "config", "check"], ["config", "check", "--verbose"]], ids=" ".join)
 def test_verbose_shows_the_traceback_and_changes_no_exit_code(args: list[str], make_project) -> None:
-    result = make_project({}).run(*args)
+    result = make_project({}).run_here(*args)
     assert result.code == 2
     assert "Traceback (most recent call last)" in result.stderr
     assert "no robot project found" in result.stderr

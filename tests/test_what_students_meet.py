@@ -495,27 +495,3 @@ EIGHT_TESTS = """
     def test_itself(control, robot, number):
         assert number == 5
 """
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("how", sampled(["-j 2", "--isolation none"], "-j 2"))
-def test_one_bug_is_explained_once_and_the_other_tests_point_there(make_project: MakeProject, how: str) -> None:
-    project = make_project({"robot.py": ONE_BUG, "tests/test_a.py": EIGHT_TESTS})
-    result = project.run("test", *how.split(), "--", "--junitxml=junit.xml")
-    assert result.code == 1
-    place = project.place("robot.py", "no such arm")
-    blocks = result.blocks()
-    assert len(blocks) == 9
-    assert blocks["test_teleop[0]"].startswith(f"{place}: ValueError: no such arm: 1\n")
-    assert "in test_teleop\n" in blocks["test_teleop[0]"]
-    for number in range(1, 6):
-        assert blocks[f"test_teleop[{number}]"] == f"{place}: the same as in test_teleop[0], which is explained above"
-        assert re.search(
-            rf"FAILED \S*test_a.py::test_teleop\[{number}\] - {place}: the same as in test_teleop\[0\]", result.stdout
-        )
-    assert project.place("robot.py", '"another"') in blocks["test_autonomous"]
-    for number in range(2):  # a test's own line is no bug of the robot
-        assert "assert" in blocks[f"test_itself[{number}]"]
-    junit = (project.path / "junit.xml").read_text("utf-8")
-    assert junit.count("ValueError(f&quot;no such arm") + junit.count('ValueError(f"no such arm') >= 6
-    assert "the same as" not in junit
