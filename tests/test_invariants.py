@@ -284,3 +284,11 @@ def test_rules_in_a_package_of_tests_import_their_neighbors(project) -> None:
     with pytest.raises(AssertionError):
         found.function(0.52)
     assert found.place == f"{RULES}:5"
+
+
+def test_rules_are_in_the_order_of_their_lines(project) -> None:
+    project.write({RULES: "import pyfrc\n" + "@pyfrc.invariant\ndef {}(robot): ...\n" * 3})
+    text = (project.path / RULES).read_text()
+    (project.path / RULES).write_text(text.format("third", "first", "second"))
+    found = load_invariants(Project(project.path / "robot.py"))
+    assert [each.name for each in found] == ["third", "first", "second"]

@@ -109,17 +109,6 @@ def test_loops_and_callbacks_keep_their_rates(make_project) -> None:
                 control.step_timing(seconds=0.03, autonomous=False, enabled=True)
             assert calls == [0.06, 0.07, 0.08]
 
-        def test_an_overrun_skips_the_loops_it_missed(control, robot):
-            import wpilib
-            loops = []
-            def slow():
-                loops.append(robot.now())
-                if len(loops) == 1:
-                    wpilib.wait(0.05)
-            robot.each_loop = slow
-            control.run_test(lambda tm: tm < 0.14)
-            assert loops == [0.02, 0.07, 0.08, 0.1, 0.12]
-
         def test_wpilibs_own_stepping_moves_the_robot(control, robot):
             from wpilib.simulation import DriverStationSim, stepTiming
             loops = []
@@ -679,24 +668,3 @@ def test_a_robot_that_ends_its_own_program_has_ended(make_project) -> None:
                     self.endCompetition()
         """,
     )
-
-
-def test_what_is_no_function_is_no_periodic_callback(make_project) -> None:
-    project = make_project(
-        {
-            "robot.py": """
-            import wpilib
-
-            class MyRobot(wpilib.TimedRobot):
-                def robotInit(self):
-                    self.addPeriodic(self.slow(), 0.5)
-
-                def slow(self):
-                    pass
-            """
-        }
-    )
-    result = project.run("test", "--builtin")
-    assert result.code == 1
-    place = project.place("robot.py", "self.addPeriodic")
-    assert f"{place}: TypeError: addPeriodic: the callback is None, not a function" in result.output

@@ -11,7 +11,9 @@ from wpiutil.log import DataLogReader, StringLogEntry
 
 from pyfrc_core.runtime.clock import KICKOFF
 from pyfrc_core.runtime.patches import data_logs
+from pyfrc_core.runtime.patches.active_run import active_run
 from pyfrc_core.runtime.patches.data_logs import DataLogs, LogPlace
+from pyfrc_core.runtime.patches.season_2026 import log_names
 
 from .timeline import Timeline
 
@@ -137,3 +139,14 @@ def test_a_log_that_is_not_kept_has_a_file_for_code_that_renames_it(tmp_path: Pa
     assert [file.stat().st_size for file in tmp_path.iterdir()] == [0, 0, 0]
     logs.close()
     assert [file.name for file in tmp_path.iterdir()] == ["other.wpilog"]
+
+
+def test_outside_a_run_a_log_begins_with_the_next_run_and_all_else_is_wpilibs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(active_run, "run", None)
+    monkeypatch.setattr(log_names, "started_at_import", started := [])
+    for name in ("start", "stop"):
+        monkeypatch.setattr(wpilib.DataLogManager, name, staticmethod(lambda *args, name=name: f"WPILib's {name}"))
+    replaced = {each.name: each.value for each in log_names.patches() if each.owner is wpilib.DataLogManager}
+    assert replaced["start"].__func__("logs", period=1.0) is None
+    assert started == [(("logs",), {"period": 1.0})]
+    assert replaced["stop"].__func__() == "WPILib's stop"

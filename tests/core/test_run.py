@@ -64,17 +64,17 @@ def test_within_a_packet_the_step_comes_first_then_the_loop_then_physics_then_wh
     run.clock.before_packet.append(lambda now: log.note(f"step {now}"))
     run.observe(lambda now: log.note(f"watches {now}"))
     run.clock.every(PACKET_US, PHYSICS, lambda: log.note("physics"))
-    run.when_constructed.append(lambda: log.note("constructed"))
-    run.when_initialized.append(lambda: log.note("initialized"))
+    run.when_constructed.append(lambda: log.note("constructed" + " while it starts" * run.starting))
+    run.when_initialized.append(lambda: log.note("initialized" + " while it starts" * run.starting))
     run.construct(robot_class(log))
     assert (run.started, run.alive) == (False, False)
     run.start()
-    assert (run.started, run.alive) == (True, True)
+    assert (run.started, run.alive, run.starting) == (True, True, False)
     run.next_packet()
     assert log == [
         "0 constructed",
         "0 robotInit",
-        "0 initialized",
+        "0 initialized while it starts",
         "20 step 0.02",
         "20 disabledInit",
         "20 robotPeriodic",

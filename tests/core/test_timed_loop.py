@@ -78,6 +78,11 @@ def test_a_period_must_be_longer_than_nothing(period: float, timeline: Timeline)
         make_loop(timeline).add(ROBOT, lambda: None, period)
 
 
+def test_what_is_no_function_is_no_callback(timeline: Timeline) -> None:
+    with pytest.raises(TypeError, match="addPeriodic: the callback is None, not a function: write it without"):
+        make_loop(timeline).add(ROBOT, None, 0.02)  # type: ignore[arg-type]
+
+
 def test_an_overrun_skips_the_periods_that_it_has_missed(timeline: Timeline) -> None:
     durations = iter([0, 50, 0, 20, 20.001, 0])
 
