@@ -127,6 +127,39 @@ def test_a_file_of_the_servers_size_is_kept_where_no_hash_is_known(server: Serve
     assert [each.name for each in tmp_path.iterdir()] == ["python.ipk"]
 
 
+def test_how_often_a_lost_connection_is_tried_again(server: Server, tmp_path: Path) -> None:
+    """Not without any byte, and else three times in a row without a byte more."""
+    asked: list[str] = []
+
+    def cut(*pieces: int) -> Answer:
+        sizes = iter(pieces)
+
+        def answer(request: BaseHTTPRequestHandler) -> None:
+            asked.append(request.headers.get("Range", ""))
+            begin = int(asked[-1].removeprefix("bytes=").removesuffix("-") or 0)
+            request.send_response(206 if begin else 200)
+            request.send_header("Content-Range", f"bytes {begin}-99/100")
+            request.send_header("Content-Length", str(100 - begin))
+            request.end_headers()
+            request.wfile.write(CONTENT[begin : begin + next(sizes, 0)])
+
+        return answer
+
+    wanted = Download("six 1.0", server.url, tmp_path / "six.whl", SHA256)
+    lost = r"^six 1\.0 cannot be downloaded from 127\.0\.0\.1: the connection was lost\n"
+    server.answer = cut(0)
+    with pytest.raises(DownloadError, match=lost):
+        get(wanted)
+    server.answer = cut(10, 0, 10)
+    with pytest.raises(DownloadError, match=lost):
+        get(wanted)
+    server.answer = cut(0, 0, 80)
+    assert get(wanted)
+    assert wanted.to.read_bytes() == CONTENT
+    ranges = ["", "", "bytes=10-", "bytes=10-", *["bytes=20-"] * 3, *["bytes=20-"] * 3]
+    assert asked == ranges
+
+
 def test_redirections_are_looked_at(server: Server, tmp_path: Path) -> None:
     server.sends(302, b"", Location="ftp://127.0.0.1/six.whl")
     with pytest.raises(DownloadError, match="redirects to ftp://"):

@@ -236,7 +236,10 @@ def test_ctrl_c_ends_everything_and_a_later_start_has_the_same_programs_key_and_
 def test_a_line_that_is_printed_right_after_a_client_has_connected_reaches_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """As the first lines of a program that an agent restarts, although no thread of the server's gets a turn."""
     monkeypatch.setattr(threading.Thread, "start", lambda thread: None)
-    console = ConsoleServer("127.0.0.1")
+    console, other = ConsoleServer("127.0.0.1"), ConsoleServer("127.0.0.1")
+    other.close()
+    assert other.port > 1023
+    assert other.port != console.port, "each has a port of its own"
     try:
         with socket.create_connection(("127.0.0.1", console.port)) as client:
             for number, line in ((1, b"first"), (2, b"second")):
