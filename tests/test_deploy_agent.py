@@ -89,11 +89,12 @@ def test_memory(robot: LocalRobot, tmp_path: Path) -> None:
         assert peak < 40_000_000
 
 
-MESSAGE = st.dictionaries(st.text(), st.recursive(st.none() | st.integers() | st.text(), st.lists, max_leaves=5))
+VALUES = st.none() | st.integers() | st.text(max_size=9)
+MESSAGE = st.dictionaries(st.text(max_size=9), VALUES | st.lists(VALUES, max_size=3), max_size=3)
 
 
 @settings(max_examples=50)
-@given(MESSAGE, st.lists(st.binary()), st.data())
+@given(MESSAGE, st.lists(st.binary(max_size=99), max_size=3), st.data())
 def test_frames_come_as_they_were_sent(said: wire.Message, pieces: list[bytes], data: st.DataObject) -> None:
     stream = wire.message_frame(said) + b"".join(wire.frame(wire.CONTENT, piece) for piece in pieces)
     reading = io.BytesIO(stream)
