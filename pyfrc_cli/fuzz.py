@@ -143,8 +143,7 @@ def command(
     with loading(verbosity().quiet):
         from pyfrc_core.compat.unrepeatable import explain_unrepeatable
         from pyfrc_core.fuzz.campaign.campaign import run_campaign
-        from pyfrc_core.fuzz.campaign.results import CampaignOptions
-        from pyfrc_core.fuzz.campaign.stream import Shard
+        from pyfrc_core.fuzz.campaign.results import CampaignOptions, Shard
         from pyfrc_core.processors import usable_processors
         from pyfrc_core.runtime.scripts.inputs_file import load_inputs, remarks
     if merge:
@@ -161,6 +160,9 @@ def command(
     options = CampaignOptions(seed or 0, runs, seconds, jobs, scripts, Shard(*shard), resume)
     campaign = run_campaign(_open_executor(project, jobs, scheduler), options, printer)
     printer.end(campaign.progress)
+    if seconds is not None and campaign.progress.cost is not None:
+        length = project.settings.fuzz.match_seconds
+        hint(f"A match of {length:g} s takes about {length * campaign.progress.cost:.1f} s here.")
     if pages is not None:
         _write_pages(project, campaign, pages)
     for text in campaign.hints.texts():
@@ -170,10 +172,8 @@ def command(
     if campaign.problem:
         click.echo(f"The scripts are in a temporary directory: copy them. {campaign.problem}", err=True)
     if campaign.always_fails:
-        starts = campaign.progress.matches
-        click.echo(
-            f"The robot failed in the same way at each of {starts} starts: the campaign ends until this is repaired."
-        )
+        starts = f"each of {campaign.always_fails} starts"
+        click.echo(f"The robot failed in the same way at {starts}: the campaign ends until this is repaired.")
     if campaign.interrupted:
         click.echo("interrupted")
     if not campaign.findings:
@@ -207,11 +207,9 @@ def _parse_shard(text: str | None) -> tuple[int, int]:
     """Return the number of a shard, from 1, and the number of shards."""
     if text is None:
         return 1, 1
-    from pyfrc_core.fuzz.campaign.stream import STREAMS
-
     number, slash, count = text.partition("/")
-    if not (slash and number.isdecimal() and count.isdecimal() and 1 <= int(number) <= int(count) <= STREAMS):
-        raise click.BadParameter(f"{text!r} is not I/N with I from 1 to N and N up to {STREAMS}, such as 1/4.")
+    if not (slash and number.isdecimal() and count.isdecimal() and 1 <= int(number) <= int(count)):
+        raise click.BadParameter(f"{text!r} is not I/N with I from 1 to N, such as 1/4.")
     return int(number), int(count)
 
 

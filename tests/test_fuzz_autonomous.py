@@ -59,23 +59,6 @@ def held_in_autonomous(script: InputScript) -> Iterable[str]:
             yield from (target for target, pressed in held.items() if pressed)
 
 
-@pytest.mark.slow
-def test_nothing_is_pressed_in_autonomous(make_project: Any) -> None:
-    project = make_project({"robot.py": FAILS_IN_AUTONOMOUS, "pyproject.toml": SHORT})
-    result = project.run("fuzz", "--seed", "1", "--runs", "16")
-    assert (result.code, "a driver moves" in result.output) == (0, False), result.output
-
-
-@pytest.mark.slow
-def test_auto_joysticks_let_drivers_press_there(make_project: Any) -> None:
-    project = make_project(
-        {"robot.py": FAILS_IN_AUTONOMOUS, "pyproject.toml": SHORT, "sim/config.json": AUTO_JOYSTICKS}
-    )
-    result = project.run("fuzz", "--seed", "1", "--runs", "12")
-    assert result.code == 1
-    assert "a driver moves the robot in autonomous" in result.output
-
-
 @pytest.mark.parametrize(
     "command",
     [pytest.param(("fuzz", "--runs", "12"), marks=pytest.mark.slow), ("test", "tests/fuzz_test.py")],

@@ -239,18 +239,6 @@ def _begin(project: Any, *options: str) -> StartedCommand:
 
 
 @pytest.mark.slow
-def test_ctrl_c_keeps_what_was_found(cluster: Cluster, make_shared_project) -> None:
-    project = copy(make_shared_project)
-    campaign = _begin(project, "--scheduler", cluster.address)
-    campaign.send_signal(signal.SIGINT)
-    stdout, stderr = campaign.rest()
-    assert (campaign.wait(), stderr) == (130, ""), stdout
-    assert "interrupted" in stdout
-    assert list(project.path.rglob("tests/fuzz/*.jsonl"))
-    assert cluster.left_on_workers() == []
-
-
-@pytest.mark.slow
 def test_a_scheduler_that_is_lost(own_cluster: Cluster, make_shared_project) -> None:
     own_cluster.add_worker()
     project = copy(make_shared_project)
@@ -297,15 +285,6 @@ def test_workers_play_the_matches(cluster: Cluster, make_project) -> None:
     assert "robot.py:5" in result.stdout, result.output
     assert [file.name for file in project.path.rglob("tests/fuzz/*.jsonl")] == ["valueerror-robot-teleopperiodic.jsonl"]
     assert cluster.left_on_workers() == []
-
-
-@pytest.mark.slow
-def test_an_error_of_the_robots_code_is_shown_as_without_a_cluster(cluster: Cluster, make_project) -> None:
-    project = make_project({"robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    x = missing\n"})
-    here = project.run("fuzz", "--runs", "1")
-    there = project.run("fuzz", "--runs", "1", "--scheduler", cluster.address)
-    assert (there.code, there.complaints) == (here.code, here.complaints)
-    assert "robot.py:4: NameError" in there.stderr
 
 
 @pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1", "tcp://127.0.0.1:port", ""])

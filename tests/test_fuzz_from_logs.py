@@ -6,7 +6,7 @@ import pytest
 
 from pyfrc_core.fuzz.guidance.seed_schedule import SeedScheduler
 from pyfrc_core.fuzz.inputs.match_plan import BaseMatch
-from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
+from pyfrc_core.runtime.scripts.script import InputScript, Step
 
 #: It fails only after a sequence that no random match has: four buttons in this order, then a stick.
 ROBOT = """
@@ -46,21 +46,6 @@ ENTERED = f"""{{"format": "pyfrc-input 1", "end": 5.0}}
 
 def robot() -> dict[str, str]:
     return {"robot.py": ROBOT, "pyproject.toml": SETTINGS, "entered.jsonl": ENTERED}
-
-
-@pytest.mark.slow
-def test_a_campaign_goes_on_from_a_log(make_project) -> None:
-    project = make_project(robot())
-    assert project.run("sim", "--ui", "none", "--script", "entered.jsonl").code == 0
-    (log,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
-    log.rename(project.path / "match.wpilog")
-    assert project.run("fuzz", "--seed", "1", "--runs", "16").code == 0
-    result = project.run("fuzz", "--seed", "1", "--runs", "16", "--from", "match.wpilog")
-    assert result.code == 1, result.output
-    assert "ValueError: the order was entered" in result.stdout
-    script = load_script(project.path / "tests/fuzz/valueerror-robot-teleopperiodic.jsonl")
-    assert sum(len(step.writes) for step in script.steps) <= 8
-    assert project.run("replay", "tests/fuzz/valueerror-robot-teleopperiodic.jsonl").code == 1
 
 
 def test_a_recorded_match_that_fails_is_found_at_once(make_project) -> None:

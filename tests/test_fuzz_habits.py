@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
-import pytest
 import wpilib
 from loops import for_each
 from wpilib.event import EventLoop
@@ -86,24 +85,3 @@ def test_what_counts_as_asking(joystick: Any, call: Any, target: str) -> None:
     assert list(asked.targets) == [f"joysticks[2].{target}"]
     call(joystick(1))
     assert len(asked.targets) == 1
-
-
-CHORD = """
-    import wpilib
-    import commands2
-    from commands2.button import CommandXboxController
-
-    class MyRobot(commands2.TimedCommandRobot):
-        def robotInit(self):
-            self.driver, self.operator = CommandXboxController(0), CommandXboxController(1)
-            (self.driver.leftBumper() & self.driver.back() & self.operator.y()).onTrue(
-                commands2.cmd.runOnce(lambda: 1 / 0)
-            )
-    """
-
-
-@pytest.mark.slow
-def test_a_chord_of_triggers_by_both_drivers_is_found(make_project: Any) -> None:
-    project = make_project({"robot.py": CHORD, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 8.0\n"})
-    result = project.run("fuzz", "--seed", "1", "--runs", "8")
-    assert f"{project.place('robot.py', '1 / 0')}: ZeroDivisionError" in result.stdout, result.output

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import random
-from pathlib import Path
 from types import FunctionType
 from typing import Any
 
@@ -183,61 +182,6 @@ def test_what_the_program_publishes_or_only_simulations_read_is_no_input(kind: s
     project = make_project({"robot.py": robot, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"})
     result = project.run("fuzz", "--seed", "1", "--runs", "24")
     assert result.code == 0, result.output
-
-
-@pytest.mark.slow
-def test_stories_have_the_names_of_the_robots_code(make_project: Any) -> None:
-    """Not `CAN["Gyro:ADXRS450[0]"]`."""
-    robot = """
-        import wpilib
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                self.gyro, self._beam = wpilib.ADXRS450_Gyro(), wpilib.DigitalInput(4)
-
-            def teleopPeriodic(self):
-                if self.gyro.getAngle() > 90 and not self._beam.get():
-                    raise ValueError
-        """
-    project = make_project({"robot.py": robot, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 8\n"})
-    result = project.run("fuzz", "--seed", "1", "--runs", "32")
-    assert result.code == 1, result.output
-    assert "beam on DIO 4 False" in result.stdout
-    assert "gyro angle_x " in result.stdout
-    assert "CAN[" not in result.stdout
-
-
-@pytest.mark.slow
-def test_pulses_and_poses_do_not_matter_to_a_correct_robot(make_project: Any) -> None:
-    robot = (Path(__file__).parents[1] / "benchmarks/fuzz_exam/correct/counted_pulses/robot.py").read_text("utf-8")
-    project = make_project({"robot.py": robot, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"})
-    result = project.run("fuzz", "--seed", "1", "--runs", "8")
-    assert (result.code, "100% of the robot's lines" in result.stdout) == (0, True), result.output
-
-
-@pytest.mark.slow
-def test_tunables_are_varied(make_project: Any) -> None:
-    robot = """
-        import magicbot
-
-        class Arm:
-            limit = magicbot.tunable(0.0)
-
-            def execute(self):
-                if self.limit > 0.7:
-                    raise ValueError
-
-        class MyRobot(magicbot.MagicRobot):
-            arm: Arm
-
-            def createObjects(self):
-                pass
-        """
-    settings = "[tool.pyfrc.fuzz]\nmatch_seconds = 15\n"
-    project = make_project({"robot.py": robot, "pyproject.toml": settings})
-    result = project.run("fuzz", "--seed", "1", "--runs", "8")
-    assert result.code == 1, result.output
-    assert "/components/arm/limit set to " in result.stdout
 
 
 # -- values ------------------------------------------------------------------------------------------------------------

@@ -62,13 +62,6 @@ def test_a_motor_that_autonomous_leaves_running_is_found(make_project: Any) -> N
 
 
 @pytest.mark.slow
-def test_the_check_can_be_switched_off(make_project: Any) -> None:
-    settings = SHORT + "motors_left_running = false\n"
-    project = make_project({"robot.py": ROBOT.format(teleop="pass", disabled="pass"), "pyproject.toml": settings})
-    assert project.run("fuzz", "--seed", "1", "--runs", "8").code == 0
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("teleop", "disabled"),
     sampled(

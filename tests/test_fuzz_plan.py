@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Any
 
 import pytest
 
@@ -90,28 +89,3 @@ def test_match_numbers_are_those_of_events() -> None:
             sort = str(writes["event.match_type"])
             highest[sort] = max(highest[sort], int(str(writes["event.match_number"])))
     assert highest == {"practice": 60, "qualification": 130, "elimination": 16}
-
-
-@pytest.mark.slow
-def test_a_bug_late_in_a_match_and_one_of_a_restart_are_found(make_project: Any) -> None:
-    robot = """
-        import wpilib
-
-        class MyRobot(wpilib.TimedRobot):
-            def disabledInit(self):
-                self.stored = 0.5
-
-            def teleopInit(self):
-                self.begun = wpilib.Timer.getFPGATimestamp()
-                print(self.stored)
-
-            def teleopPeriodic(self):
-                if wpilib.Timer.getFPGATimestamp() - self.begun > 8:
-                    raise RuntimeError("late")
-        """
-    project = make_project({"robot.py": robot, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5.0\n"})
-    seed = 17
-    assert sum(length_of(f"fuzz {seed} {number}", 5.0, SETTINGS) > 5.0 for number in range(16)) == 2  # one in 30 is
-    result = project.run("fuzz", "--seed", str(seed), "--runs", "16")
-    assert f"{project.place('robot.py', 'print')}: AttributeError" in result.stdout, result.output
-    assert f"{project.place('robot.py', 'raise')}: RuntimeError: late" in result.stdout

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import re
 import shlex
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +10,10 @@ import pytest
 import yaml
 
 from pyfrc_cli.fuzz import command
+from pyfrc_core.fuzz.campaign.corpus import Corpus
 from pyfrc_core.fuzz.campaign.kept_guidance import DIRECTORY
+from pyfrc_core.project import Project
+from pyfrc_core.runtime.scripts.script import InputScript
 
 SETTINGS = "[tool.pyfrc.fuzz]\nmatch_seconds = 1.5\n"
 
@@ -34,8 +34,6 @@ ROBOT = """
                 {"up": 1}["left"]
     """
 
-EMPTY = "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
-
 
 def written(project: Any) -> dict[str, bytes]:
     """The files that a campaign has written, with what is in them."""
@@ -43,104 +41,56 @@ def written(project: Any) -> dict[str, bytes]:
     return {file.relative_to(project.path).as_posix(): file.read_bytes() for file in sorted(files)}
 
 
-def guidance(project: Any) -> dict[str, Any]:
-    directory = project.path / ".pyfrc/fuzz/corpus"
-    return {file.name: json.loads(file.read_text()) for file in sorted(directory.iterdir())}
-
-
 def copy(make_shared_project: Any) -> Any:
     return make_shared_project({"robot.py": ROBOT, "pyproject.toml": SETTINGS})
 
 
-#: Two batches: in the second one, each stream goes on from what its first matches have reached.
-CAMPAIGN = ("--seed", "4", "--runs", "40")
-
-
-@pytest.fixture(scope="module")
-def whole(make_shared_project) -> Any:
-    """A project in which one process has played a whole campaign."""
-    project = copy(make_shared_project)
-    found = project.run("fuzz", *CAMPAIGN, "-j", "1")
-    assert (found.code, "40 matches" in found.stdout) == (1, True), found.output
-    return project
-
-
 @pytest.mark.slow
-def test_four_shards_find_together_what_one_machine_finds(whole, make_shared_project, tmp_path: Path) -> None:
-    scripts = [name for name in written(whole) if name.endswith(".jsonl")]
-    assert (len(scripts), "tests/fuzz/assertionerror-robot-robotinit.jsonl" in scripts) == (3, True)
-
+def test_what_two_machines_have_found_is_put_together(make_shared_project) -> None:
     shards = []
-    for number in (1, 2, 3, 4):
-        shard = copy(make_shared_project)
-        # More processes than one run scripts while shrinking that are not needed then.
-        jobs = "2" if number == 1 else "1"
-        result = shard.run("fuzz", *CAMPAIGN, "--shard", f"{number}/4", "-j", jobs)
-        assert "10 matches" in result.stdout, result.output
-        shards.append(tmp_path / str(number))
-        if (shard.path / "tests").is_dir():
-            shutil.copytree(shard.path / "tests", shards[-1])
-        else:
-            shards[-1].mkdir()
+    for number in (1, 2):
+        shards.append(copy(make_shared_project))
+        result = shards[-1].run("fuzz", "--seed", "4", "--runs", "64", "--shard", f"{number}/2")
+        assert (result.code, "32 matches" in result.stdout) == (1, True), result.output
     merged = copy(make_shared_project)
-    result = merged.run("fuzz", "--merge", *map(str, reversed(shards)))
+    directories = [str(each.path / "tests") for each in shards]
+    result = merged.run("fuzz", "--merge", *directories)
     assert result.code == 1, result.output
     assert "  pyfrc replay tests/fuzz/" in result.stdout
-    assert written(merged) == written(whole)
+    names = {name for each in shards for name in written(each)}
+    assert written(merged).keys() == names
     # A second time, there is nothing to copy.
-    again = merged.run("fuzz", "--merge", *map(str, shards))
-    assert (again.code, written(merged)) == (0, written(whole)), again.output
+    assert merged.run("fuzz", "--merge", *directories).code == 0
 
 
-@pytest.mark.slow
-def test_an_interrupted_campaign_goes_on_where_it_was(whole, make_shared_project) -> None:
-    parts = copy(make_shared_project)
-    first = parts.run("fuzz", *CAMPAIGN[:2], "--runs", "32", "-j", "1")
-    second = parts.run("fuzz", *CAMPAIGN, "--continue")
-    assert re.search("^8 matches, ", second.stdout, re.MULTILINE), second.output
-    assert written(parts) == written(whole)
-    assert guidance(parts) == guidance(whole)
-    # Nothing is found twice.
-    replays = [line for line in (first.stdout + second.stdout).splitlines() if "pyfrc replay" in line]
-    assert len(replays) == len(set(replays))
-    assert (parts.path / ".pyfrc/.gitignore").read_text() == "*\n"
+def test_of_one_failure_the_script_of_the_earliest_match_is_taken(tmp_path: Path) -> None:
+    def save(machine: str, name: str, match: int, cause: str, repeats: bool = True) -> None:
+        found = {"seed": 1, "match": match, "failure": cause}
+        file = tmp_path / machine / ("" if repeats else "not_repeated") / f"{name}.jsonl"
+        InputScript((), 20_000 * (1 + match), found=found, repeats=repeats).save(file)
+
+    save("one", "valueerror-robot-f", 9, "ValueError robot.py:1")
+    save("two", "valueerror-robot-f", 4, "ValueError robot.py:1")
+    save("two", "valueerror-robot-f-2", 6, "ValueError robot.py:2")
+    save("two", "keyerror-robot-f", 2, "KeyError robot.py:3", repeats=False)
+    (tmp_path / "robot.py").write_text("")
+    (tmp_path / "tests").mkdir()
+    corpus = Corpus(Project(tmp_path / "robot.py"))
+    shards = [tmp_path / "one", tmp_path / "two"]
+    entries = corpus.merge(shards)
+    assert [(each.file.name, each.script.found["match"]) for each in entries] == [
+        ("keyerror-robot-f.jsonl", 2), ("valueerror-robot-f.jsonl", 4), ("valueerror-robot-f-2.jsonl", 6)
+    ]  # fmt: skip
+    assert [each.file.parent.name for each in entries] == ["not_repeated", "fuzz", "fuzz"]
+    assert [each.file.name for each in corpus.all()] == ["valueerror-robot-f-2.jsonl", "valueerror-robot-f.jsonl"]
+    assert corpus.merge(shards) == []
 
 
-@pytest.mark.slow
-def test_after_a_change_of_the_code_matches_that_reach_nothing_are_dropped(make_shared_project) -> None:
-    project = copy(make_shared_project)
-    project.run("fuzz", "--runs", "8")
-    ((name, before),) = guidance(project).items()
-    assert name == "seed-0-streams-8.json"
-    assert all(stream["played"] == 1 and stream["worthwhile"]["line"] for stream in before["streams"])
-    project.write({"robot.py": EMPTY})
-    result = project.run("fuzz", "--runs", "16", "--continue")
-    assert re.search("^16 matches, ", result.stdout, re.MULTILINE), result.output  # half of them for the second time
-    (after,) = guidance(project).values()
-    assert after["project"] != before["project"]
-    for stream in after["streams"]:
-        assert (stream["played"], stream["reached"]) == (2, [])
-        assert not any(stream["worthwhile"].values())
-
-
-def test_a_damaged_file_of_an_earlier_campaign_does_not_matter(make_shared_project) -> None:
-    project = copy(make_shared_project)
-    project.write({"robot.py": EMPTY})
-    project.write({".pyfrc/fuzz/corpus/seed-1-streams-8.json": '{"project": "", "streams": [{"played": 3}]}'})
-    result = project.run("fuzz", "--seed", "1", "--runs", "8", "--continue")
-    assert re.search("^8 matches, ", result.stdout, re.MULTILINE), result.output
-
-
-@pytest.mark.parametrize("text", ["0/4", "5/4", "1", "1/9", "a/b", "/", "1/2/3"])
+@pytest.mark.parametrize("text", ["0/4", "5/4", "1", "a/b", "/", "1/2/3"])
 def test_a_shard_that_does_not_exist(text: str, make_shared_project) -> None:
     result = copy(make_shared_project).run("fuzz", "--shard", text)
     assert result.code == 2
     assert "is not I/N" in result.stderr
-
-
-def test_merge_needs_directories(make_shared_project) -> None:
-    result = copy(make_shared_project).run("fuzz", "--merge")
-    assert (result.code, "belong together" in result.stderr) == (2, True)
 
 
 def test_the_nightly_workflow_of_new_projects() -> None:

@@ -29,7 +29,7 @@ class Simulated(MatchExecutor):
     """
 
     def __init__(self, robot: Callable[[], Callable[[float, dict[str, object]], bool]], failure: FuzzFailure) -> None:
-        super().__init__(Project(Path("robot.py")), 1, Path())
+        super().__init__(Project(Path("robot.py")), 1)
         self._robot = robot
         self._failure = failure
         self.tasks: list[ReplayTask] = []

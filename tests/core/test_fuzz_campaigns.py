@@ -18,10 +18,10 @@ from pyfrc_core.fuzz.campaign.campaign import run_campaign
 from pyfrc_core.fuzz.campaign.corpus import DIRECTORY, NOT_REPEATED
 from pyfrc_core.fuzz.campaign.executors import WorkExecutor
 from pyfrc_core.fuzz.campaign.first_starts import START_US, STARTS
-from pyfrc_core.fuzz.campaign.results import Campaign, CampaignOptions, CampaignProgress, FuzzFinding
-from pyfrc_core.fuzz.campaign.stream import Shard
+from pyfrc_core.fuzz.campaign.results import Campaign, CampaignOptions, CampaignProgress, FuzzFinding, Shard
+from pyfrc_core.fuzz.guidance.seed_schedule import match_seconds
 from pyfrc_core.fuzz.match.work import FuzzTask, MatchResult, NoMoreWork, ReplayTask, Result, ShrinkTask, Shrunk, Work
-from pyfrc_core.fuzz.oracle.failure import FuzzFailure
+from pyfrc_core.fuzz.oracle.failure import WHILE_DISABLED, FuzzFailure
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import InputScript, Step
 
@@ -53,7 +53,7 @@ class Players(WorkExecutor):
     """
 
     def __init__(self, directory: Path, match: Callable[[int], MatchResult], jobs: int = 1) -> None:
-        super().__init__(Project(directory / "robot.py"), jobs, directory)
+        super().__init__(Project(directory / "robot.py"), jobs)
         self.match = match
         self.start: Callable[[ReplayTask], MatchResult] = lambda task: MatchResult(None, task.script)
         self.shrink: Callable[[ShrinkTask], Shrunk] = lambda task: Shrunk(script(40_000), task.failure, True, 7)
@@ -145,7 +145,7 @@ def test_a_campaign_counts_its_matches_and_the_lines_that_they_reach(project: Pa
     players = Players(project, lambda number: passed(*range(number % 5)))
     done = run(players, runs=20)
     assert (done.progress.matches, done.progress.simulated, done.progress.covered) == (20, 20 * 15.0, 0.4)
-    assert (done.findings, done.progress.crashes, done.interrupted, done.always_fails) == ([], 0, False, False)
+    assert (done.findings, done.progress.crashes, done.interrupted, done.always_fails) == ([], 0, False, 0)
     assert len(players.matches) == 20
     assert players.shrinkings == []
 
@@ -225,8 +225,27 @@ def test_a_robot_that_fails_at_each_start_is_not_played(project: Path, run: Run,
     players = Players(project, lambda number: passed())
     players.start = lambda task: failed(7, 20_000)
     done = run(players)
-    assert (done.always_fails, done.progress.matches, players.matches) == (True, STARTS, [])
+    assert (done.always_fails, done.progress.matches, players.matches) == (2 * STARTS, 0, [])
     assert listener.log == ["seen robot.py:7", "found robot.py:7"]
+    assert [each.paced for each in players.tasks if isinstance(each, ReplayTask)] == [False] * STARTS + [True] * STARTS
+
+
+def test_a_robot_that_fails_at_starts_only_while_the_computer_is_busy_is_played(project: Path, run: Run) -> None:
+    players = Players(project, lambda number: failed(7, 20_000) if number % 2 else passed())
+    players.start = lambda task: MatchResult(None, task.script) if task.paced else failed(7, 20_000)
+    done = run(players)
+    assert (done.always_fails, done.findings, done.progress.matches) == (0, [], 32)
+    (hint,) = done.hints.texts()
+    assert hint.startswith(f"robot.py:7: ValueError (at {STARTS + 16} of {2 * STARTS + 32} starts")
+
+
+def test_a_campaign_goes_on_if_a_failure_of_each_start_does_not_repeat(project: Path, run: Run) -> None:
+    players = Players(project, lambda number: passed())
+    players.start = lambda task: failed(7, 20_000)
+    players.shrink = lambda task: Shrunk(task.script, task.failure)
+    done = run(players)
+    assert (done.always_fails, done.findings, done.progress.matches) == (0, [], 32)
+    assert list(done.hints.unsteady) == ["ValueError robot.py:7"]
 
 
 def test_a_start_that_fails_sometimes_is_a_hint_and_the_campaign_goes_on(project: Path, run: Run) -> None:
@@ -240,7 +259,7 @@ def test_a_start_that_fails_sometimes_is_a_hint_and_the_campaign_goes_on(project
     players.start = start
     done = run(players)
     assert starts == [*range(STARTS), 1]  # the one that has failed, again
-    assert (done.always_fails, done.findings, done.progress.matches) == (False, [], 32)
+    assert (done.always_fails, done.findings, done.progress.matches) == (0, [], 32)
     assert done.hints.failed_starts["ValueError robot.py:7"] == 2
     assert list(done.hints.unsteady) == ["ValueError robot.py:7"]
 
@@ -284,8 +303,7 @@ def test_frequent_failures_are_avoided_by_the_next_batch(project: Path, run: Run
     players = Players(project, lambda number: failed(7))
     run(players, runs=96)
     left_out = [each.schedule.left_out[-1][1] for each in players.matches]
-    # One script is for the user, and the others for the streams, which do not guide each other.
-    assert (len(left_out), len(players.shrinkings)) == (96, 8)
+    assert (len(left_out), len(players.shrinkings)) == (96, 1)
     assert set(left_out[:32]) == {frozenset()}
     assert frozenset({"mode=teleop"}) in left_out[32:]
 
@@ -321,9 +339,30 @@ def test_time_is_left_for_failures_that_wait_to_be_shrunk(project: Path, run: Ru
     players = Players(project, match)
     done = run(players, runs=None, seconds=20.0)
     assert len(done.findings) == 3
-    # At the first, none waits besides; what is left is 20 - 1 s.
-    assert players.shrinkings[0].seconds == 19.0
-    assert all(each.seconds is not None and 3.0 <= each.seconds <= 60.0 for each in players.shrinkings)
+    # At the first, none waits besides; what is left is 20 - 1 s, and others may come.
+    assert players.shrinkings[0].seconds == 9.5
+    assert all(each.seconds is not None and 5.0 <= each.seconds <= 60.0 for each in players.shrinkings)
+
+
+def test_doubtful_failures_are_shrunk_when_the_matches_are_over(project: Path, run: Run, listener: Listener) -> None:
+    lights = FuzzFailure(WHILE_DISABLED, "robot.py:9", "f", "robot.py:9: set()")
+    players = Players(project, lambda number: [MatchResult(lights, script()), failed(7), passed()][min(number, 2)])
+    run(players)
+    assert listener.log == ["seen robot.py:9", "seen robot.py:7", "found robot.py:7", "found robot.py:9"]
+    assert isinstance(players.tasks[-1], ShrinkTask)
+    assert players.tasks[-1].failure == lights
+
+
+def test_a_match_of_the_usual_length_is_never_too_long(project: Path, run: Run, clock: SimpleNamespace) -> None:
+    def match(number: int) -> MatchResult:
+        clock.now += 5.0
+        return passed(number % 10)
+
+    players = Players(project, match)
+    done = run(players, runs=None, seconds=400.0)
+    assert done.progress.cost == 5.0 / 15.0
+    lengths = {match_seconds(players.project, each.schedule) for each in players.matches}
+    assert lengths == {5.0, 30.0}  # one as long as a real one would take an eighth of the time
 
 
 def test_the_next_campaign_goes_on_where_this_one_ended(project: Path, run: Run) -> None:
@@ -331,7 +370,11 @@ def test_the_next_campaign_goes_on_where_this_one_ended(project: Path, run: Run)
     run(first, runs=32)
     second = Players(project, lambda number: passed(number % 10))
     done = run(second, runs=64, resume=True)
-    assert done.progress.matches == 32
-    assert not {each.schedule.seeds for each in first.matches} & {each.schedule.seeds for each in second.matches}
+    again = done.progress.matches - 32
+    assert 0 < again <= 24  # those that were worth continuing
+    assert {each.schedule.seeds for each in second.matches[:again]} <= {each.schedule.seeds for each in first.matches}
+    assert not {each.schedule.seeds[-1] for each in first.matches} & {
+        each.schedule.seeds[-1] for each in second.matches[again:]
+    }
     third = Players(project, lambda number: passed())
     assert run(third, runs=64).progress.matches == 64

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
-from contextlib import AbstractContextManager, closing, nullcontext
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ import pytest
 
 from pyfrc_core.errors import RobotCodeError
 from pyfrc_core.fuzz.campaign import executors
-from pyfrc_core.fuzz.campaign.executors import LocalMatchExecutor, PooledMatchExecutor
+from pyfrc_core.fuzz.campaign.executors import LocalMatchExecutor
 from pyfrc_core.fuzz.guidance.seed_schedule import SeedSchedule
 from pyfrc_core.fuzz.match.journal import Journal
 from pyfrc_core.fuzz.match.work import FuzzTask, MatchResult, NoMoreWork, ReplayTask, ShrinkTask, Shrunk, Work
@@ -186,54 +185,3 @@ def test_a_process_that_died_while_it_made_a_script_short_leaves_the_long_one(lo
     works: list[Work] = [task]
     ((given, found),) = local.run(lambda: works.pop() if works else None)
     assert (given, found) == (task, Shrunk(script(70), FAILURE))
-
-
-# -- executors of concurrent.futures -----------------------------------------------------------------------------------
-
-
-class Pooled(PooledMatchExecutor):
-    def __init__(self, directory: Path, pool: Executor) -> None:
-        super().__init__(Project(directory / "robot.py"), 2, directory)
-        self.pool = pool
-        self.futures: list[Future[Any]] = []
-
-    def _pool(self) -> AbstractContextManager[Executor]:
-        return nullcontext(self.pool)
-
-    def _call(self, task: Work) -> Callable[[], Any]:
-        return lambda: MatchResult(None, task.script)  # type: ignore[union-attr]
-
-    def _result_of(self, task: Work, future: Future[Any]) -> Any:
-        return future.result()
-
-
-def test_matches_in_a_pool(tmp_path: Path) -> None:
-    with ThreadPoolExecutor(1) as threads:
-        pooled = Pooled(tmp_path, threads)
-        assert ends_of(pooled.play([replay(number) for number in (1, 2, 3)])) == [1, 2, 3]
-        assert pooled.replay(script(9)).script.end_us == 9
-
-
-class Never(Executor):
-    """Begins nothing."""
-
-    def __init__(self) -> None:
-        self.futures: list[Future[Any]] = []
-
-    def submit(self, *args: Any, **kwargs: Any) -> Future[Any]:
-        self.futures.append(Future())
-        return self.futures[-1]
-
-
-def test_an_interrupt_cancels_what_waits_in_a_pool(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    never = Never()
-    pooled = Pooled(tmp_path, never)
-
-    def wait(running: object, seconds: float, when: str) -> tuple[set[Future[Any]], set[Future[Any]]]:
-        pooled.interrupted = True
-        return set(), set()
-
-    monkeypatch.setattr(executors, "wait", wait)
-    with pytest.raises(KeyboardInterrupt):
-        list(pooled.play([replay(1), replay(2), replay(3)]))
-    assert [each.cancelled() for each in never.futures] == [True, True]

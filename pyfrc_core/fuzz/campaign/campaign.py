@@ -1,10 +1,7 @@
 """Run a campaign: many matches, guided by the goals they reach. Each distinct failure is shrunk and saved once.
 
-Failures are shrunk in processes of their own, beside the matches, which go on. With a limit of time on
-one machine, matches are one stream (`stream`), and the next one follows from all results that are known when it begins.
-With a number of matches, or when several machines play its parts, a campaign consists of several streams, which do not
-guide each other. Their matches are played in batches, and the results of a batch are used in the order of their
-numbers. So the result depends on the seed alone, and not on the number of processes.
+Failures are shrunk in processes of their own, beside the matches, which go on (`playing`). Doubtful ones wait until the
+matches are over: they may take hundreds of runs, and show nothing.
 """
 
 from __future__ import annotations
@@ -18,25 +15,21 @@ from dataclasses import dataclass, replace
 from ...errors import PyfrcError
 from ...processes.standstill import REPORTED_AFTER
 from ...wording import counted
-from ..guidance.goals import Goal
 from ..match.work import MOST_RUNS, FuzzTask, MatchResult, NoMoreWork, ReplayTask, ShrinkTask, Shrunk
-from ..oracle.failure import FuzzFailure
+from ..oracle.failure import WHILE_DISABLED, FuzzFailure
 from .corpus import Corpus, found_in
 from .describe import story_of
 from .executors import WorkExecutor
-from .first_starts import START_US, STARTS, try_starts
-from .kept_guidance import KeptGuidance
+from .first_starts import START_US, try_starts
+from .kept_guidance import read_guidance, write_guidance
 from .playing import Match, Playing
 from .results import Campaign, CampaignListener, CampaignOptions, FuzzFinding
-from .stream import STREAMS, Stream
 
-#: How many matches of an earlier campaign are played again when the robot's code has changed.
-_MOST_REVISITED = 64
 #: The least time between two writes of what guides the campaign.
 _KEPT_EVERY_SECONDS = 5.0
 
 #: How many seconds shrinking one failure may take, in a campaign with a limit of time.
-_LEAST_SECONDS, _MOST_SECONDS = 3.0, 60.0
+_LEAST_SECONDS, _MOST_SECONDS = 5.0, 60.0
 
 #: The maximum number of runs to shrink a script of a robot that does not repeat: runs that fail by chance prove little.
 _MOST_UNREPEATABLE_RUNS = 50
@@ -76,12 +69,10 @@ class _Failed:
     """A failure whose script is not short yet.
 
     :param number: that of its match; None for a match of an earlier campaign
-    :param is_new: whether it is to be saved and reported
     """
 
     number: int | None
     played: MatchResult
-    is_new: bool = True
 
     @property
     def failure(self) -> FuzzFailure:
@@ -91,6 +82,11 @@ class _Failed:
     @property
     def key(self) -> tuple[int | None, str]:
         return self.number, self.failure.cause
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Return whether this may be no fault: lights are set by the same calls as motors."""
+        return self.failure.kind == WHILE_DISABLED
 
 
 class _Runner:
@@ -104,24 +100,16 @@ class _Runner:
         self._listener = listener
         self._corpus = Corpus(executor.project)
         self._all_lines = executor.lines
-        shard = options.shard
-        count = STREAMS if options.runs is not None or shard.count > 1 else 1
-        played = [index for index in range(count) if shard.plays(index)]
-        self._streams = [Stream(options.seed, index, count, options.recorded) for index in played]
-        self._guidance = KeptGuidance(executor.project, options.seed, shard, count, self._streams)
-        #: What guides the campaign after the last complete batch.
-        self._guided: str | None = None
         self._kept_at = time.monotonic()
-        self._playing = Playing(executor.project, self._streams, options.runs, options.seconds, in_batches=count > 1)
-        self._reached: set[Goal] = set()
+        self._playing = Playing(executor.project, options)
         self._failures: list[FuzzFailure] = []
         #: Failures that wait to be shrunk, and those that are being shrunk, by the identity of their task.
         self._waiting: deque[_Failed] = deque()
         self._shrinking: dict[int, tuple[ShrinkTask, _Failed]] = {}
         #: What has been shrunk, or will be, by the match and the cause.
         self._shrunk: dict[tuple[int | None, str], Shrunk | None] = {}
-        #: New failures in the order of their matches: they are saved in this order.
-        self._to_save: deque[_Failed] = deque()
+        #: New failures in the order of their matches: they are saved in this order, but for doubtful ones.
+        self._to_save: list[_Failed] = []
 
     def replay_corpus(self) -> None:
         """Replay the scripts of earlier campaigns; failures that are still there are reported as known."""
@@ -134,10 +122,9 @@ class _Runner:
 
     def run(self) -> None:
         """Play matches, and shrink the failures beside them, until the end."""
-        if self._fails_at_start():
-            self._playing.end()
-        else:
-            self._resume()
+        if self._options.resume:
+            self._playing.resume(read_guidance(self._executor.project, self._options.seed, self._options.shard))
+        self._playing.over = self._fails_at_start()
         with closing(self._executor.run(self._next_work)) as results:
             for work, result in results:
                 if isinstance(result, Shrunk):
@@ -147,35 +134,26 @@ class _Runner:
                         self._learn(match, played)
                 self._listener.on_progress(self.campaign.progress)
 
-    def _resume(self) -> None:
-        """Go on where the last campaign with this seed ended, if the options say so."""
-        if not self._options.resume or not self._guidance.restore():
-            self._reached.update(*(stream.reached for stream in self._streams))
-            return
-        most = _MOST_REVISITED // len(self._streams)
-        revisited = [
-            Match(stream, schedule) for stream in self._streams for schedule in stream.scheduler.worthwhile()[-most:]
-        ]
-        for stream in self._streams:
-            stream.forget()
-        self._playing.revisit(revisited)
-
     def _fails_at_start(self) -> bool:
         """Return whether the robot fails at its start in any case, as it would in every match; report it."""
         starts = try_starts(self._executor)
         if starts.seconds >= REPORTED_AFTER:
             print(f"each match begins with about {starts.seconds:.0f} s of starting this robot", file=sys.stderr)
-        self._playing.published, self._playing.always_set = starts.published, tuple(starts.always_set)
+        self._playing.known_of_robot = replace(
+            self._playing.known_of_robot,
+            published=starts.published,
+            always_set=tuple(starts.always_set),
+            overrides=starts.overrides,
+        )
         hints = self.campaign.hints
         hints.always_set += [failure.place for failure in starts.always_set.values()]
-        hints.starts += STARTS
+        hints.starts += starts.count
+        hints.failed_starts.update(starts.failed)
         for failure in starts.unsteady:
-            hints.failed_starts[failure.cause] += 1
             self._note_unsteady(failure)
         if starts.always_fails is None:
             return False
-        self.campaign.always_fails = True
-        self.campaign.progress.matches = STARTS
+        self.campaign.always_fails = starts.count
         self._note_failure(None, starts.always_fails)
         return True
 
@@ -190,7 +168,8 @@ class _Runner:
         if late and not self._waiting and not self._shrinking:
             raise NoMoreWork
         is_only_shrunk = late or self._playing.over or self._playing.is_between_batches
-        if self._waiting and len(self._shrinking) < (jobs if is_only_shrunk else max(1, jobs // 2)):
+        may_begin = self._waiting and (is_only_shrunk or not self._waiting[0].is_doubtful)
+        if may_begin and len(self._shrinking) < (jobs if is_only_shrunk else max(1, jobs // 2)):
             return self._next_shrinking()
         if late or self._playing.over or self._playing.running >= max(1, jobs - len(self._shrinking)):
             return None
@@ -203,7 +182,7 @@ class _Runner:
         most_runs = _MOST_UNREPEATABLE_RUNS if self.campaign.unrepeatable else MOST_RUNS
         seconds = None
         if (left := self._seconds_left()) is not None:  # shared with those that wait
-            seconds = max(_LEAST_SECONDS, min(_MOST_SECONDS, left / (1 + len(self._waiting))))
+            seconds = max(_LEAST_SECONDS, min(_MOST_SECONDS, left / (2 + len(self._waiting))))
         task = ShrinkTask(failed.played.script, failed.failure, failed.played.inputs, most_runs, seconds)
         self._shrinking[id(task)] = task, failed
         self._count_shrinking()
@@ -212,22 +191,22 @@ class _Runner:
     def _end_batch(self) -> bool:
         """Return whether the next batch may begin: when it is known which frequent failures it avoids."""
         is_complete = True
-        for stream in self._streams if self._playing.in_batches else ():
-            for number, played in stream.frequent_failures():
-                failed = _Failed(number, played, is_new=False)
-                if failed.key not in self._shrunk:
-                    self._shrunk[failed.key] = None
-                    self._waiting.append(failed)
-                shrunk = self._shrunk[failed.key]
-                if shrunk is None:
-                    stream.ask_again(number, played)
-                    is_complete = False
-                elif shrunk.repeats:
-                    stream.scheduler.avoid(shrunk.failure, shrunk.script)
-        if is_complete:
-            self._guided = self._guidance.snapshot()
-            self._keep_guidance_at_times()
+        for number, played in self._playing.frequent_failures():
+            failed = _Failed(number, played)
+            if failed.key not in self._shrunk:
+                self._wait(failed)
+            shrunk = self._shrunk[failed.key]
+            if shrunk is None:
+                is_complete = False
+            elif shrunk.repeats:
+                self._playing.scheduler.avoid(shrunk.failure, shrunk.script)
         return is_complete
+
+    def _wait(self, failed: _Failed) -> None:
+        """Have a failure shrunk: after those that wait, but before doubtful ones."""
+        self._shrunk[failed.key] = None
+        self._waiting.append(failed)
+        self._waiting = deque(sorted(self._waiting, key=lambda each: each.is_doubtful))
 
     def _seconds_left(self) -> float | None:
         """Return the seconds in which matches are played; the rest is for the failures that wait to be shrunk."""
@@ -243,19 +222,18 @@ class _Runner:
 
     def _learn(self, match: Match, played: MatchResult) -> None:
         progress = self.campaign.progress
-        match.stream.learn(match.schedule, match.number, played)
         self.campaign.hints.add(played.hints)
-        self._reached |= played.reached.keys()
         self.campaign.unrepeatable = self.campaign.unrepeatable or played.unrepeatable
         progress.matches += 1
         progress.simulated += played.script.end_us / 1e6
-        if self._reached:
+        progress.cost = self._playing.cost
+        if reached := self._playing.reached:
             lines = self._all_lines
-            progress.covered = len(lines.intersection(self._reached)) / len(lines) if lines else 1.0
+            progress.covered = len(lines.intersection(reached)) / len(lines) if lines else 1.0
         for each in played.each_failure():
             self._note_failure(match.number, each)
-        if not self._playing.in_batches:
-            self._keep_guidance_at_times()
+        if time.monotonic() - self._kept_at > _KEPT_EVERY_SECONDS:
+            self.keep_guidance()
 
     def _note_failure(self, number: int | None, played: MatchResult) -> None:
         if played.failure is None:
@@ -265,8 +243,7 @@ class _Runner:
         if cause in hints.unsteady or not self._is_new(played.failure):
             return
         failed = _Failed(number, played)
-        self._shrunk[failed.key] = None
-        self._waiting.append(failed)
+        self._wait(failed)
         self._to_save.append(failed)
         self.campaign.progress.crashes = len(self._failures)
         self._listener.on_seen(failed.failure)
@@ -274,26 +251,25 @@ class _Runner:
     def _on_shrunk(self, failed: _Failed, shrunk: Shrunk) -> None:
         self._shrunk[failed.key] = shrunk
         if shrunk.repeats and not self._playing.in_batches and not failed.played.went_on:
-            self._streams[0].scheduler.avoid(shrunk.failure, shrunk.script)
+            self._playing.scheduler.avoid(shrunk.failure, shrunk.script)
         self._count_shrinking()
-        while self._to_save and (done := self._shrunk[self._to_save[0].key]) is not None:
-            self._save(self._to_save.popleft(), done)
+        for each in list(self._to_save):
+            if (done := self._shrunk[each.key]) is not None:
+                self._to_save.remove(each)
+                self._save(each, done)
+            elif not each.is_doubtful:
+                break
 
     def _count_shrinking(self) -> None:
         number = len(self._shrinking) + len(self._waiting)
         self.campaign.progress.doing = f"shrinking {counted(number, 'script')}" if number else ""
 
-    def _keep_guidance_at_times(self) -> None:
-        if time.monotonic() - self._kept_at > _KEPT_EVERY_SECONDS:
-            self.keep_guidance()
-
     def keep_guidance(self) -> None:
-        """Keep what guides the campaign now; of batches, after the last complete one."""
-        if not self._playing.in_batches and self.campaign.progress.simulated:
-            self._guided = self._guidance.snapshot()
-        if self._guided is not None and not self._options.recorded:
-            self._guidance.write(self._guided)
-        self._kept_at, self._guided = time.monotonic(), None
+        """Keep which matches were worth continuing."""
+        options = self._options
+        if self.campaign.progress.simulated and not options.recorded:
+            write_guidance(self._executor.project, options.seed, options.shard, self._playing.kept())
+        self._kept_at = time.monotonic()
 
     def _is_new(self, failure: FuzzFailure) -> bool:
         if any(failure.same_as(other) for other in self._failures):
@@ -316,6 +292,8 @@ class _Runner:
             self._failures.remove(failed.failure)
             self.campaign.progress.crashes = len(self._failures)
             self._note_unsteady(failed.failure)
+            if self.campaign.always_fails:  # not in each start, after all
+                self.campaign.always_fails, self._playing.over = 0, False
             return
         story = story_of(shrunk.script, failure, failed.played.names)
         script = replace(shrunk.script, story=story)

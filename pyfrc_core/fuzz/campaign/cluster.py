@@ -12,25 +12,26 @@ import pickle
 import socket
 import time
 import uuid
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import CancelledError, Executor, Future
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
-from functools import partial
+from collections.abc import Generator, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
+from contextlib import contextmanager, suppress
 from importlib.util import find_spec
-from pathlib import Path
 from typing import Any, Protocol
 from urllib.parse import urlsplit
 
 from ..._version import requirement
 from ...errors import PyfrcError, UsageError
+from ...processes.call import run_in_subprocess
 from ...project import Project
-from ...temporary import temporary_directory
-from ..match.work import MatchResult, Result, Shrunk, Work
-from .executors import PooledMatchExecutor
+from ..guidance.goals import RobotLine
+from ..match.work import MatchResult, NextWork, NoMoreWork, Result, Shrunk, Work
+from .executors import WorkExecutor, all_lines
 from .packed_project import pack
 
 #: How long to try to reach the scheduler, and how long one that is there may take to respond: it may be busy.
 _CONNECT_SECONDS, _RESPONSE_SECONDS = 10.0, 60.0
+#: The interval of the checks for an interrupt.
+_INTERRUPT_CHECK_SECONDS = 0.1
 #: The time between two checks whether there are workers, and how long a campaign waits for the first new one.
 _CHECK_SECONDS, _WITHOUT_WORKERS_SECONDS = 2.0, 60.0
 #: How often the match of a process that has ended is played again.
@@ -75,7 +76,7 @@ def open_cluster_executor(project: Project, address: str) -> Iterator[ClusterMat
             "--scheduler needs the package distributed, which is not installed",
             remedy=f'Install it with: pip install "{requirement("cluster")}"',
         )
-    with _connected(address) as client, temporary_directory("fuzz") as temporary:
+    with _connected(address) as client:
         from .cluster_worker import ProjectOnWorker, versions
 
         _check_versions(client, address)
@@ -83,14 +84,14 @@ def open_cluster_executor(project: Project, address: str) -> Iterator[ClusterMat
         environment = {key: os.environ.get(key, value) for key, value in _ENVIRONMENT.items()}
         client.register_plugin(ProjectOnWorker(pickle.dumps(pack(project)), environment, versions()), name)
         try:
-            yield ClusterMatchExecutor(project, client, address, name, Path(temporary))
+            yield ClusterMatchExecutor(project, client, address, name)
         finally:
             if client.status == "running":
                 with suppress(OSError, TimeoutError):  # the scheduler is lost, which the client has not noticed yet
                     client.unregister_worker_plugin(name)
 
 
-class ClusterMatchExecutor(PooledMatchExecutor):
+class ClusterMatchExecutor(WorkExecutor):
     """Runs matches on a cluster.
 
     :param client: connected to the cluster
@@ -98,26 +99,39 @@ class ClusterMatchExecutor(PooledMatchExecutor):
     :param plugin: the name of the plugin that keeps the project on each worker
     """
 
-    def __init__(self, project: Project, client: DaskClient, address: str, plugin: str, directory: Path) -> None:
-        super().__init__(project, max(1, sum(client.nthreads().values())), directory)
+    def __init__(self, project: Project, client: DaskClient, address: str, plugin: str) -> None:
+        super().__init__(project, max(1, sum(client.nthreads().values())))
         self._client = client
         self._address = address
         self._plugin = plugin
         self._executor = client.get_executor(pure=False, retries=_RETRIES)
         self._checked = self._had_workers = time.monotonic()
 
-    def _pool(self) -> AbstractContextManager[Executor]:
-        return nullcontext(self._executor)
+    @property
+    def lines(self) -> frozenset[RobotLine]:
+        return run_in_subprocess(all_lines, self.project, "while it was imported")
 
-    def _call(self, task: Work) -> Callable[[], bytes]:
+    def run(self, next_work: NextWork) -> Generator[tuple[Work, Result], None, None]:
         from .cluster_worker import play_on_worker
 
-        return partial(play_on_worker, self._plugin, pickle.dumps(task))
+        running: dict[Future[bytes], Work] = {}
+        try:
+            while True:
+                while (task := next_work()) is not None:
+                    running[self._executor.submit(play_on_worker, self._plugin, pickle.dumps(task))] = task
+                if not running:
+                    return
+                done, _ = wait(running, _INTERRUPT_CHECK_SECONDS, FIRST_COMPLETED)
+                self._check_interrupt()
+                for future in done:
+                    yield running.pop(future), self._result_of(future)
+        except NoMoreWork:
+            return
+        finally:
+            for future in running:
+                future.cancel()
 
-    def _with_journal(self, task: Work) -> Work:
-        return task  # the worker has one, where it is needed
-
-    def _result_of(self, task: Work, future: Future[bytes]) -> Result:
+    def _result_of(self, future: Future[bytes]) -> Result:
         try:
             result = pickle.loads(future.result())
         except CancelledError:

@@ -6,13 +6,11 @@ Each match has its own process, so it may crash, hang and print without harm.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from collections.abc import Generator, Iterable, Iterator
 from contextlib import AbstractContextManager, closing, contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from ...errors import PyfrcError, RobotCodeError
 from ...interruption import interruption
@@ -35,7 +33,6 @@ from ..match.play import play
 from ..match.preparation import Preparation, known_project, prepare_interpreter
 from ..match.restarts import MEANWHILE
 from ..match.work import (
-    ROBOT_SEED,
     FuzzTask,
     MatchExecutor,
     MatchResult,
@@ -52,21 +49,12 @@ from ..oracle.failure import HANGS, PROCESS_ENDED, FuzzFailure
 from ..shrink.shrinker import Shrinker
 from .first_starts import START_US
 
-# Interval of the checks for an interrupt and for the end of the campaign's time, in seconds.
-_INTERRUPT_CHECK_SECONDS = 0.1
 #: How often a failure at the start has to repeat.
 _STARTS_AGAIN = 4
 
 
 class WorkExecutor(MatchExecutor):
-    """Runs matches of one project, and shrinks scripts beside them.
-
-    :param directory: a directory for temporary files
-    """
-
-    def __init__(self, project: Project, jobs: int, directory: Path) -> None:
-        super().__init__(project, jobs, directory)
-        self._journals = 0
+    """Runs matches of one project, and shrinks scripts beside them."""
 
     @abstractmethod
     def run(self, next_work: NextWork) -> Generator[tuple[Work, Result], None, None]:
@@ -110,36 +98,6 @@ class WorkExecutor(MatchExecutor):
         if self.interrupted:
             raise KeyboardInterrupt
 
-    @contextmanager
-    def _journal(self, task: Work) -> Iterator[None]:
-        """Delete the task's journal when the context ends."""
-        try:
-            yield
-        finally:
-            if isinstance(task, FuzzTask) and task.journal is not None:
-                task.journal.unlink(missing_ok=True)
-
-    def _with_journal(self, task: Work) -> Work:
-        if not isinstance(task, FuzzTask):
-            return task
-        self._journals += 1
-        return replace(task, journal=self._directory / str(self._journals))
-
-    def _died(self, task: Work, text: str) -> Result:
-        """Return the result of a match whose process ended without returning one."""
-        if isinstance(task, ShrinkTask):
-            return Shrunk(task.script, task.failure)
-        headline = text.partition("\n")[0]
-        place, _, what = headline.partition(": ")
-        if not what:
-            place = ""
-        failure = FuzzFailure(HANGS if " hangs here" in headline else PROCESS_ENDED, place, "", headline)
-        if isinstance(task, ReplayTask):
-            return MatchResult(failure, task.script)
-        steps = tuple(read_journal(task.journal)) if task.journal is not None else ()
-        end_us = to_us(match_seconds(self.project, task.schedule))
-        return MatchResult(failure, InputScript(steps, end_us, robot=self.project.main_file.name, seed=ROBOT_SEED))
-
 
 @contextmanager
 def open_match_executor(project: Project, jobs: int) -> Iterator[WorkExecutor]:
@@ -153,56 +111,14 @@ def open_match_executor(project: Project, jobs: int) -> Iterator[WorkExecutor]:
             yield executor
 
 
-class PooledMatchExecutor(WorkExecutor):
-    """Runs matches in an executor of `concurrent.futures`."""
-
-    @property
-    def lines(self) -> frozenset[RobotLine]:
-        return run_in_subprocess(_all_lines, self.project, "while it was imported")
-
-    @abstractmethod
-    def _pool(self) -> AbstractContextManager[Executor]:
-        """Return the executor, which is used until the context ends."""
-
-    @abstractmethod
-    def _call(self, task: Work) -> Callable[[], Any]:
-        """Return the function that does a task there."""
-
-    @abstractmethod
-    def _result_of(self, task: Work, future: Future[Any]) -> Result:
-        """Return the result of the task whose future is done."""
-
-    def run(self, next_work: NextWork) -> Generator[tuple[Work, Result], None, None]:
-        running: dict[Future[Any], tuple[Work, Work]] = {}
-        with self._pool() as pool:
-            try:
-                while True:
-                    while (task := next_work()) is not None:
-                        noted = self._with_journal(task)
-                        running[pool.submit(self._call(noted))] = task, noted
-                    if not running:
-                        return
-                    done, _ = wait(running, _INTERRUPT_CHECK_SECONDS, FIRST_COMPLETED)
-                    self._check_interrupt()  # the signal may have ended that process, too
-                    for future in done:
-                        task, noted = running.pop(future)
-                        with self._journal(noted):
-                            result = self._result_of(noted, future)
-                        yield task, result
-            except NoMoreWork:
-                return
-            finally:
-                for future in running:
-                    future.cancel()
-
-
 def _work(project: Project, log: CrashLog, work: Work) -> Result:
     """Do one task in this process, which must end afterwards."""
     project = known_project(project)
     return _shrink(project, log, work) if isinstance(work, ShrinkTask) else play(project, log, work)
 
 
-def _all_lines(project: Project, log: CrashLog) -> frozenset[RobotLine]:
+def all_lines(project: Project, log: CrashLog) -> frozenset[RobotLine]:
+    """Import the robot in this process; return its lines."""
     return robot_lines(project).all()
 
 
@@ -213,9 +129,17 @@ def _survey(project: Project) -> tuple[bool, frozenset[RobotLine]]:
 
 
 class LocalMatchExecutor(WorkExecutor):
-    """Runs each match in a process of this computer."""
+    """Runs each match in a process of this computer.
+
+    :param directory: a directory for temporary files
+    """
 
     _lines: frozenset[RobotLine]
+
+    def __init__(self, project: Project, jobs: int, directory: Path) -> None:
+        super().__init__(project, jobs)
+        self._directory = directory
+        self._journals = 0
 
     @property
     def lines(self) -> frozenset[RobotLine]:
@@ -249,6 +173,37 @@ class LocalMatchExecutor(WorkExecutor):
     @abstractmethod
     def _begin(self, task: Work) -> Call[Result]:
         """Begin a task."""
+
+    @contextmanager
+    def _journal(self, task: Work) -> Iterator[None]:
+        """Delete the task's journal when the context ends."""
+        try:
+            yield
+        finally:
+            if isinstance(task, FuzzTask) and task.journal is not None:
+                task.journal.unlink(missing_ok=True)
+
+    def _with_journal(self, task: Work) -> Work:
+        if not isinstance(task, FuzzTask):
+            return task
+        self._journals += 1
+        return replace(task, journal=self._directory / str(self._journals))
+
+    def _died(self, task: Work, text: str) -> Result:
+        """Return the result of a match whose process ended without returning one."""
+        if isinstance(task, ShrinkTask):
+            return Shrunk(task.script, task.failure)
+        headline = text.partition("\n")[0]
+        place, _, what = headline.partition(": ")
+        if not what:
+            place = ""
+        failure = FuzzFailure(HANGS if " hangs here" in headline else PROCESS_ENDED, place, "", headline)
+        if isinstance(task, ReplayTask):
+            return MatchResult(failure, task.script)
+        steps = tuple(read_journal(task.journal)) if task.journal is not None else ()
+        end_us = to_us(match_seconds(self.project, task.schedule))
+        robot, seed = self.project.main_file.name, task.schedule.robot_seed
+        return MatchResult(failure, InputScript(steps, end_us, robot=robot, seed=seed))
 
     def _result(self, task: Work, call: Call[Result]) -> Result:
         with self._journal(task), closing(call):
@@ -284,7 +239,7 @@ class SpawnedMatchExecutor(LocalMatchExecutor):
     def __init__(self, project: Project, jobs: int, directory: Path) -> None:
         super().__init__(project, jobs, directory)
         self._interpreters = Interpreters(partial(prepare_interpreter, replace(project)), jobs)
-        survey = begin_call(self._interpreters, _all_lines, project, 0)
+        survey = begin_call(self._interpreters, all_lines, project, 0)
         try:
             with closing(survey):
                 survey.wait()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import linecache
 import time
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -24,14 +25,21 @@ class FirstStarts:
     """What these starts show.
 
     :ivar seconds: how long the first one took, in real time
+    :ivar count: how many there were
+    :ivar failed: how many of them each failure has ended, by its cause
+    :ivar overrides: see `MatchResult`
     :ivar published: see `MatchResult`
     :ivar always_set: the lines of code that set an output in each disabled loop, from the first on: lights, perhaps
-    :ivar always_fails: how the robot fails, if it fails at each start in the same way
+    :ivar always_fails: how the robot fails, if it fails at each start in the same way, also one at a time and at the
+        pace of real time: what a vendor simulates may respond too late on a busy computer
     :ivar unsteady: failures that did not repeat with the same inputs
     """
 
     seconds: float = 0.0
+    count: int = 0
+    failed: Counter[str] = field(default_factory=Counter)
     published: frozenset[str] = frozenset()
+    overrides: tuple[str, ...] = ()
     always_set: dict[str, FuzzFailure] = field(default_factory=dict)
     always_fails: MatchResult | None = None
     unsteady: list[FuzzFailure] = field(default_factory=list)
@@ -46,12 +54,14 @@ def try_starts(executor: MatchExecutor) -> FirstStarts:
         whole = InputScript(steps, START_US, robot=executor.project.main_file.name, seed=index)
         return whole.with_found(ALWAYS_SET, list(found.always_set))
 
-    def start(indices: Sequence[int]) -> list[MatchResult]:
+    def start(indices: Sequence[int], paced: bool = False) -> list[MatchResult]:
         while True:  # one such line is noted in each run
-            played = list(executor.play([ReplayTask(script(index)) for index in indices]))
+            played = list(executor.play([ReplayTask(script(index), paced=paced) for index in indices]))
             noted = [each.failure for result in played for each in result.noted if each.failure.kind == WHILE_DISABLED]
             new = {_code_at(each.place, executor.project.files): each for each in noted}
             if new.keys() <= found.always_set.keys():
+                found.count += len(played)
+                found.failed.update(each.failure.cause for each in played if each.failure is not None)
                 return played
             found.always_set |= new
 
@@ -60,13 +70,12 @@ def try_starts(executor: MatchExecutor) -> FirstStarts:
     found.seconds = time.monotonic() - began
     found.published = played[0].published
     played += start(range(1, STARTS))
-    first = played[0].failure
-    if first is not None and all(first.same_as(each.failure) for each in played):
-        found.always_fails = played[0]
-        return found
+    found.overrides = max((each.overrides for each in played), key=len)
     failed = [(index, each.failure) for index, each in enumerate(played) if each.failure is not None]
-    again = start([index for index, _ in failed])
+    again = [start([index], paced=True)[0] for index, _ in failed]
     found.unsteady = [one for (_, one), other in zip(failed, again, strict=True) if not one.same_as(other.failure)]
+    if len(found.failed) == 1 and found.failed.total() == found.count:
+        found.always_fails = played[0]
     return found
 
 

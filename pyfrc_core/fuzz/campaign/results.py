@@ -10,7 +10,18 @@ from ..oracle.failure import PROCESS_ENDED, FuzzFailure
 from ..oracle.hints import CampaignHints
 from .corpus import CorpusEntry
 from .describe import late_failure
-from .stream import ALL, Shard
+
+
+@dataclass(frozen=True)
+class Shard:
+    """The part of a campaign that one machine plays: the matches ``number - 1``, ``number - 1 + count``, ...
+
+    :param number: from 1 to `count`
+    :param count: the number of machines
+    """
+
+    number: int = 1
+    count: int = 1
 
 
 @dataclass(frozen=True)
@@ -31,7 +42,7 @@ class CampaignOptions:
     seconds: float | None
     jobs: int
     recorded: tuple[InputScript, ...] = ()
-    shard: Shard = ALL
+    shard: Shard = Shard()
     resume: bool = False
 
 
@@ -45,6 +56,7 @@ class CampaignProgress:
         on systems where they cannot be
     :param crashes: the number of distinct failures
     :param doing: the current activity
+    :param cost: processor seconds for a second of robot time; None before the first match
     """
 
     matches: int = 0
@@ -52,6 +64,7 @@ class CampaignProgress:
     covered: float | None = None
     crashes: int = 0
     doing: str = ""
+    cost: float | None = None
 
 
 @dataclass(frozen=True)
@@ -91,14 +104,14 @@ class Campaign:
     :param unrepeatable: the robot's devices that do not repeat, as `compat.unrepeatable` names them
     :param problem: why scripts are not saved in the project; empty if they are
     :param hints: what is no failure, but may be a mistake, in words
-    :param always_fails: whether it ended because the robot fails at its start in every match
+    :param always_fails: how many starts of the robot have all failed in the same way, which has ended it; 0: no
     """
 
     progress: CampaignProgress = field(default_factory=CampaignProgress)
     findings: list[FuzzFinding] = field(default_factory=list)
     interrupted: bool = False
     unrepeatable: tuple[str, ...] = ()
-    always_fails: bool = False
+    always_fails: int = 0
     problem: str = ""
     hints: CampaignHints = field(default_factory=CampaignHints)
 

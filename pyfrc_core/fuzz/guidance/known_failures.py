@@ -7,9 +7,7 @@ shortest script of a failure has only inputs that it needs, so a match without o
 from __future__ import annotations
 
 import random
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 from ..oracle.failure import FuzzFailure
 
@@ -69,18 +67,6 @@ class KnownFailures:
             known.failure
             for known in self._known
             if not known.needed and known.ended >= _LEAST_ENDED and known.ended >= _FREQUENT * known.met
-        ]
-
-    def state(self) -> dict[str, Any]:
-        """Return what `restore` needs, as values of JSON."""
-        return {"matches": self._matches, "failures": [asdict(known) for known in self._known]}
-
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Go on where an earlier campaign ended."""
-        self._matches = int(state["matches"])
-        self._known = [
-            _KnownFailure(FuzzFailure(**each["failure"]), tuple(each["needed"]), int(each["met"]), int(each["ended"]))
-            for each in state["failures"]
         ]
 
     def left_out(self, rng: random.Random) -> frozenset[str]:

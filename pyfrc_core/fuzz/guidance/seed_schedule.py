@@ -27,6 +27,10 @@ _SAME_FOR_US = 1_000_000
 #: How many matches worth continuing are remembered for each kind of goal: the latest, which have reached the goals that
 #: are hardest to reach.
 _MOST_REMEMBERED = 64
+#: How many of them a later campaign plays again.
+_MOST_KEPT = 24
+#: How many seeds the robots' own random generators have.
+_ROBOT_SEEDS = 10_000
 #: How often each kind of goal is continued from, relative to the others.
 _WEIGHTS = {LINE: 4, BRANCH: 3, STATE: 3}
 
@@ -44,18 +48,10 @@ class SeedSchedule:
     left_out: tuple[tuple[int, LeftOut], ...] = ()
     base: BaseMatch | None = None
 
-    def state(self) -> list[Any]:
-        """Return what `of_state` needs, as values of JSON."""
-        return [self.seeds, [(at_us, sorted(left_out)) for at_us, left_out in self.left_out]]
-
-    @staticmethod
-    def of_state(state: Sequence[Any]) -> SeedSchedule:
-        """Return the schedule with this state."""
-        seeds, left_out = state
-        return SeedSchedule(
-            tuple((int(at_us), str(seed)) for at_us, seed in seeds),
-            tuple((int(at_us), frozenset(targets)) for at_us, targets in left_out),
-        )
+    @property
+    def robot_seed(self) -> int:
+        """Return the seed of the robot's own random generators."""
+        return random.Random(f"robot {self.seeds[0][1]}").randrange(_ROBOT_SEEDS)
 
     def rng(self) -> random.Random:
         """Return the random number generator for the start of the match; `reseed` keeps it up to date."""
@@ -132,26 +128,26 @@ class SeedScheduler:
         """Note the failure that ended a match, or that none did."""
         self._known.note(schedule.left_out[-1][1], failure)
 
-    def worthwhile(self) -> list[SeedSchedule]:
-        """Return the seeds of the matches that are worth continuing, each once."""
-        return list(dict.fromkeys(each.schedule for kind in self._worthwhile.values() for each in kind))
-
     def state(self) -> dict[str, Any]:
-        """Return what `restore` needs, as values of JSON."""
-        worthwhile = {
-            kind: [[each.schedule.state(), each.reached_us] for each in worthwhile]
-            for kind, worthwhile in self._worthwhile.items()
-        }
-        return {"worthwhile": worthwhile, "known": self._known.state()}
-
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Go on where a scheduler with this state was."""
-        for kind in self._worthwhile:
-            self._worthwhile[kind] = [
-                _Worthwhile(SeedSchedule.of_state(schedule), tuple(reached_us))
-                for schedule, reached_us in state["worthwhile"][kind]
+        """Return what `schedules_of` needs, as values of JSON: the latest matches that are worth continuing."""
+        schedules = dict.fromkeys(each.schedule for kind in self._worthwhile.values() for each in kind)
+        return {
+            "worthwhile": [
+                [each.seeds, [(at_us, sorted(left_out)) for at_us, left_out in each.left_out]]
+                for each in list(schedules)[-_MOST_KEPT:]
             ]
-        self._known.restore(state["known"])
+        }
+
+    @staticmethod
+    def schedules_of(state: Mapping[str, Any]) -> list[SeedSchedule]:
+        """Return the matches in a scheduler's state."""
+        return [
+            SeedSchedule(
+                tuple((int(at_us), str(seed)) for at_us, seed in seeds),
+                tuple((int(at_us), frozenset(targets)) for at_us, targets in left_out),
+            )
+            for seeds, left_out in state["worthwhile"]
+        ]
 
     def frequent_failures(self) -> list[FuzzFailure]:
         """Return the failures that have ended many matches, and for which `avoid` was not called."""

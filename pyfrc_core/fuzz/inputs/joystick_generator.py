@@ -14,7 +14,7 @@ from collections.abc import Container, Iterable, Sequence
 from ...runtime.clock import PACKET_US
 from ...wpi import station
 from .drivers import Habit, draw_habit
-from .values import UNKNOWN, Input, InputKind, RobotConstants, Value, draw
+from .values import POV_ANGLES, UNKNOWN, Input, InputKind, RobotConstants, Value, draw
 
 #: Packets come 50 times a second, and hands move no faster.
 _STEP_US = 2 * PACKET_US
@@ -26,6 +26,9 @@ _KNOWN, _OTHERS = 100, 1
 
 #: How often a control is used that the robot has asked for, one that every gamepad has, and any other.
 _ASKED, _COMMON, _RARE = 80, 8, 1
+
+#: How often a thumb rolls around a POV that it presses.
+_ROLLS = 0.35
 
 _RELEASED: dict[InputKind, float] = {"axis": 0.0, "trigger": 0.0, "button": False, "pov": station.NOT_PRESSED}
 
@@ -50,8 +53,8 @@ class JoystickGenerator:
         self._weights: tuple[int, ...] = _UNKNOWN
         self._pose_until_us = 0
         self._held: dict[Input, float] = {}
-        #: Taps: the time, the button, and whether it is pressed or released.
-        self._taps: list[tuple[int, Input, bool]] = []
+        #: Taps: the time, the button or POV, and its value.
+        self._taps: list[tuple[int, Input, float]] = []
         #: Axes in motion: the time and value at the start, and the value at the end of the pose.
         self._moving: dict[Input, tuple[int, float, float]] = {}
         self._trembling: Input | None = None
@@ -104,8 +107,8 @@ class JoystickGenerator:
         if now_us >= self._pose_until_us:
             self._pose(now_us, found)
         while self._taps and self._taps[0][0] <= now_us:
-            _, button, pressed = self._taps.pop(0)
-            found[button.target] = pressed
+            _, control, value = self._taps.pop(0)
+            found[control.target] = value
         for control, (start_us, start, end) in self._moving.items():
             done = (now_us - start_us) / (self._pose_until_us - start_us)
             self._set(control, round(start + (end - start) * done, 3), found)
@@ -133,9 +136,9 @@ class JoystickGenerator:
 
     def _finish(self, found: dict[str, Value]) -> None:
         """Taps end with the pose, and moving sticks arrive where they were going."""
-        for _, button, pressed in self._taps:
-            if not pressed:
-                found[button.target] = False
+        for _, control, value in self._taps:
+            if value == _RELEASED[control.kind]:
+                found[control.target] = value
         for control, (_, _, end) in self._moving.items():
             self._set(control, end, found)
         if self._trembling is not None:
@@ -168,11 +171,27 @@ class JoystickGenerator:
                 if how < 0.25 and axis.kind == "axis":
                     self._trembling = axis
         if povs and rng.random() < habit.pov:
-            self._set(rng.choice(povs), draw("pov", rng), found)
+            pov = rng.choice(povs)
+            if rng.random() < _ROLLS and pov not in self._held:
+                self._roll(pov, now_us)
+            else:
+                self._set(pov, draw("pov", rng), found)
         for button in self._some(buttons, rng.choice(habit.taps)):
             if button not in self._held:
                 self._tap(button, rng.choice(habit.times), now_us)
         self._taps.sort()
+
+    def _roll(self, pov: Input, now_us: int) -> None:
+        """Roll a thumb around a POV: it is at several angles, each for a moment."""
+        rng = self._rng
+        index, step = rng.randrange(len(POV_ANGLES)), rng.choice((-1, 1))
+        at_us = now_us + PACKET_US
+        for _ in range(rng.randint(2, len(POV_ANGLES))):
+            if at_us + 5 * PACKET_US > self._pose_until_us:
+                break
+            self._taps.append((at_us, pov, POV_ANGLES[index % len(POV_ANGLES)]))
+            index, at_us = index + step, at_us + rng.randint(1, 4) * PACKET_US
+        self._taps.append((at_us, pov, station.NOT_PRESSED))
 
     def _tap(self, button: Input, times: int, now_us: int) -> None:
         rng = self._rng

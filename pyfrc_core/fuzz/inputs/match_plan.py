@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from ...config.settings import MatchSettings
@@ -22,6 +22,13 @@ SHORT = " short"
 #: The share of the other matches that are as long as real ones, half of them as two in a row, and how much longer than
 #: usual these are at most.
 _WHOLE, _LONGER = 1 / 30, 12
+
+#: The functions of a robot for each of its modes.
+MODE_FUNCTIONS = tuple(
+    f"{mode}{part}" for mode in ("autonomous", "teleop", "test") for part in ("Init", "Periodic", "Exit")
+)
+#: How often one mode is repeated, and how often then.
+_REPEATED, _TIMES = 0.08, (3, 4, 5)
 
 #: How often each port's joystick is unplugged, relative to the others: the driver's most often.
 _UNPLUGGED = (20, 6, 1, 1, 1, 1)
@@ -109,17 +116,22 @@ class _Period:
 
 
 def plan_match(
-    rng: random.Random, seconds: float, settings: MatchSettings, messages: Sequence[str] = ()
+    rng: random.Random,
+    seconds: float,
+    settings: MatchSettings,
+    messages: Sequence[str] = (),
+    overrides: Collection[str] = (),
 ) -> list[MatchEvent]:
     """Return all events of a match, in order.
 
     :param seconds: the length of the match; its periods are as long as `settings` says, or shorter
     :param messages: the messages that the field may send, if they are known
+    :param overrides: those of `MODE_FUNCTIONS` that the robot has, as far as it is known
     """
     planner = _Planner(rng, settings, tuple(messages))
     now = 0.0
     planner.before()
-    periods, restarts = _periods(rng, seconds, settings)
+    periods, restarts = _periods(rng, seconds, settings, overrides)
     for period in periods:
         planner.period(now, period)
         now += period.seconds
@@ -137,16 +149,23 @@ def without_restarts(events: Sequence[MatchEvent]) -> list[MatchEvent]:
     return list(events)
 
 
-def _periods(rng: random.Random, seconds: float, settings: MatchSettings) -> tuple[list[_Period], bool]:
+def _periods(
+    rng: random.Random, seconds: float, settings: MatchSettings, overrides: Collection[str]
+) -> tuple[list[_Period], bool]:
     """Return the periods of a match, and whether the robot program is started again in it.
 
     In some cases, the periods are those of a pit test, of a match that is restarted or the second one of a robot
-    program, or of a program that starts in the middle of a match.
+    program, or of a program that starts in the middle of a match; or one mode is repeated, as in a pit.
     """
     if seconds > 1.5 * seconds_of(settings):  # two in a row, without a restart of the robot program
-        first, _ = _periods(rng, seconds / 2, settings)
-        second, _ = _periods(rng, seconds / 2, settings)
+        first, _ = _periods(rng, seconds / 2, settings, overrides)
+        second, _ = _periods(rng, seconds / 2, settings, overrides)
         return [*first, *second], False
+    modes = [mode for mode in _BEFORE if any(name.startswith(mode) for name in overrides)]
+    if modes and rng.random() < _REPEATED:
+        mode, times = rng.choice(modes), rng.choice(_TIMES)
+        part = seconds / times
+        return [_Period(_BEFORE[mode], 0.2 * part), _Period(mode, 0.8 * part)] * times, False
     before = min(settings.before, 0.05 * seconds)
     autonomous = min(settings.autonomous, 0.3 * seconds)
     pause = min(settings.pause, 0.05 * seconds)
@@ -154,6 +173,8 @@ def _periods(rng: random.Random, seconds: float, settings: MatchSettings) -> tup
     ready = _Period("disabled autonomous" if rng.random() < 0.7 else "disabled", before)
     periods = [ready, _Period("autonomous", autonomous), _Period("disabled", pause)]
     how, restarts = rng.random(), False
+    if "test" in modes and rng.random() < 0.1:
+        how = 0.1
     if how < 0.08:  # no autonomous
         periods = [_Period("disabled", before)]
     elif how < 0.14:  # the pit crew tries test mode
@@ -184,8 +205,11 @@ class _Planner:
         self.events: list[MatchEvent] = []
         self._rng = rng
         self._messages = messages
+        how = rng.random()
         #: Whether the match time begins with the period's real length.
-        self._real_times = rng.random() < 0.25
+        self._real_times = how < 0.25
+        #: How long the match time is 0 at the end of each period: whole seconds are sent, and the last one is none.
+        self._at_zero = 1.0 if how > 0.75 else 0.0
         self._settings = settings
         self._field = FieldData(rng)
         #: When the field sends the game message: before the match, with autonomous, with teleoperated (2020), or never.
@@ -251,7 +275,7 @@ class _Planner:
 
     def _seconds_left(self, period: _Period) -> float:
         real = {"autonomous": self._settings.autonomous, "teleop": self._settings.teleop}.get(period.mode, 0.0)
-        return max(period.seconds, real) if self._real_times else period.seconds
+        return max(period.seconds, real) if self._real_times else max(0.0, period.seconds - self._at_zero)
 
     def _disturbance(self, start: float, length: float, mode: str) -> None:
         """Add a disturbance that begins after `start` and ends within `length` seconds of it."""

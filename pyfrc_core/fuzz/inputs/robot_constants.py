@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import dis
 import math
+from collections import deque
 from collections.abc import Iterable, Iterator
 from enum import Enum
 from types import CodeType, FunctionType
-from typing import Any
+from typing import Any, TypeVar
 
 from .values import RobotConstants
+
+_T = TypeVar("_T")
 
 #: More constants would make each of them rare.
 _MOST = 200
@@ -22,11 +26,13 @@ _CONTAINERS = (tuple, list, set, frozenset)
 def find_constants(functions: Iterable[FunctionType]) -> RobotConstants:
     """Return the constants of these functions, and those of their modules that they name."""
     found: set[object] = set()
+    compared: set[float] = set()
     names: set[str] = set()
     spaces: dict[int, dict[str, Any]] = {}
     for function in functions:
         for code in _all_code(function.__code__):
             names.update(code.co_names)
+            compared.update(_compared(code))
             for constant in code.co_consts:
                 found.update(_plain(constant))
         spaces[id(function.__globals__)] = function.__globals__
@@ -40,9 +46,24 @@ def find_constants(functions: Iterable[FunctionType]) -> RobotConstants:
                     found.update(each for part in list(vars(value).values()) for each in _plain(part))
             elif name in names:
                 found.update(_plain(value))
-    numbers = {float(each) for each in found if isinstance(each, int | float) and not isinstance(each, bool)}
+    numbers = {float(each) for each in found if isinstance(each, int | float)}
     texts = {each for each in found if isinstance(each, str)}
-    return RobotConstants(tuple(sorted(numbers)[:_MOST]), tuple(sorted(texts)[:_MOST]), frozenset(names))
+    return RobotConstants(_some(numbers), _some(compared), _some(texts), frozenset(names))
+
+
+def _some(found: set[_T]) -> tuple[_T, ...]:
+    """Return these in order, if there are too many a part from the whole range."""
+    every = sorted(found)  # type: ignore[type-var]
+    return tuple(every[:: 1 + len(every) // _MOST])
+
+
+def _compared(code: CodeType) -> Iterator[float]:
+    """Return the numbers that code compares something with, as far as they stand in the comparison itself."""
+    last: deque[object] = deque(maxlen=2)
+    for instruction in dis.get_instructions(code):
+        if instruction.opname == "COMPARE_OP":
+            yield from (float(each) for value in last for each in _plain(value) if not isinstance(each, str))
+        last.append(instruction.argval if instruction.opname in ("LOAD_CONST", "LOAD_SMALL_INT") else None)
 
 
 def _all_code(code: CodeType) -> Iterator[CodeType]:

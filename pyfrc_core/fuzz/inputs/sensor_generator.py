@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -21,8 +22,14 @@ _PAUSE, _SHORTEST_PAUSE = 1.0, 0.1
 #: How often devices change that seldom do, compared with the others.
 _SELDOM = 0.25
 
+#: How often a device's value changes that code seems to read, compared with its others.
+_READ = 10.0
+
 #: How often an input that a counter counts switches many times, and not once or twice.
 _PULSED = 0.5
+
+#: How long something that is soon over lasts, in packets.
+_DIPS = (1, 2, 5, 25, 50, 100, 250)
 
 #: Kinds that begin again at their end, and those that are 0 without their sensor.
 _WRAPS = ("half turns", "heading", "turns")
@@ -51,6 +58,7 @@ class SensorGenerator:
         self._devices: dict[str, list[Input]] = {}
         self._names: list[str] = []
         self._weights: list[float] = []
+        self._of_device: dict[str, list[float]] = {}
         self._change_us = 0
         #: The gradual change of each device, and when it continues.
         self._going: dict[str, tuple[int, _Change]] = {}
@@ -64,6 +72,7 @@ class SensorGenerator:
             self._devices.setdefault(each.device, []).append(each)
         self._names = list(self._devices)
         self._weights = [_SELDOM if each[0].seldom else 1.0 for each in self._devices.values()]
+        self._of_device = {name: [self._weight(each) for each in values] for name, values in self._devices.items()}
 
     def write(self, now_us: int, found: dict[str, Value]) -> None:
         """Add the writes of this time."""
@@ -115,18 +124,23 @@ class SensorGenerator:
         if inputs[0].kind == "count":
             begun = self._turn_wheel(device, now_us, found)
         else:
-            begun = self._measure(rng.choice(inputs), now_us, found)
+            begun = self._measure(rng.choices(inputs, self._of_device[device])[0], now_us, found)
         if begun is not None:
             self._going[device] = begun
+
+    def _weight(self, each: Input) -> float:
+        """Return how often a value of a device changes, relative to its others: more, if code seems to read it."""
+        found = re.search(r"[A-Za-z]+$", each.target.rstrip('"]'))
+        return _READ if found is not None and self._constants.asks_for(found[0]) else 1.0
 
     def _measure(self, each: Input, now_us: int, found: dict[str, Value]) -> tuple[int, _Change] | None:
         rng = self._rng
         before = self._hal_data.read(each.target)
-        if each.kind in ("connected", "battery"):  # a loose contact, a heavy load: soon over
-            value = not before if each.kind == "connected" else draw(each.kind, rng)
+        if each.kind in ("connected", "battery"):  # a loose contact, a heavy load: mostly soon over
+            value = not before if each.kind == "connected" else draw(each.kind, rng, constants=self._constants)
             found[each.target] = value
             rest = before if each.kind == "connected" else round(rng.uniform(11.5, 12.8), 2)
-            return now_us + rng.choice((1, 2, 5, 25, 50)) * PACKET_US, _back(each, rest)
+            return now_us + rng.choice(_DIPS) * PACKET_US, _back(each, rest)
         if each.kind == "pulses" and rng.random() < _PULSED:
             return self._pulses(each, now_us)
         if each.kind in ("switch", "pulses"):
@@ -136,7 +150,7 @@ class SensorGenerator:
             return None
         if each.kind in _DROPS_OUT and rng.random() < 0.08:  # a wire is off
             found[each.target] = 0.0
-            return now_us + rng.choice((1, 2, 5, 25, 50)) * PACKET_US, _back(each, before)
+            return now_us + rng.choice(_DIPS) * PACKET_US, _back(each, before)
         value = draw(each.kind, rng, each.options, constants=self._constants)
         if each.kind not in SPANS or SPANS[each.kind].whole or rng.random() < 0.6 or not can_be(each.kind, before):
             found[each.target] = value
@@ -144,8 +158,10 @@ class SensorGenerator:
         end_us = now_us + round(rng.uniform(0.3, 4) * 50) * PACKET_US
         span = SPANS[each.kind]
         around = span.high - span.low if each.kind in _WRAPS else 0.0
-        if around and rng.random() < 0.5:  # past the end, where the sensor begins again
-            value = before + rng.choice((-1, 1)) * rng.uniform(0.2, 1.5) * around
+        if around and rng.random() < 0.5:  # past the end, where the sensor begins again; sometimes several times
+            turns = rng.uniform(0.2, 1.5) if rng.random() < 0.7 else rng.uniform(1.5, 5)
+            value = before + rng.choice((-1, 1)) * turns * around
+            end_us = max(end_us, now_us + round(turns * 25) * PACKET_US)
 
         def go(at_us: int, found: dict[str, Value]) -> int | None:
             done = min(1.0, (at_us - now_us) / (end_us - now_us))

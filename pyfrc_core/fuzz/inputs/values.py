@@ -21,6 +21,11 @@ _VOLTS = CURRENT.controller.analog_volts
 #: Steps beside a constant, relative to it.
 _STEPS = (0.001, -0.001, 0.01, -0.01, 0.1, -0.1)
 
+#: Parts of the names of functions that read a value under another name.
+_ALSO = {name: (name, "angle", "heading", "rotation2d") for name in ("yaw", "rawyaw")}
+#: How often a constant is one of those in comparisons.
+_COMPARED = 0.6
+
 #: The value of an input.
 Value: TypeAlias = bool | int | float | str | tuple[bool | int | float | str, ...]
 
@@ -68,11 +73,13 @@ class RobotConstants:
     """The constants of a robot's functions, of its modules and of its classes, in order.
 
     :param numbers: the finite numbers
+    :param compared: those that code compares something with
     :param texts: the short strings
     :param names: the names of what its functions call and read
     """
 
     numbers: tuple[float, ...] = ()
+    compared: tuple[float, ...] = ()
     texts: tuple[str, ...] = ()
     names: frozenset[str] = frozenset()
 
@@ -81,10 +88,12 @@ class RobotConstants:
 
         :param scales: what the constants are multiplied with, one of these at a time
         """
-        numbers = self.numbers
+        scale = scales[0] if len(scales) == 1 else rng.choice(scales)
+        # Most decisions are comparisons; but a constant's name may be what is compared.
+        known = self.compared if self.compared and rng.random() < _COMPARED else self.numbers
+        numbers = [each for each in known if low <= each * scale <= high]
         if not numbers:
             return None
-        scale = scales[0] if len(scales) == 1 else rng.choice(scales)
         index = rng.randrange(len(numbers))
         value = numbers[index] * scale
         how = rng.random()
@@ -99,6 +108,11 @@ class RobotConstants:
     def asks(self, *names: str) -> bool:
         """Return whether a function uses one of these names."""
         return not self.names.isdisjoint(names)
+
+    def asks_for(self, measured: str) -> bool:
+        """Return whether a function uses a name that contains this one: ``getYaw`` reads ``Yaw``."""
+        parts = _ALSO.get(measured.lower(), (measured.lower(),))
+        return any(part in name.lower() for name in self.names for part in parts)
 
 
 #: The constants of a robot whose code is not known.

@@ -29,11 +29,11 @@ from ...runtime.scripts.targets import RESTART, Targets
 from ...runtime.seeds import seed_generators
 from ...runtime.turns import acquire
 from ...wpi import network
-from ..guidance.seed_schedule import SeedSchedule, match_seconds
+from ..guidance.seed_schedule import match_seconds
 from ..guidance.states import RobotStates
 from ..inputs.asked_controls import watch_controls
 from ..inputs.input_generator import InputGenerator
-from ..inputs.match_plan import MatchEvent, plan_match
+from ..inputs.match_plan import MODE_FUNCTIONS, MatchEvent, plan_match
 from ..inputs.network_reads import watch_network_reads
 from ..inputs.values import Value
 from ..oracle.checks import attach_oracle
@@ -49,7 +49,7 @@ from .imported_robot import (
 )
 from .journal import Journal
 from .restarts import Restart, play_parts
-from .work import ROBOT_SEED, FuzzTask, MatchResult, ReplayTask, Task
+from .work import FuzzTask, MatchResult, ReplayTask, Task
 
 if TYPE_CHECKING:
     from ...processes.crash_report import CrashLog
@@ -65,12 +65,11 @@ def play(project: Project, log: CrashLog, task: Task) -> MatchResult:
     acquire()
     if isinstance(task, ReplayTask):
         if len(boots_of(task.script)) > 1:
-            replayed: MatchResult = play_parts(project, partial(_replay, task=task), task.quietly)
-            return replayed
+            return play_parts(project, partial(_replay, task=task), task.quietly)
         return _replay(project, log, None, task)
-    start = _plan(project, task.schedule)
+    start = _plan(project, task)
     if any(RESTART in event.writes for event in start.plan):
-        played: MatchResult = play_parts(project, partial(_fuzz, task=task))
+        played = play_parts(project, partial(_fuzz, task=task))
     else:
         played = _fuzz(project, log, None, task, start)
     if task.returns_inputs or played.failure is not None or played.noted:
@@ -85,12 +84,13 @@ class _Start(NamedTuple):
     plan: list[MatchEvent]
 
 
-def _plan(project: Project, schedule: SeedSchedule) -> _Start:
-    rng = schedule.rng()
-    if schedule.base is not None:
-        return _Start(rng, schedule.base.plan())
-    seconds = match_seconds(project, schedule)
-    return _Start(rng, plan_match(rng, seconds, project.settings.match, project.game_specific_messages))
+def _plan(project: Project, task: FuzzTask) -> _Start:
+    rng = task.schedule.rng()
+    if task.schedule.base is not None:
+        return _Start(rng, task.schedule.base.plan())
+    seconds = match_seconds(project, task.schedule)
+    messages = project.game_specific_messages
+    return _Start(rng, plan_match(rng, seconds, project.settings.match, messages, task.overrides))
 
 
 def _fuzz(
@@ -106,11 +106,11 @@ def _fuzz(
     ends_us = to_us(seconds)
     if (continued_us := task.schedule.seeds[-1][0]) > 0:  # a match that continues a long one is not as long again
         ends_us = min(ends_us, continued_us + to_us(project.settings.fuzz.match_seconds))
-    rng, plan = start or _plan(project, task.schedule)
+    rng, plan = start or _plan(project, task)
     begin = _restart_after(before)
     before_us = begin.at_us
     reseed_until_us = task.schedule.seeds[-1][0] + PACKET_US
-    with _robot(project, log, ROBOT_SEED, begin, task.always_set) as (run, notes), ExitStack() as closing:
+    with _robot(project, log, task.schedule.robot_seed, begin, task.always_set) as (run, notes), ExitStack() as closing:
         generator = InputGenerator(
             rng,
             run,
@@ -163,7 +163,8 @@ def _fuzz(
                 pass
             except BaseException as error:  # robot code may call exit(), too
                 failure = failure_of(error, project.files)
-        script = fuzz_run.script(project.main_file.name, ROBOT_SEED).with_found(ALWAYS_SET, task.always_set)
+        script = fuzz_run.script(project.main_file.name, task.schedule.robot_seed)
+        script = script.with_found(ALWAYS_SET, task.always_set)
         unrepeatable = run.hal_data["CAN"].unrepeatable_devices()
         restarts = fuzz_run.restarts and failure is None and run.clock.now_us < ends_us
         restart = Restart.after(begin.number, run.clock.now_us, rng.getstate()) if restarts else None
@@ -235,8 +236,25 @@ def _replay(project: Project, log: CrashLog, before: MatchResult | None, task: R
         steps = tuple(step for step in task.script.steps if step.at_us < end_us)
         played = InputScript(steps, end_us, robot=script.robot, seed=script.seed)
         restart = Restart.after(begin.number, script.end_us) if may_go_on and failure is None else None
-        result = MatchResult(failure, played, noted=tuple(notes.found), restart=restart, published=_published())
+        result = MatchResult(
+            failure,
+            played,
+            noted=tuple(notes.found),
+            restart=restart,
+            published=_published(),
+            overrides=_overrides(project),
+        )
         return _joined(before, result)
+
+
+def _overrides(project: Project) -> tuple[str, ...]:
+    """Return the functions for modes that the robot's class has, and that do something."""
+    codes = {name: getattr(getattr(load(project), name, None), "__code__", None) for name in MODE_FUNCTIONS}
+    return tuple(
+        name
+        for name, code in codes.items()
+        if code is not None and code.co_names and project.files.is_robot_code(code.co_filename)
+    )
 
 
 def _published() -> frozenset[str]:

@@ -10,13 +10,16 @@ from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from ...processes.call import ForkedCall, run_in_subprocess
 from ...processes.crash_report import CrashLog
 from ...processes.fork import is_forked
 from ...project import Project
 from ...runtime.scripts.boots import PersistentEntry, persistent_entries
+
+if TYPE_CHECKING:
+    from .work import MatchResult
 
 #: When robot code ends its process.
 MEANWHILE = "in the middle of the match"
@@ -43,40 +46,23 @@ class Restart:
         return Restart(number + 1, at_us, persistent_entries(), rng_state)
 
 
-class PartResult(Protocol):
-    """The result of a part."""
-
-    @property
-    def restart(self) -> Restart | None:
-        """What the next part needs; None if the match is over."""
-
-
-Part = TypeVar("Part", bound=PartResult)
-
-
-class PlayPart(Protocol[Part]):
-    """Plays one part in this process, which must end afterwards; can be pickled."""
-
-    def __call__(self, project: Project, log: CrashLog, before: Part | None) -> Part:
-        """Return the result, which contains those of the parts before."""
-
-
-def play_parts(project: Project, play_part: PlayPart[Part], quietly: bool = True) -> Part:
+def play_parts(project: Project, play_part: Callable[..., MatchResult], quietly: bool = True) -> MatchResult:
     """Play one part after the other, each in another process, and return the result of the last one.
 
+    :param play_part: plays one part in its process, with the result of the parts before as `before`; can be pickled
     :param quietly: whether nothing that they print is shown
     :raises RobotCodeError: when a process ends without a result
     """
-    played: Part | None = None
+    played: MatchResult | None = None
     while played is None or played.restart is not None:
         played = _call(project, partial(play_part, before=played), quietly)
     return played
 
 
-def _call(project: Project, work: Callable[[Project, CrashLog], Part], quietly: bool) -> Part:
+def _call(project: Project, work: Callable[[Project, CrashLog], MatchResult], quietly: bool) -> MatchResult:
     if not is_forked(project.isolation):
         return run_in_subprocess(work, project, MEANWHILE, quietly)
-    call: ForkedCall[Part] = ForkedCall(partial(work, project), quietly)
+    call = ForkedCall(partial(work, project), quietly)
     with closing(call):
         call.wait()
         return call.result(project.files, MEANWHILE)

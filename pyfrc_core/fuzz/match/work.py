@@ -16,10 +16,6 @@ from ..oracle.failure import FuzzFailure, NotedFailure
 from ..oracle.hints import MatchHints
 from .restarts import Restart
 
-#: The seed of the robot's own random generators. It is the default seed of tests, so that a script has the same effect
-#: there.
-ROBOT_SEED = 0
-
 #: The maximum number of runs that make a script short.
 MOST_RUNS = 2_000
 
@@ -33,6 +29,7 @@ class FuzzTask:
     :param returns_inputs: whether the script and the inputs are returned even if nothing has failed
     :param published: entries of NetworkTables that the program is known to write all the time
     :param always_set: the lines of code that always set an output while the robot is disabled
+    :param overrides: the robot's functions for modes, see `MatchResult`
     :param journal: a file for the inputs, in case the process ends before it can return them
     """
 
@@ -41,6 +38,7 @@ class FuzzTask:
     returns_inputs: bool = True
     published: frozenset[str] = frozenset()
     always_set: tuple[str, ...] = ()
+    overrides: tuple[str, ...] = ()
     journal: Path | None = None
 
 
@@ -86,6 +84,7 @@ class MatchResult:
     :param published: of a replay, the entries of NetworkTables at its end that are no plain values: no one has written
         them but the program
     :param names: the names of the robot's sensors, see `device_names`
+    :param overrides: of a replay, the functions such as `testInit` that the robot has for its modes
     """
 
     failure: FuzzFailure | None
@@ -99,6 +98,7 @@ class MatchResult:
     restart: Restart | None = None
     published: frozenset[str] = frozenset()
     names: dict[str, str] = field(default_factory=dict)
+    overrides: tuple[str, ...] = ()
 
     def each_failure(self) -> Iterator[MatchResult]:
         """Return a result for each failure, in order, with the inputs until it."""
@@ -159,16 +159,14 @@ class MatchExecutor(ABC):
     """Runs matches of one project.
 
     :param jobs: how many at a time
-    :param directory: a directory for temporary files
     """
 
-    def __init__(self, project: Project, jobs: int, directory: Path) -> None:
+    def __init__(self, project: Project, jobs: int) -> None:
         self.project = project
         self.jobs = jobs
         #: Set to end the matches: `play` then raises `KeyboardInterrupt`. (An exception raised by a signal handler
         #: would be lost if it came during a fork.)
         self.interrupted = False
-        self._directory = directory
 
     @property
     @abstractmethod

@@ -14,6 +14,8 @@ from ..inputs.values import is_released
 
 #: How long before the failure the kept part begins, in packets, from what is shortest to run.
 _KEPT = (1, 5, 25, 100, 400)
+#: Of these, with few inputs.
+_KEPT_OF_FEW = (5, 100)
 #: Of these, also with all changes of mode before.
 _KEPT_WITH_MODES = (1, 25, 100)
 #: How long each of these modes lasts, in packets.
@@ -45,9 +47,17 @@ class Candidate(NamedTuple):
 def starts_of(writes: Sequence[ScriptWrite], end_us: int) -> list[Candidate]:
     """Return short scripts that may fail as the whole script does at its end.
 
-    What is written before the kept part is replaced by its last values, or by these and the changes of mode.
+    What is written before the kept part is replaced by its last values, or by these and the changes of mode. The first
+    ones have nothing but the mode, and the joystick or other input that was written last.
     """
-    found = []
+    found: list[Candidate] = []
+    last = next((write.target for write in reversed(writes) if write.target != MODE), "")
+    device = last.partition(".")[0] if CONTROL.fullmatch(last) else last
+    few = [write for write in writes if write.target == MODE or (device and write.target.startswith(device))]
+    for packets in _KEPT_OF_FEW:
+        cut_us = (end_us // PACKET_US - packets) * PACKET_US
+        if cut_us > 0:
+            found.append(_cut(few, end_us, cut_us, with_modes=False))
     for packets in _KEPT:
         # A failure may come between two packets; inputs are written with packets.
         cut_us = (end_us // PACKET_US - packets) * PACKET_US
