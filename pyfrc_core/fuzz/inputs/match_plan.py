@@ -28,7 +28,7 @@ MODE_FUNCTIONS = tuple(
     f"{mode}{part}" for mode in ("autonomous", "teleop", "test") for part in ("Init", "Periodic", "Exit")
 )
 #: How often one mode is repeated, and how often then.
-_REPEATED, _TIMES = 0.08, (3, 4, 5)
+_REPEATED, _TIMES = 0.15, (3, 3, 4, 5)
 
 #: How often each port's joystick is unplugged, relative to the others: the driver's most often.
 _UNPLUGGED = (20, 6, 1, 1, 1, 1)
@@ -161,9 +161,10 @@ def _periods(
         first, _ = _periods(rng, seconds / 2, settings, overrides)
         second, _ = _periods(rng, seconds / 2, settings, overrides)
         return [*first, *second], False
-    modes = [mode for mode in _BEFORE if any(name.startswith(mode) for name in overrides)]
-    if modes and rng.random() < _REPEATED:
-        mode, times = rng.choice(modes), rng.choice(_TIMES)
+    # What depends on the number of times is in what is called once each time.
+    entered = [mode for mode in _BEFORE if {f"{mode}Init", f"{mode}Exit"}.intersection(overrides)]
+    if entered and rng.random() < _REPEATED:
+        mode, times = rng.choice(entered), rng.choice(_TIMES)
         part = seconds / times
         return [_Period(_BEFORE[mode], 0.2 * part), _Period(mode, 0.8 * part)] * times, False
     before = min(settings.before, 0.05 * seconds)
@@ -173,7 +174,7 @@ def _periods(
     ready = _Period("disabled autonomous" if rng.random() < 0.7 else "disabled", before)
     periods = [ready, _Period("autonomous", autonomous), _Period("disabled", pause)]
     how, restarts = rng.random(), False
-    if "test" in modes and rng.random() < 0.1:
+    if any(name.startswith("test") for name in overrides) and rng.random() < 0.1:
         how = 0.1
     if how < 0.08:  # no autonomous
         periods = [_Period("disabled", before)]

@@ -48,8 +48,8 @@ from .imported_robot import (
     robot_lines,
 )
 from .journal import Journal
-from .restarts import Restart, play_parts
-from .work import FuzzTask, MatchResult, ReplayTask, Task
+from .restarts import play_parts
+from .work import FuzzTask, MatchResult, ReplayTask, Restart, Task
 
 if TYPE_CHECKING:
     from ...processes.crash_report import CrashLog

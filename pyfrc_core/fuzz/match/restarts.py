@@ -8,42 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import closing
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
 
 from ...processes.call import ForkedCall, run_in_subprocess
 from ...processes.crash_report import CrashLog
 from ...processes.fork import is_forked
 from ...project import Project
-from ...runtime.scripts.boots import PersistentEntry, persistent_entries
-
-if TYPE_CHECKING:
-    from .work import MatchResult
+from .work import MatchResult
 
 #: When robot code ends its process.
 MEANWHILE = "in the middle of the match"
-
-
-@dataclass(frozen=True)
-class Restart:
-    """What the robot program, which starts again, needs of the parts of the match before.
-
-    :param number: that of the next part; the first part of a match is 0
-    :param at_us: when the program starts again
-    :param entries: the persistent entries of NetworkTables
-    :param rng_state: the state of the generator of the match's random numbers
-    """
-
-    number: int
-    at_us: int
-    entries: tuple[PersistentEntry, ...]
-    rng_state: Any = None
-
-    @staticmethod
-    def after(number: int, at_us: int, rng_state: Any = None) -> Restart:
-        """Return what the part with this number, which has just ended in this process, leaves to the next one."""
-        return Restart(number + 1, at_us, persistent_entries(), rng_state)
 
 
 def play_parts(project: Project, play_part: Callable[..., MatchResult], quietly: bool = True) -> MatchResult:

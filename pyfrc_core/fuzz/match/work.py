@@ -6,18 +6,40 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from ...project import Project
+from ...runtime.scripts.boots import PersistentEntry, persistent_entries
 from ...runtime.scripts.script import InputScript
 from ..guidance.goals import Goal, RobotLine
 from ..guidance.seed_schedule import SeedSchedule
 from ..inputs.values import Input
 from ..oracle.failure import FuzzFailure, NotedFailure
 from ..oracle.hints import MatchHints
-from .restarts import Restart
 
 #: The maximum number of runs that make a script short.
 MOST_RUNS = 2_000
+
+
+@dataclass(frozen=True)
+class Restart:
+    """What the robot program, which starts again, needs of the parts of the match before.
+
+    :param number: that of the next part; the first part of a match is 0
+    :param at_us: when the program starts again
+    :param entries: the persistent entries of NetworkTables
+    :param rng_state: the state of the generator of the match's random numbers
+    """
+
+    number: int
+    at_us: int
+    entries: tuple[PersistentEntry, ...]
+    rng_state: Any = None
+
+    @staticmethod
+    def after(number: int, at_us: int, rng_state: Any = None) -> Restart:
+        """Return what the part with this number, which has just ended in this process, leaves to the next one."""
+        return Restart(number + 1, at_us, persistent_entries(), rng_state)
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ NETWORK_TABLES = "NetworkTables"
 
 #: The interval of counts, in microseconds.
 _EVERY_US = 4_000_000
-#: What grows is larger at each count by at least this much, for at least this many counts.
+#: What grows is larger at each count by at least this much, for this many counts: perhaps only after some input.
 _LEAST_MORE, _LEAST_COUNTS = 20, 6
 
 
@@ -63,8 +63,9 @@ class Growths:
         self._counts.setdefault(name, []).append(size)
 
     def found(self) -> Iterator[Growth]:
-        """Yield what grew from each count to the next, by its path."""
-        for name, counts in sorted(self._counts.items()):
+        """Yield what grew from each count to the next at the end of the match, by its path."""
+        for name, every in sorted(self._counts.items()):
+            counts = every[-_LEAST_COUNTS:]
             more = [after - before for before, after in pairwise(counts)]
             if len(counts) >= _LEAST_COUNTS and min(more) >= _LEAST_MORE:
                 yield Growth(name, sum(more) / len(more) * 1_000_000 / _EVERY_US, counts[-1])
