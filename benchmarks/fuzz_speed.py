@@ -82,7 +82,7 @@ def measure(directory: Path, matches: int) -> tuple[float, float]:
     with open_match_executor(project, 1) as executor:
         before = cpu_seconds()
         for number in range(matches):
-            task = FuzzTask(SeedSchedule(((0, f"fuzz 1 {number}"),)), known, returns_inputs=False)
+            task = FuzzTask(SeedSchedule(((0, f"fuzz 1 {number}"),)), known)
             (played,) = executor.play([task])
             known = known.union(played.reached)
             now = cpu_seconds()

@@ -16,8 +16,6 @@ from conftest import sampled
 from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.runtime.scripts.script import load_script
 
-EMPTY = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
-
 ROBOTS = Path(__file__).parent / "robots"
 REGRESSIONS = "tests/test_fuzz_regressions.py"
 
@@ -311,33 +309,16 @@ EXITING = """
 
 
 @pytest.mark.parametrize(
-    ("isolation", "where", "code", "message", "name"),
+    ("where", "code", "message", "name"),
     [
-        ("auto", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"),
-        pytest.param(
-            "reuse", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit", marks=pytest.mark.slow
-        ),
-        pytest.param(
-            "auto",
-            2,
-            "raise KeyboardInterrupt",
-            "KeyboardInterrupt",
-            "keyboardinterrupt-robot-autonomousinit",
-            marks=pytest.mark.slow,
-        ),
-        ("auto", 1, "sys.exit(5)", "exit(5) was called", "systemexit-robot-robotinit"),
-        pytest.param(
-            "auto", 0, "exit(False)", "exit(False) was called", "systemexit-robot-__init__", marks=pytest.mark.slow
-        ),
+        (2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"),
+        (1, "sys.exit(5)", "exit(5) was called", "systemexit-robot-robotinit"),
     ],
 )
-def test_a_robot_that_exits_has_failed(
-    isolation: str, where: int, code: str, message: str, name: str, make_project
-) -> None:
+def test_a_robot_that_exits_has_failed(where: int, code: str, message: str, name: str, make_project) -> None:
     lines = ["pass", "pass", "pass"]
     lines[where] = code
-    settings = SHORT_MATCHES.format(4, f'\n    [tool.pyfrc.test]\n    isolation = "{isolation}"')
-    project = make_project({"robot.py": EXITING.format(*lines), "pyproject.toml": settings})
+    project = make_project({"robot.py": EXITING.format(*lines), "pyproject.toml": SHORT_MATCHES.format(4, "")})
     place = project.place("robot.py", code)
     result = project.run("fuzz", "--runs", "2", "--seed", "1")
     assert result.code == 1, result.output

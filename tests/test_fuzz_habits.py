@@ -52,6 +52,17 @@ def test_controls_that_the_robot_asks_for_are_used_most() -> None:
     assert {f"joysticks[0].buttons[{number}]" for number in range(1, 11)} < set(pressed)
 
 
+def test_thumbs_roll_around_povs() -> None:
+    pov = "joysticks[0].povs[0]"
+    changes = [(at, writes[pov]) for at, writes in matches(1) if pov in writes]
+    rolled = [
+        (before, after)
+        for (at, before), (then, after) in pairwise(changes)
+        if then - at < 0.1 and before != -1 != after and (after - before) % 360 in (45, 315)
+    ]
+    assert {after for _, after in rolled} == {0, 45, 90, 135, 180, 225, 270, 315}
+
+
 def test_buttons_are_held_for_seconds() -> None:
     held = [end - start for start, end in presses(ASKED[0])]
     assert sum(seconds > 2 for seconds in held) > 10

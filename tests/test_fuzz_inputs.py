@@ -12,6 +12,7 @@ import pytest
 from conftest import sampled
 
 from pyfrc_core.errors import UsageError
+from pyfrc_core.fuzz.guidance.seed_schedule import SeedSchedule
 from pyfrc_core.fuzz.inputs.match_plan import FieldData
 from pyfrc_core.fuzz.inputs.network_values import NetworkRead, NetworkValues
 from pyfrc_core.fuzz.inputs.robot_constants import find_constants
@@ -230,7 +231,7 @@ HEIGHTS = {"low": 0.3, "high": 1.7}
 
 def decide(value: float) -> str:
     """Return which of the heights it is."""
-    if value > TOP:
+    if value > TOP or value == 77:
         return "above"
     return min(HEIGHTS, key=lambda name: abs(HEIGHTS[name] - value) + 0.125)
 
@@ -241,8 +242,31 @@ def test_constants_are_those_that_functions_use() -> None:
     assert {42.5, 0.3, 1.7, 0.125} <= set(found.numbers)
     assert {"above", "low", "high"} <= set(found.texts)
     assert not any("heights" in text for text in found.texts)
+    assert found.compared == (77.0,)
     assert found.asks("abs", "nothing")
     assert not found.asks("nothing")
+
+
+def test_numbers_near_constants_are_in_their_range_and_mostly_compared_ones() -> None:
+    constants = RobotConstants((0.5, 8.2, 11.0, 5000.0), (8.2,))
+    found = [constants.near(random.Random(seed), 4.5, 13.5) for seed in range(300)]
+    inside = [each for each in found if each is not None]
+    assert 4.5 <= min(inside) < max(inside) <= 13.5
+    assert len(inside) > 200  # the others were negated
+    assert sum(abs(each - 8.2) < 0.9 for each in inside) > sum(abs(each - 11.0) < 1.2 for each in inside) > 20
+    assert constants.near(random.Random(1), 20.0, 30.0) is None
+
+
+def test_of_a_gyro_what_code_reads_changes_most() -> None:
+    constants = RobotConstants(names=frozenset({"getRotation2d", "setPitchLimit"}))
+    asked = [name for name in ("Yaw", "Pitch", "Roll", "CompassHeading", "rawYaw") if constants.asks_for(name)]
+    assert asked == ["Yaw", "Pitch", "rawYaw"]
+
+
+def test_the_robots_own_random_numbers_differ_between_matches() -> None:
+    seeds = [SeedSchedule(((0, f"fuzz 1 {number}"), (20_000, "other"))).robot_seed for number in range(50)]
+    assert len(set(seeds)) > 45
+    assert SeedSchedule(((0, "fuzz 1 7"),)).robot_seed == seeds[7]  # one that continues it begins in the same way
 
 
 # -- targets -----------------------------------------------------------------------------------------------------------

@@ -53,6 +53,27 @@ def test_what_a_season_has_comes_every_fifty_matches(what: str) -> None:
     assert sum(map(SEASON[what], plans)) >= 4
 
 
+def test_modes_of_the_robot_are_repeated_three_to_five_times() -> None:
+    plans = [
+        enabled(modes_of(plan_match(random.Random(seed), SECONDS, SETTINGS, (), ("testInit", "teleopPeriodic"))))
+        for seed in range(200)
+    ]
+    repeated = [modes for modes in plans if set(modes) == {"test"}]
+    assert 12 < len(repeated) < 60  # what is only called in each loop is not repeated
+    assert min(map(len, repeated)) >= 3
+    assert sum(modes[:1] == ["test"] and "teleop" in modes for modes in plans) > 15
+
+
+def test_the_match_time_is_sometimes_over_before_the_period() -> None:
+    early = 0
+    for seed in range(200):
+        plan = plan_match(random.Random(seed), SECONDS, SETTINGS)
+        modes, times = modes_of(plan), [each.writes.get("match_time") for each in plan]
+        last = next((float(time) for time in reversed(times) if isinstance(time, float) and time), 0.0)
+        early += modes[-1][1] == "teleop" and 0 < last <= SECONDS - modes[-1][0] - 0.98
+    assert early > 10
+
+
 def test_the_match_time_counts_to_zero_or_begins_as_in_a_real_match_or_there_is_none() -> None:
     begins: dict[str, int] = {"short": 0, "real": 0, "none": 0}
     for seed in range(100):

@@ -17,8 +17,6 @@ from loops import for_each
 from pyfrc_core.fuzz.inputs.values import SPANS, InputKind, can_be, draw, nearest
 from pyfrc_core.runtime.scripts.script import load_script
 
-ROBOTS = Path(__file__).parent / "robots"
-
 #: A robot with one of everything, which says at its end what it has seen.
 EVERYTHING = """
     import wpilib

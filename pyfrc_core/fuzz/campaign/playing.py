@@ -49,7 +49,7 @@ class Playing:
     def __init__(self, project: Project, options: CampaignOptions) -> None:
         self.in_batches = options.runs is not None
         #: What the robot's starts show, for all matches.
-        self.known_of_robot = FuzzTask(SeedSchedule(()), returns_inputs=False)
+        self.known_of_robot = FuzzTask(SeedSchedule(()))
         #: Whether no more matches are begun.
         self.over = False
         self.scheduler = SeedScheduler(options.seed, options.recorded, begins_short=not self.in_batches)

@@ -72,7 +72,7 @@ def play(project: Project, log: CrashLog, task: Task) -> MatchResult:
         played = play_parts(project, partial(_fuzz, task=task))
     else:
         played = _fuzz(project, log, None, task, start)
-    if task.returns_inputs or played.failure is not None or played.noted:
+    if played.failure is not None or played.noted:
         return played
     return replace(played, script=replace(played.script, steps=()), inputs={})  # they are not needed
 

@@ -48,7 +48,6 @@ class FuzzTask:
 
     :param schedule: the random seeds
     :param known: the goals that were reached before
-    :param returns_inputs: whether the script and the inputs are returned even if nothing has failed
     :param published: entries of NetworkTables that the program is known to write all the time
     :param always_set: the lines of code that always set an output while the robot is disabled
     :param overrides: the robot's functions for modes, see `MatchResult`
@@ -57,7 +56,6 @@ class FuzzTask:
 
     schedule: SeedSchedule
     known: frozenset[Goal] = frozenset()
-    returns_inputs: bool = True
     published: frozenset[str] = frozenset()
     always_set: tuple[str, ...] = ()
     overrides: tuple[str, ...] = ()
