@@ -205,16 +205,6 @@ def test_a_robots_log_is_played_from_shortly_before_it_was_enabled(project: Robo
     assert "no difference: 4 values" in said_of(project)
 
 
-@pytest.mark.slow
-def test_a_fuzzed_match_begins_with_its_inputs(make_project: MakeProject) -> None:
-    fails = ROBOT.replace("SETPOINT if", "1 / (self.gain.get() - 0.5) if self.pad.getLeftY() else SETPOINT if")
-    project = make_project({"robot.py": fails})
-    a_kit_log().save(project.path / "match.wpilog")
-    result = project.run("fuzz", "--runs", "1", "--from", "match.wpilog")
-    assert result.code == 1, result.output
-    assert "ZeroDivisionError" in result.stdout
-
-
 def test_a_library_finds_the_robots_objects_by_the_collector(make_project: MakeProject) -> None:
     """PyKit does, to log what code has marked as an output."""
     robot = """

@@ -10,54 +10,13 @@ from sim_robots import FILES, run, settle, wait
 
 from pyfrc_core.project import find_project
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.engine import history, output_log
+from pyfrc_core.sim.engine import history
 from pyfrc_core.sim.engine.changes import Change, RunBegan
 from pyfrc_core.sim.engine.output_log import OutputLog
-
-TALKATIVE = {
-    "robot.py": """
-        import wpilib
-
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                self.count, self.motor = 0, wpilib.PWMSparkMax(2)
-
-            def robotPeriodic(self):
-                self.count += 1
-                self.motor.set(self.count % 100 / 100)
-                print("turn", self.count, "x" * 2000)
-    """,
-}
-TURNS = 500
-
-
-def numbers(text: str) -> list[int]:
-    """The turns that the robot has printed."""
-    return [int(line.split()[1]) for line in text.splitlines() if line.startswith("turn ")]
 
 
 def times(events: list[RunBegan | Change]) -> list[float]:
     return [event.time for event in events if isinstance(event, Change)]
-
-
-def test_a_slow_and_a_quick_consumer_see_every_line_of_output(make_project) -> None:
-    made = make_project(TALKATIVE)
-    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
-        quick, slow = simulation.output_cursor(), simulation.output_cursor()
-        seen_quickly = ""
-        for _ in range(10):
-            run(simulation, TURNS / 10 * 0.02)
-            seen_quickly += quick.read()
-        simulation.close()
-        seen_quickly += quick.read()
-        seen_slowly = ""
-        while piece := slow.read(1000):  # a few characters at a time
-            assert len(piece) <= 1000
-            seen_slowly += piece
-        late = simulation.output_cursor().read()
-    assert numbers(seen_quickly)[: TURNS - 1] == list(range(1, TURNS))
-    assert seen_slowly == seen_quickly == late
 
 
 def test_each_consumer_of_output_has_a_place_of_its_own() -> None:
@@ -72,25 +31,6 @@ def test_each_consumer_of_output_has_a_place_of_its_own() -> None:
     assert first.read() == second.read() == ""
     assert log.cursor().read_last(5) == "done\n"
     assert log.cursor().read() == "größer ✓\ud83d done\n"
-
-
-def test_a_flood_of_output_says_what_it_has_lost(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The memory does not fill up; a consumer that is still at what is gone learns of the gap."""
-    monkeypatch.setattr(output_log, "_PIECE", 1000)
-    monkeypatch.setattr(output_log, "_MOST", 3000)
-    log = OutputLog()
-    slow, quick = log.cursor(), log.cursor()
-    seen = ""
-    for number in range(1000):
-        log.append(f"line {number}\n")
-        seen += quick.read()
-    assert seen == "".join(f"line {number}\n" for number in range(1000))
-    left = slow.read()
-    gap, _, rest = left.partition("\n")
-    assert gap.startswith("[pyfrc: ")
-    assert gap.endswith(" characters of output were dropped here]")
-    assert 1900 <= len(rest) <= 4100
-    assert seen.endswith(rest)
 
 
 def test_a_slow_and_a_quick_consumer_see_every_change(make_project, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,7 +14,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
-from conftest import RobotProject, sampled
+from conftest import RobotProject
 from sim_robots import FILES, PATIENCE, wait
 from started_commands import StartedCommand
 
@@ -70,17 +70,6 @@ class Running:
 def running(project: RobotProject, *arguments: str) -> Iterator[Running]:
     with project.start("sim", "--ui", "none", *arguments) as command:
         yield Running(command)
-
-
-@pytest.mark.parametrize("call", sampled(["exit()", "sys.exit()", "raise SystemExit(3)"], "exit()"))
-def test_a_robot_that_calls_exit(call: str, make_project) -> None:
-    head = "import sys\nimport wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n"
-    made = make_project({"robot.py": f"{head}    def teleopPeriodic(self):\n        {call}\n"})
-    result = made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "1")
-    assert result.code == 1, result.output
-    assert "s: robot.py:6: " in result.stdout
-    assert "exit(" in result.stdout
-    assert "None" not in result.stdout
 
 
 @pytest.mark.parametrize("classes", [0, 2])

@@ -284,22 +284,6 @@ def test_a_sensor_can_freeze_in_the_match_of_a_log(make_project: MakeProject) ->
     assert result.stdout.count("wrist 0.25\n") == 1  # at the end; at the beginning, it has not frozen
 
 
-def test_a_log_is_not_overwritten_by_what_is_written(recorded: RobotProject) -> None:
-    before = {file: file.read_bytes() for file in recorded.path.glob("match.*")}
-    for log, option, file in (
-        ("match.wpilog", "--wpilog", "match.wpilog"),
-        ("match.jsonl", "--record", "match.jsonl"),
-        ("match.trace.jsonl", "--page", "match.jsonl"),
-        ("match.jsonl", "--page", "match.trace.jsonl"),
-    ):
-        result = recorded.run(*SIM, "--log", log, option, file)
-        assert result.code == 2, result.output
-        assert result.first_error == f"{option} {file} cannot be written: this command reads it"
-    result = recorded.run("replay", "match.jsonl", "--page", "match.jsonl")
-    assert result.first_error == "--page match.jsonl cannot be written: this command reads it"
-    assert {file: file.read_bytes() for file in before} == before
-
-
 def test_a_log_that_is_cut_says_so(recorded: RobotProject) -> None:
     log, trace = recorded.path / "match.wpilog", recorded.path / "match.trace.jsonl"
     log.write_bytes(log.read_bytes()[:-2])

@@ -9,7 +9,7 @@ import tracemalloc
 from pathlib import Path
 
 import pytest
-from sim_robots import run, settle, wait
+from sim_robots import run, settle
 
 from pyfrc_core.project import find_project
 from pyfrc_core.sim.engine import history, snapshot_builder
@@ -84,22 +84,3 @@ def test_memory_grows_little_with_time(make_project, tmp_path: Path, monkeypatch
     assert json.loads(again[-1])["t"] == 50
     replayed = made.run("replay", tmp_path / "run.jsonl")
     assert "The trace equals the recorded one." in replayed.stdout, replayed.output
-
-
-def test_a_long_trail_is_thinned_out(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(snapshot_builder, "_RECENT_POINTS", 64)
-    monkeypatch.setattr(snapshot_builder, "_OLDER_POINTS", 128)
-    made = make_project(FILES)
-    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True, recording=False)) as simulation:
-        simulation.choose_mode("teleop")
-        simulation.enable()
-        simulation.run_until(60)
-        lengths = []
-        wait(simulation, lambda: bool(lengths.append(simulation.snapshot)) or simulation.status.state == "paused")
-        wait(simulation, lambda: simulation.snapshot is not None and simulation.snapshot.time >= 59.99)
-        assert simulation.snapshot is not None
-        trail = simulation.snapshot.scene.trail
-    assert 128 < len(trail) < 300  # of some 1400
-    first = next(each.scene.trail[0] for each in lengths if each is not None and each.scene.trail)
-    assert trail[0] == first
-    assert len(set(trail)) == len(trail)

@@ -195,22 +195,6 @@ def test_only_who_may_drive_can_drop_a_log(tmp_path: Path) -> None:
             assert send(server, "practice.wpilog", practice().data, token)[0] == 403
 
 
-def test_a_match_of_a_thousand_values_opens(tmp_path: Path) -> None:
-    """All values, any moment and any curve of 300,000 records; `how_to/look_at_a_log.md` has larger ones."""
-    log = Written()
-    entries = [log.start(f"NT:/values/{number}", "double") for number in range(1000)]
-    pieces = [log.data]
-    for step in range(300):
-        for number, entry in enumerate(entries):
-            head = struct.pack("<BIIQ", 127, entry, 8, 12_000_000 + step * 500_000 + number)
-            pieces.append(head + struct.pack("<d", step + number))
-    log.data = b"".join(pieces)
-    opened = open_log(log.save(tmp_path / "large.wpilog"), HEIGHT)
-    with served_source(LogSource(Project(tmp_path / "robot.py"), opened)) as server, server.page() as page:
-        assert page.values["nt:/values/999"] == 299 + 999
-        assert page.ask(type="values", t=75.2)["values"]["nt:/values/7"] == 150 + 7
-
-
 def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:
     require("the page of pyfrc view in a browser", missing_browser())
     with served_source(source_of(tmp_path)) as server:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterable
 from dataclasses import fields
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from pyfrc_core.runtime.scripts.recorder import Recorder, _shortest
 from pyfrc_core.runtime.scripts.script import InputScript, Step
 from pyfrc_core.runtime.scripts.trace_lines import Change
 from pyfrc_core.sim import view
+from pyfrc_core.sim.engine import snapshot_builder
 from pyfrc_core.sim.engine.changes import RecordedFeed, RunBegan
 from pyfrc_core.sim.engine.history import History
 from pyfrc_core.sim.engine.messages import Replayed, StationState, Update
@@ -191,6 +193,20 @@ def test_a_station_that_is_not_attached_sends_nothing() -> None:
     assert dict(inputs.changes()) == {"control.dsAttached": False}
     take("NT:/FMSInfo/FMSControlData", 33)
     assert dict(inputs.changes()) == {"control.dsAttached": True, "mode": "teleop"}
+
+
+def test_a_long_trail_keeps_its_ends_and_fewer_and_fewer_points_between(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(snapshot_builder, "_RECENT_POINTS", 8)
+    monkeypatch.setattr(snapshot_builder, "_OLDER_POINTS", 16)
+    trail = snapshot_builder._Trail()
+    for number in range(1000):
+        trail.add([(float(number), 0.0)])
+        assert len(trail.points) <= 16 + 12
+    assert trail.points[0] == (0.0, 0.0)
+    assert trail.points[-8:] == tuple((float(number), 0.0) for number in range(992, 1000))
+    assert list(trail.points) == sorted(set(trail.points))
+    steps = [after[0] - before[0] for before, after in pairwise(trail.points[:-12])]
+    assert max(steps) <= 128
 
 
 # -- files ------------------------------------------------------------------------------------------------------------
