@@ -45,7 +45,7 @@ class WrittenDirectory(click.Path):
         super().__init__(path_type=Path, file_okay=file_okay)
 
 
-class _Given(NamedTuple):
+class _PathGiven(NamedTuple):
     option: str
     type: object
     path: Path
@@ -88,7 +88,7 @@ def check_outputs(context: click.Context, project: Project | None) -> None:
             written[file] = option
 
 
-def _given(context: click.Context | None) -> Iterator[_Given]:
+def _given(context: click.Context | None) -> Iterator[_PathGiven]:
     """Yield the paths on the command line."""
     while context is not None:
         for parameter in context.command.params:
@@ -96,7 +96,7 @@ def _given(context: click.Context | None) -> Iterator[_Given]:
             name = max(parameter.opts, key=len)
             for path in value if isinstance(value, tuple) else (value,):
                 if isinstance(path, Path):
-                    yield _Given(name, parameter.type, path)
+                    yield _PathGiven(name, parameter.type, path)
         context = context.parent
 
 

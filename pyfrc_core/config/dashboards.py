@@ -51,12 +51,12 @@ _Cells = Annotated[int, Field(strict=True, ge=1, le=MOST_CELLS)]
 _Text = Annotated[str, Field(max_length=400)]
 
 
-class _Part(BaseModel):
+class _DashboardPart(BaseModel):
     # A page that writes the file again must not lose what it does not know.
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
-class Widget(_Part):
+class Widget(_DashboardPart):
     """A widget, at a place of the grid."""
 
     kind: Kind = Field(description="What it is.")
@@ -87,7 +87,7 @@ class Widget(_Part):
     )
 
 
-class Dashboard(_Part):
+class Dashboard(_DashboardPart):
     """A grid of widgets, which fills the space that it is shown in."""
 
     columns: _Cells = Field(default=12, description="The columns of the grid.")
@@ -95,7 +95,7 @@ class Dashboard(_Part):
     widgets: Annotated[tuple[Widget, ...], Array()] = Field(default=(), description="Its widgets.")
 
 
-class DashboardFile(_Part):
+class DashboardFile(_DashboardPart):
     """sim/dashboards.json of a robot project."""
 
     dashboards: Annotated[

@@ -31,7 +31,7 @@ _BLANK = re.compile(r"[ \t\n\r]*")
 _TOKENS = re.compile(r'"[^"\\]*(?:\\.[^"\\]*)*(?:"|\\?\Z)|[\[{]|[\]}]|NaN|-?Infinity', re.DOTALL)
 
 
-class Member(NamedTuple):
+class JsonMember(NamedTuple):
     """One entry of an object or array, with offsets into the text."""
 
     key: str | int
@@ -71,7 +71,7 @@ class JsonText:
     def __init__(self, file: File, name: str) -> None:
         self.name = name
         self._text = self._decoded(self._read(file))
-        self._known_members: dict[int, list[Member]] = {}
+        self._known_members: dict[int, list[JsonMember]] = {}
         self._has_repeated_keys = False
         self._decoder = json.JSONDecoder(object_pairs_hook=self._object, parse_int=_whole, parse_constant=_refuse)
         self._check_nesting()
@@ -97,7 +97,7 @@ class JsonText:
             yield from self._repeated_below((), self._top.value)
 
     def _repeated_below(self, path: Path, start: int) -> Iterator[tuple[Path, int]]:
-        first: dict[str | int, Member] = {}
+        first: dict[str | int, JsonMember] = {}
         reported = set()
         for member in self._members(start):
             key = member.key
@@ -108,7 +108,7 @@ class JsonText:
             if self._text[member.value] in "{[":
                 yield from self._repeated_below((*path, member.key), member.value)
 
-    def _follow(self, path: Path) -> list[Member]:
+    def _follow(self, path: Path) -> list[JsonMember]:
         """Return the entries along `path`, as far as they exist; the last one of a repeated key."""
         found = [self._top]
         for part in path:
@@ -119,16 +119,16 @@ class JsonText:
         return found
 
     @cached_property
-    def _top(self) -> Member:
+    def _top(self) -> JsonMember:
         start = self._skip_blank(0)
-        return Member("", start, start, len(self._text.rstrip()))
+        return JsonMember("", start, start, len(self._text.rstrip()))
 
-    def _members(self, start: int) -> list[Member]:
+    def _members(self, start: int) -> list[JsonMember]:
         if start not in self._known_members:
             self._known_members[start] = list(self._find_members(start))
         return self._known_members[start]
 
-    def _find_members(self, start: int) -> Iterator[Member]:
+    def _find_members(self, start: int) -> Iterator[JsonMember]:
         """Yield the entries of the object or array at an offset; nothing for other values."""
         text = self._text
         if text[start] not in "{[":
@@ -142,7 +142,7 @@ class JsonText:
                 at = self._skip_blank(self._skip_blank(at) + 1)  # over the colon
             value = at
             _, end = self._decoder.raw_decode(text, at)
-            yield Member(key, begin, value, end)
+            yield JsonMember(key, begin, value, end)
             at = self._skip_blank(end)
             if text[at] == ",":
                 at = self._skip_blank(at + 1)

@@ -105,12 +105,12 @@ Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=sys
 Flag = Annotated[bool, Field(strict=True)]
 
 
-class _Part(BaseModel):
+class _ConfigPart(BaseModel):
     # Unknown keys are not errors here: reading the file warns about them.
     model_config = ConfigDict(frozen=True, extra="ignore")
 
 
-class StartPosition(_Part):
+class StartPosition(_ConfigPart):
     """A place where the robot may start."""
 
     name: str = Field(description="What the user chooses it by.")
@@ -119,7 +119,7 @@ class StartPosition(_Part):
     angle: Number = Field(default=0.0, description="Which way the robot faces: degrees, clockwise.")
 
 
-class RobotConfig(_Part):
+class RobotConfig(_ConfigPart):
     """The robot's size, and where it starts."""
 
     w: Positive = Field(default=2.0, description="Width of the robot, in feet.")
@@ -138,7 +138,7 @@ class RobotConfig(_Part):
     )
 
 
-class Rectangle(_Part):
+class Rectangle(_ConfigPart):
     """A rectangle drawn on the field."""
 
     model_config = ConfigDict(json_schema_extra={"not": {"required": ["points"]}})
@@ -147,7 +147,7 @@ class Rectangle(_Part):
     rect: tuple[Number, Number, Number, Number] = Field(description="[x, y, width, height], in feet.")
 
 
-class Polygon(_Part):
+class Polygon(_ConfigPart):
     """A polygon drawn on the field."""
 
     model_config = ConfigDict(json_schema_extra={"not": {"required": ["rect"]}})
@@ -205,7 +205,7 @@ _YEAR_SCHEMA = {
 Coordinates = Literal["pyfrc", "blue", "blue-feet", "alliance", "alliance-feet"]
 
 
-class FieldConfig(_Part):
+class FieldConfig(_ConfigPart):
     """The field: its size, its drawing, and the season's rules."""
 
     season: Annotated[int | None, BeforeValidator(_year), WithJsonSchema(_YEAR_SCHEMA)] = Field(
@@ -235,7 +235,7 @@ class FieldConfig(_Part):
     disabled_joysticks: Flag = Field(default=False, description="Whether the robot gets joystick data while disabled.")
 
 
-class Joystick(_Part):
+class Joystick(_ConfigPart):
     """The names shown beside a joystick's controls."""
 
     axes: Annotated[dict[int, str], AXES] = Field(
@@ -248,7 +248,7 @@ class Joystick(_Part):
     )
 
 
-class SimConfig(_Part):
+class SimConfig(_ConfigPart):
     """The settings of the robot and the field for tests, physics and the simulator."""
 
     robot: RobotConfig = RobotConfig()
@@ -292,7 +292,7 @@ class SimConfig(_Part):
         return not self.robot.model_fields_set.isdisjoint({"starting_x", "starting_y", "starting_angle"})
 
 
-class SimConfigFile(_Part):
+class SimConfigFile(_ConfigPart):
     """sim/config.json of a robot project. Keys beside pyfrc belong to other tools."""
 
     pyfrc: SimConfig = SimConfig()

@@ -46,10 +46,10 @@ def watch_invariants(
     :param report: called once for each rule that is broken; by default, that ends the run as an exception does
     """
     if rules:
-        _Watch(run, files, list(rules), report or run.threads.fail).begin()
+        _RuleWatch(run, files, list(rules), report or run.threads.fail).begin()
 
 
-class _Watch:
+class _RuleWatch:
     def __init__(
         self,
         run: RobotRun,

@@ -29,7 +29,7 @@ _LONG_NS = 5_000_000
 _Moment = tuple[int, int, int]
 
 
-class _Call(NamedTuple):
+class _LongCall(NamedTuple):
     what: Measurand
     begin: _Moment
     took_ns: int
@@ -41,7 +41,7 @@ class _Clocks:
     def __init__(self) -> None:
         #: The number of its timed calls in progress.
         self.calls = 0
-        self.long_calls: deque[_Call] = deque(maxlen=64)
+        self.long_calls: deque[_LongCall] = deque(maxlen=64)
         #: When the iteration of its own loop began: at the end of its last wait.
         self.iteration: _Moment | None = None
         self._wall = self._computed = self._waited = 0
@@ -99,11 +99,11 @@ class Stopwatch:
         wall, computed, waited = clocks.now()
         took, spent = wall - begin[0], computed - begin[1]
         if took > _LONG_NS:
-            clocks.long_calls.append(_Call(what, begin, took))
+            clocks.long_calls.append(_LongCall(what, begin, took))
         if period_ns and took > period_ns and patches.run is not None:
             # The innermost function ends first.
             within = (call for call in clocks.long_calls if call.begin >= begin and call.took_ns >= took / 2)
-            culprit = next(within, _Call(what, begin, took))
+            culprit = next(within, _LongCall(what, begin, took))
             began = patches.run.clock.now - (waited - begin[2]) / 1e9
             test = environ.get("PYTEST_CURRENT_TEST", "").rpartition(" (")[0]
             _, name, place = culprit.what

@@ -71,11 +71,11 @@ class Start:
     def job(self) -> bytes:
         """Return what the interpreter reads from its standard input."""
         owner = os.getpid() if self.ends_with_owner else None
-        return encode(_Job(sys.path, str(Path.cwd()), owner, pickle.dumps((first_calls, self.call))))
+        return encode(_Request(sys.path, str(Path.cwd()), owner, pickle.dumps((first_calls, self.call))))
 
 
 @dataclass(frozen=True)
-class _Job:
+class _Request:
     """What a new interpreter is to do.
 
     :param path: `sys.path`
@@ -142,7 +142,7 @@ def _output_encoding(how: Start) -> Mapping[str, str]:
 def main() -> None:
     """Run the job on standard input: what a new interpreter does."""
     with open(0, "rb", buffering=0, closefd=False) as stdin:  # what follows the job is not read here
-        job: _Job = read_frame(stdin)
+        job: _Request = read_frame(stdin)
     if job.owner is not None:
         end_with(job.owner)
     sys.path[:] = job.path

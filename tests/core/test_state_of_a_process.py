@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from pyfrc_core.runtime.pristine.part import StatePart
-from pyfrc_core.runtime.pristine.process import Directory, Environment, Logging, Randomness, Signals, Streams
+from pyfrc_core.runtime.pristine.process import Directory, EnvironmentVariables, Logging, Randomness, Signals, Streams
 
 NEW = "PYFRC_TEST_NEW"
 
@@ -60,8 +60,16 @@ def _streams() -> None:
     ("part", "change", "named"),
     [
         (Directory, _elsewhere, ["the current directory {below}"]),
-        (Environment, _variables, [f"the environment variable {NEW}", "the environment variable PYFRC_TEST_THERE"]),
-        (Environment, lambda: os.environ.pop("PYFRC_TEST_THERE"), ["the environment variable PYFRC_TEST_THERE"]),
+        (
+            EnvironmentVariables,
+            _variables,
+            [f"the environment variable {NEW}", "the environment variable PYFRC_TEST_THERE"],
+        ),
+        (
+            EnvironmentVariables,
+            lambda: os.environ.pop("PYFRC_TEST_THERE"),
+            ["the environment variable PYFRC_TEST_THERE"],
+        ),
         (Signals, lambda: signal.signal(signal.SIGUSR2, _handler), ["the handler of signal SIGUSR2"]),
         (Streams, _streams, ["sys.stdout", "threading.excepthook"]),
         (Randomness, random.random, ["the state of random"]),

@@ -20,7 +20,7 @@ from ...patch_table import Patch
 from ...wpi import robots
 
 
-class _Number(weakref.ref[Any]):
+class _ObjectNumber(weakref.ref[Any]):
     """The number of an object, for as long as the object exists. The bindings' objects have no attributes."""
 
     __slots__ = ("address", "number")
@@ -29,7 +29,7 @@ class _Number(weakref.ref[Any]):
     number: int
 
 
-_numbered: dict[int, _Number] = {}  # by the addresses of the objects
+_numbered: dict[int, _ObjectNumber] = {}  # by the addresses of the objects
 _counter = itertools.count()
 
 
@@ -43,7 +43,7 @@ def hash_by_number(self: Any) -> int:
     address = id(self)
     found = _numbered.get(address)
     if found is None:
-        found = _Number(self, _forget)
+        found = _ObjectNumber(self, _forget)
         found.address, found.number = address, next(_counter)
         _numbered[address] = found
     return found.number
@@ -55,5 +55,5 @@ def restart_numbers() -> None:
     _counter = itertools.count()
 
 
-def _forget(gone: _Number, numbered: dict[int, _Number] = _numbered) -> None:
+def _forget(gone: _ObjectNumber, numbered: dict[int, _ObjectNumber] = _numbered) -> None:
     numbered.pop(gone.address, None)

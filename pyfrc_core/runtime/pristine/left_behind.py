@@ -15,7 +15,7 @@ from .modules import ProjectModules
 from .part import StatePart
 
 
-class Commands(StatePart):
+class ScheduledCommands(StatePart):
     """The command scheduler: the next run gets a new one."""
 
     def restore(self) -> None:

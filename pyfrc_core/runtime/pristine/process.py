@@ -30,7 +30,7 @@ class Directory(StatePart):
             yield f"the current directory {Path.cwd()}"
 
 
-class Environment(StatePart):
+class EnvironmentVariables(StatePart):
     """The environment variables."""
 
     def __init__(self) -> None:

@@ -16,10 +16,10 @@ from ..patches import data_logs
 from ..patches.active_run import active_run
 from ..patches.object_hashes import restart_numbers
 from ..threads import cooperative
-from .left_behind import Commands, Devices, ProjectObjects, Tables, Threads
+from .left_behind import Devices, ProjectObjects, ScheduledCommands, Tables, Threads
 from .modules import ProjectModules
 from .part import StatePart
-from .process import Directory, Environment, Logging, Randomness, Signals, Streams
+from .process import Directory, EnvironmentVariables, Logging, Randomness, Signals, Streams
 from .replaced_names import ReplacedNames
 
 #: How many reasons are given.
@@ -74,10 +74,10 @@ class ProcessState:
         self._parts: list[StatePart] = [
             LastRun(),
             Tables(),  # before the scheduler, which a dashboard may show
-            Commands(),
+            ScheduledCommands(),
             Streams(),
             Directory(),
-            Environment(),
+            EnvironmentVariables(),
             Signals(),
             Logging(),
             ReplacedNames(modules),

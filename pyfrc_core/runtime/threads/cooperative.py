@@ -36,7 +36,7 @@ _ROBOT_THREADS = str(Path(__file__).with_name("robot_threads.py"))
 real_thread_start = threading.Thread.start
 
 
-class _Scope:
+class _RunScope:
     """The threads of the active robot run, if there is one; and the threads that wait for one to begin."""
 
     def __init__(self) -> None:
@@ -68,7 +68,7 @@ class _Scope:
                 _start_really(thread)
 
 
-scope = _Scope()
+scope = _RunScope()
 
 
 def start_thread(thread: threading.Thread) -> None:
