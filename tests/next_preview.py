@@ -19,8 +19,8 @@ from importlib.metadata import packages_distributions, version
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from pyfrc_core.migrate.names.packages import PACKAGES, Class, Entry, Function, Packages
 from pyfrc_core.season.season_2027 import SEASON_2027
+from tools.names.packages import PACKAGES, Class, Entry, Function, Packages
 
 
 def main(arguments: list[str]) -> int:

@@ -31,1289 +31,814 @@ def remarks(tmp_path: Path, code: str) -> list[Remark]:
     return [*report.by_hand(), *report.to_check()]
 
 
-#: Code, and what it becomes.
+#: Code, and what it becomes, as a diff: lines that begin with `-` are those before, with `+` those after.
 CODE = {
-    "a stand-in for the simulator": (
-        """
-        import wpilib
-        class Fake:
-            def getRate(self): return 0.0
-        class Slow(Fake):
-            def getRate(self): return super().getRate() / 2
-        def made(real):
-            return wpilib.Encoder(0, 1) if real else Slow()
-        print(made(True).getRate(), Fake().getRate())
-        """,
-        """
-        import wpilib
-        class Fake:
-            def get_rate(self): return 0.0
-        class Slow(Fake):
-            def get_rate(self): return super().get_rate() / 2
-        def made(real):
-            return wpilib.Encoder(0, 1) if real else Slow()
-        print(made(True).get_rate(), Fake().get_rate())
-        """,
-    ),
-    "what a callable returns": (
-        """
-        from typing import Callable
-        from wpimath.geometry import Pose2d
-        class Drive:
-            def __init__(self, pose: Callable[[], Pose2d]):
-                self.pose = pose
-            def far(self):
-                return self.pose().X()
-        """,
-        """
-        from typing import Callable
-        from wpimath import Pose2d
-        class Drive:
-            def __init__(self, pose: Callable[[], Pose2d]):
-                self.pose = pose
-            def far(self):
-                return self.pose().x
-        """,
-    ),
-    "a protocol": (
-        """
-        import typing
-        import wpilib
-        class HasRate(typing.Protocol):
-            def getRate(self) -> float: ...
-        def show(sensor: HasRate):
-            print(sensor.getRate())
-        show(wpilib.Encoder(0, 1))
-        """,
-        """
-        import typing
-        import wpilib
-        class HasRate(typing.Protocol):
-            def get_rate(self) -> float: ...
-        def show(sensor: HasRate):
-            print(sensor.get_rate())
-        show(wpilib.Encoder(0, 1))
-        """,
-    ),
-    "motors by setattr, in lambdas, by map and in dictionaries": (
-        """
-        import wpilib
-        class Drive:
-            def __init__(self, left=None, right=None):
-                self.sides = [left, right]
-                for name in ("front", "back"):
-                    setattr(self, name, wpilib.Talon(2))
-            @staticmethod
-            def run(each, speed):
-                each.set(speed)
-            def each(self, do):
-                for motor in self.sides:
-                    do(motor)
-            def stop(self):
-                self.front.set(0)
-                self.each(lambda motor: motor.set(0))
-                list(map(lambda motor: motor.set(1), self.sides))
-                Drive.run(self.back, 1)
-        drive = Drive(**{"left": wpilib.Talon(0), "right": wpilib.Talon(1)})
-        for each in map(wpilib.Encoder, range(2), range(2, 4)):
-            each.getRate()
-        """,
-        """
-        import wpilib
-        import wpilib_drivers
-        class Drive:
-            def __init__(self, left=None, right=None):
-                self.sides = [left, right]
-                for name in ("front", "back"):
-                    setattr(self, name, wpilib_drivers.Talon(2))
-            @staticmethod
-            def run(each, speed):
-                each.set_throttle(speed)
-            def each(self, do):
-                for motor in self.sides:
-                    do(motor)
-            def stop(self):
-                self.front.set_throttle(0)
-                self.each(lambda motor: motor.set_throttle(0))
-                list(map(lambda motor: motor.set_throttle(1), self.sides))
-                Drive.run(self.back, 1)
-        drive = Drive(**{"left": wpilib_drivers.Talon(0), "right": wpilib_drivers.Talon(1)})
-        for each in map(wpilib.Encoder, range(2), range(2, 4)):
-            each.get_rate()
-        """,
-    ),
-    "what a mixin and an own base use of derived classes": (
-        """
-        import commands2
-        import wpilib
-        class Sided:
-            def isFinished(self): return self.encoder.getDistance() > 1
-        class Turn(Sided, commands2.Command):
-            def __init__(self):
-                self.encoder = wpilib.Encoder(0, 1)
-        """,
-        """
-        import commands2
-        import wpilib
-        class Sided:
-            def is_finished(self): return self.encoder.get_distance() > 1
-        class Turn(Sided, commands2.Command):
-            def __init__(self):
-                self.encoder = wpilib.Encoder(0, 1)
-        """,
-    ),
-    "comments and line breaks": (
-        """
-        import wpilib
-        from wpimath import applyDeadband
-        class Robot(wpilib.TimedRobot):
-            def robotInit(self):
-                # nothing yet
-                pass  # so far
-            def teleopPeriodic(self):
-                wpilib.SmartDashboard.putNumber(  # shown
-                    "a",
-                    1)
-                now = wpilib.RobotController.getFPGATime(  # in microseconds
-                )
-                turn = applyDeadband(wpilib.XboxController(0)
-                    .getLeftY(), 0.1)
-        """,
-        """
-        import wpilib
-        import telemetry
-        class Robot(wpilib.TimedRobot):
-            def __init__(self):
-                # nothing yet
-                super().__init__()  # so far
-            def teleop_periodic(self):
-                telemetry.log(  # shown
-                    "a",
-                    1)
-                # in microseconds
-                now = (wpilib.RobotController.get_monotonic_time() // 1000)
-                turn = (wpilib.XboxController(0)
-                    .get_left_y())
-        """,
-    ),
-    "methods that are not called where they are named": (
-        """
-        import wpilib
-        from wpilib import RobotController
-        now = wpilib.RobotController.getFPGATime
-        then, put = RobotController.getFPGATime, wpilib.SmartDashboard.putNumber
-        put("passed", now() - then())
-        """,
-        """
-        import wpilib
-        import telemetry
-        from wpilib import RobotController
-        now = (lambda: (wpilib.RobotController.get_monotonic_time() // 1000))
-        then, put = (lambda: (RobotController.get_monotonic_time() // 1000)), telemetry.log
-        put("passed", now() - then())
-        """,
-    ),
-    "the constructor of a base of the team's": (
-        """
-        import wpilib
-        class Base(wpilib.TimedRobot):
-            def robotInit(self):
-                self.encoder = wpilib.Encoder(0, 1)
-        class Robot(Base):
-            def robotInit(self):
-                super().robotInit()
-                self.timer = wpilib.Timer()
-        """,
-        """
-        import wpilib
-        class Base(wpilib.TimedRobot):
-            def __init__(self):
-                super().__init__()
-                self.encoder = wpilib.Encoder(0, 1)
-        class Robot(Base):
-            def __init__(self):
-                super().__init__()
-                self.timer = wpilib.Timer()
-        """,
-    ),
-    "names that tests replace": (
-        """
-        from unittest.mock import patch
-        import wpilib
-        with patch.object(wpilib.Encoder, "getRate"):
-            pass
-        """,
-        """
-        from unittest.mock import patch
-        import wpilib
-        with patch.object(wpilib.Encoder, "get_rate"):
-            pass
-        """,
-    ),
-    "an old name of a base class": (
-        """
-        import commands2
-        from commands2 import Command, SubsystemBase, SubsystemBase as Part
-        class Drive(commands2.SubsystemBase):
-            pass
-        class Arm(Part):
-            def setup(self):
-                self.setDefaultCommand(Move(self))
-        class Shooter(SubsystemBase):
-            pass
-        class Move(Command):
-            def isFinished(self):
-                return True
-        """,
-        """
-        import commands2
-        from commands2 import Command, Subsystem, Subsystem as Part
-        class Drive(commands2.Subsystem):
-            pass
-        class Arm(Part):
-            def setup(self):
-                self.set_default_command(Move(self))
-        class Shooter(Subsystem):
-            pass
-        class Move(Command):
-            def is_finished(self):
-                return True
-        """,
-    ),
-    "buttons and axes of controllers, by numbers and by names": (
-        """
-        from commands2.button import CommandXboxController
-        from wpilib import XboxController
-        pad = CommandXboxController(0)
-        shoots, fast = pad.button(5), pad.axisGreaterThan(2, 0.5)
-        stops = pad.button(XboxController.Button.kA)
-        slow = pad.axisLessThan(XboxController.Axis.kLeftX, 0.1)
-        turn = pad.getRawAxis(XboxController.Axis.kRightX) + pad.getHID().getRawAxis(4)
-        """,
-        """
-        from commands2.button import CommandXboxController
-        from wpilib import XboxController
-        pad = CommandXboxController(0)
-        shoots, fast = pad.get_hid().button(9), pad.get_hid().axis_greater_than(4, 0.5)
-        stops = pad.get_hid().button(XboxController.Button.A)
-        slow = pad.get_hid().axis_less_than(XboxController.Axis.LEFT_X, 0.1)
-        turn = pad.get_hid().get_raw_axis(XboxController.Axis.RIGHT_X) + pad.get_controller().get_hid().get_raw_axis(2)
-        """,
-    ),
-    "a name of several types": (
-        """
-        from typing import List, Union
-        import rev
-        Config = Union[rev.SparkMaxConfig, "rev.SparkFlexConfig"]
-        def prepare(configs: Union[Config, List[Config]]):
-            for each in configs if isinstance(configs, list) else [configs]:
-                each.smartCurrentLimit(40)
-        """,
-        """
-        from typing import List, Union
-        import rev
-        Config = Union[rev.SparkMaxConfig, "rev.SparkFlexConfig"]
-        def prepare(configs: Union[Config, List[Config]]):
-            for each in configs if isinstance(configs, list) else [configs]:
-                each.smart_current_limit(40)
-        """,
-    ),
-    "a short name of the dashboard": (
-        """
-        import wpilib
-        def show(x):
-            sd = wpilib.SmartDashboard
-            sd.putNumber("x", x)
-        def other(x):
-            sd = wpilib.SmartDashboard
-            sd.putNumber("x", x)
-            return sd
-        """,
-        """
-        import wpilib
-        import telemetry
-        def show(x):
-            telemetry.log("x", x)
-        def other(x):
-            sd = wpilib.SmartDashboard
-            telemetry.log("x", x)
-            return sd
-        """,
-    ),
-    "cameras": (
-        """
-        from cscore import CameraServer as CS, VideoMode
-        def main():
-            CS.enableLogging()
-            camera = CS.startAutomaticCapture()
-            camera.setVideoMode(VideoMode.PixelFormat.kMJPEG, 320, 240, 30)
-            sink, out = CS.getVideo(), CS.putVideo("a", 320, 240)
-            time, image = sink.grabFrame(None)
-            out.notifyError(sink.getError())
-        """,
-        """
-        from cscore import CameraServer as CS
-        from wpiutil import PixelFormat
-        def main():
-            CS.enable_logging()
-            camera = CS.start_automatic_capture()
-            camera.set_video_mode(PixelFormat.MJPEG, 320, 240, 30)
-            sink, out = CS.get_video(), CS.put_video("a", 320, 240)
-            time, image = sink.grab_frame(None)
-            out.notify_error(sink.get_error())
-        """,
-    ),
-    "what the dashboard shows": (
-        """
-        import wpilib
-        import wpilib.drive
-        from commands2 import Command, CommandScheduler
-        from wpilib import SmartDashboard
-        from wpimath.controller import PIDController
-        class Shoot(Command): pass
-        class R(wpilib.TimedRobot):
-            def robotPeriodic(self):
-                SmartDashboard.putData("Field", wpilib.Field2d())
-                SmartDashboard.putData(PIDController(1, 0, 0))
-                SmartDashboard.putData("Shoot", Shoot())
-                SmartDashboard.putData(CommandScheduler.getInstance())
-                SmartDashboard.putData("Arm", wpilib.Mechanism2d(1, 1))
-        if __name__ == "__main__":
-            wpilib.run(R)
-        """,
-        """
-        import wpilib
-        import telemetry
-        import tunables
-        from commands2 import Command, CommandScheduler
-        from wpimath import PIDController
-        class Shoot(Command): pass
-        class R(wpilib.TimedRobot):
-            def robot_periodic(self):
-                telemetry.log("Field", wpilib.Field2d())
-                tunables.publish("PIDController", PIDController(1, 0, 0))
-                tunables.publish("Shoot", Shoot())
-                tunables.publish("Scheduler", CommandScheduler.get_instance())
-                telemetry.log("Arm", wpilib.Mechanism2d(1, 1))
-        if __name__ == "__main__":
-            pass
-        """,
-    ),
-    "PlayStation controllers": (
-        """
-        import wpilib
-        from commands2.button import CommandPS4Controller, JoystickButton
-        pad = wpilib.PS5Controller(0)
-        print(pad.getRawButton(2), pad.getRawAxis(5), pad.getL2Axis())
-        shoot = JoystickButton(wpilib.PS4Controller(1), 1)
-        fast = CommandPS4Controller(2).getR2Axis()
-        """,
-        """
-        import wpilib
-        from commands2.button import CommandDualShock4Controller, JoystickButton
-        pad = wpilib.DualSenseController(0)
-        print(pad.get_hid().get_raw_button(0), pad.get_hid().get_raw_axis(3), pad.get_l2())
-        shoot = JoystickButton(wpilib.DualShock4Controller(1).get_hid(), 2)
-        fast = CommandDualShock4Controller(2).get_r2()
-        """,
-    ),
-    "what is put into containers": (
-        """
-        import rev
-        import wpilib
-        KINDS = {"drive": rev.SparkMax}
-        class Robot(wpilib.TimedRobot):
-            def __init__(self):
-                self.objects, self.motors, self.mine = {}, [], []
-                field = wpilib.Field2d()
-                for name in ("a", "b"):
-                    self.objects[name] = field.getObject(name)
-                    self.motors.append(wpilib.Talon(0))
-                    self.mine.append(3)
-                self.spark = KINDS["drive"](1, rev.SparkMax.MotorType.kBrushless)
-                self.requirements.add(3)
-            def show(self):
-                self.objects["a"].setPoses([])
-                for motor in self.motors:
-                    motor.set(self.mine[0])
-                self.spark.set(1)
-        """,
-        """
-        import rev
-        import wpilib_drivers
-        import wpilib
-        KINDS = {"drive": rev.SparkMax}
-        class Robot(wpilib.TimedRobot):
-            def __init__(self):
-                self.objects, self.motors, self.mine = {}, [], []
-                field = wpilib.Field2d()
-                for name in ("a", "b"):
-                    self.objects[name] = field.get_object(name)
-                    self.motors.append(wpilib_drivers.Talon(0))
-                    self.mine.append(3)
-                self.spark = KINDS["drive"](wpilib.CANPort.CAN_S0, 1, rev.SparkMax.MotorType.BRUSHLESS)
-                self.requirements.add(3)
-            def show(self):
-                self.objects["a"].set_poses([])
-                for motor in self.motors:
-                    motor.set_throttle(self.mine[0])
-                self.spark.set_throttle(1)
-        """,
-    ),
-    "one of two gamepads": (
-        """
-        from commands2.button import CommandPS4Controller, CommandXboxController
-        def made(sony):
-            return CommandPS4Controller(0) if sony else CommandXboxController(0)
-        pad = made(True)
-        start = pad.options() if pad.L1() else pad.start()
-        """,
-        """
-        from commands2.button import CommandDualShock4Controller, CommandXboxController
-        def made(sony):
-            return CommandDualShock4Controller(0) if sony else CommandXboxController(0)
-        pad = made(True)
-        start = pad.options() if pad.l1() else pad.menu()
-        """,
-    ),
-    "CTRE's devices": (
-        """
-        from phoenix6 import CANBus, hardware
-        from phoenix6.hardware import TalonFX
-        UPPER = "canivore"
-        bus = CANBus(UPPER)
-        left = TalonFX(1)
-        right = TalonFX(2, "rio")
-        arm = TalonFX(3, canbus=UPPER)
-        gyro = hardware.Pigeon2(device_id=4)
-        encoder = hardware.CANcoder(5, bus)
-        own = CANBus.roborio()
-        recorded = CANBus("rio", "./logs/example.hoot"), CANBus(canbus=UPPER, hoot_filepath="a.hoot")
-        left.set(right.get())
-        left.setNeutralMode(1)
-        angle = gyro.getRotation2d().degrees()
-        turned = left.get_position().value
-        """,
-        """
-        from phoenix6 import CANBus, hardware
-        import phoenix6
-        import wpilib
-        from wpilib import CANPort
-        from phoenix6.hardware import TalonFX
-        UPPER = "canivore"
-        bus = CANBus(UPPER)
-        left = TalonFX(1, CANBus(CANPort.CAN_S0))
-        right = TalonFX(2, CANBus(CANPort.CAN_S0))
-        arm = TalonFX(3, canbus=CANBus(UPPER))
-        gyro = hardware.Pigeon2(device_id=4, canbus=phoenix6.CANBus(wpilib.CANPort.CAN_S0))
-        encoder = hardware.CANcoder(5, bus)
-        own = CANBus(CANPort.CAN_S0)
-        recorded = CANBus(CANPort.CAN_S0), CANBus(UPPER)
-        left.set_throttle(right.get_throttle())
-        left.config_neutral_mode(1)
-        angle = gyro.get_rotation2d().degrees()
-        turned = left.get_position().value
-        """,
-    ),
-    "classes made of generic ones, and of devices": (
-        """
-        import rev
-        import wpilib
-        from commands2 import Subsystem
-        from phoenix6 import hardware, swerve
-        class Drive(Subsystem, swerve.SwerveDrivetrain[hardware.TalonFX, hardware.TalonFX, hardware.CANcoder]):
-            def show(self):
-                state = self.get_state()
-                print(state.pose.X(), state.speeds.vx)
-                return self.runOnce(self.show)
-        class Motor(rev.SparkMax):
-            def __init__(self, number):
-                super().__init__(number, rev.SparkMax.MotorType.kBrushless)
-        """,
-        """
-        import rev
-        import wpilib
-        from commands2 import Subsystem
-        from phoenix6 import hardware, swerve
-        class Drive(Subsystem, swerve.SwerveDrivetrain[hardware.TalonFX, hardware.TalonFX, hardware.CANcoder]):
-            def show(self):
-                state = self.get_state()
-                print(state.pose.x, state.velocity.vx)
-                return self.run_once(self.show)
-        class Motor(rev.SparkMax):
-            def __init__(self, number):
-                super().__init__(wpilib.CANPort.CAN_S0, number, rev.SparkMax.MotorType.BRUSHLESS)
-        """,
-    ),
-    "trajectories": (
-        """
-        from wpimath.controller import RamseteController
-        from wpimath.geometry import Pose2d
-        from wpimath.trajectory import TrajectoryConfig, TrajectoryGenerator
-        path = TrajectoryGenerator.generateTrajectory(Pose2d(), [], Pose2d(3, 0, 0), TrajectoryConfig(1, 1))
-        there = path.sample(path.totalTime() / 2)
-        speeds = RamseteController(2.0, 0.7).calculate(Pose2d(), there)
-        print(there.pose.X(), there.velocity, path.initialPose().Y(), speeds.vx)
-        """,
-        """
-        from wpimath import DrivetrainSplineTrajectoryGenerator, LTVUnicycleController, Pose2d, TrajectoryConfig
-        path = DrivetrainSplineTrajectoryGenerator.generate(Pose2d(), [], Pose2d(3, 0, 0), TrajectoryConfig(1, 1))
-        there = path.sample_at(path.duration() / 2)
-        speeds = LTVUnicycleController(0.02).calculate(Pose2d(), there)
-        print(there.pose.x, there.forward_velocity(), path.initial_pose().y, speeds.vx)
-        """,
-    ),
-    "lists of lights that patterns are applied to": (
-        """
-        import wpilib
-        class Lights:
-            LENGTH = 60
-            def __init__(self):
-                self.strip = wpilib.AddressableLED(1)
-                self.buffer = [wpilib.AddressableLED.LEDData() for _ in range(self.LENGTH)]
-                self.other = [self.strip.LEDData()] * 5
-                self.strip.setData(self.buffer)
-            def show(self):
-                wpilib.LEDPattern.rainbow(255, 128).applyTo(self.buffer)
-                self.buffer[0].setRGB(1, 2, 3)
-        """,
-        """
-        import wpilib
-        class Lights:
-            LENGTH = 60
-            def __init__(self):
-                self.strip = wpilib.AddressableLED(1)
-                self.buffer = wpilib.AddressableLEDBuffer(self.LENGTH)
-                self.other = wpilib.AddressableLEDBuffer(5)
-                self.strip.set_data(self.buffer)
-            def show(self):
-                wpilib.LEDPattern.rainbow(255, 128).apply_to(self.buffer)
-                self.buffer[0].set_rgb(1, 2, 3)
-        """,
-    ),
-    "lists of lights without a pattern": (
-        """
-        import wpilib
-        buffer = [wpilib.AddressableLED.LEDData() for _ in range(9)]
-        buffer[3] = wpilib.AddressableLED.LEDData(1, 2, 3)
-        """,
-        """
-        import wpilib
-        buffer = [wpilib.AddressableLED.LEDData() for _ in range(9)]
-        buffer[3] = wpilib.AddressableLED.LEDData(1, 2, 3)
-        """,
-    ),
-    "a rumble of both sides in an expression": (
-        """
-        from wpilib.interfaces import GenericHID
-        stick, Side = GenericHID(0), GenericHID.RumbleType
-        shake = lambda: stick.setRumble(Side.kBothRumble, 1)
-        """,
-        """
-        from wpilib import GenericHID
-        stick, Side = GenericHID(0), GenericHID.RumbleType
-        shake = lambda: (stick.set_rumble(Side.LEFT_RUMBLE, 1), stick.set_rumble(Side.RIGHT_RUMBLE, 1))
-        """,
-    ),
-    "buttons in hal_data": (
-        """
-        from wpilib import XboxController
-        def test_it(control, hal_data):
-            stick = hal_data["joysticks"][0]
-            stick["buttons"][1] = True
-            hal_data["joysticks"][1]["buttons"][XboxController.Button.kA] = True
-            for each in range(1, 3):
-                stick["buttons"][each] = False
-            mine = {"buttons": [1, 2]}
-            mine["buttons"][1] = 3
-        """,
-        """
-        from wpilib import XboxController
-        def test_it(control, hal_data):
-            stick = hal_data["joysticks"][0]
-            stick["buttons"][0] = True
-            hal_data["joysticks"][1]["buttons"][XboxController.Button.A] = True
-            for each in range(1, 3):
-                stick["buttons"][each - 1] = False
-            mine = {"buttons": [1, 2]}
-            mine["buttons"][1] = 3
-        """,
-    ),
-    "modules that are one now": (
-        """
-        import wpimath.geometry
-        import wpimath.controller
-        from wpimath.kinematics import ChassisSpeeds
-        pose = wpimath.geometry.Pose2d()
-        pid = wpimath.controller.PIDController(Kp=1, Ki=0, Kd=0)
-        speeds = ChassisSpeeds(1, 0, 0)
-        turned = pose.rotation().rotateBy(wpimath.geometry.Rotation2d.fromDegrees(90))
-        far, get = pose.X() + (pose.translation().Y()), pose.X
-        """,
-        """
-        import wpimath
-        from wpimath import ChassisVelocities
-        pose = wpimath.Pose2d()
-        pid = wpimath.PIDController(kp=1, ki=0, kd=0)
-        speeds = ChassisVelocities(1, 0, 0)
-        turned = pose.rotation().rotate_by(wpimath.Rotation2d.from_degrees(90))
-        far, get = pose.x + (pose.translation().y), (lambda: pose.x)
-        """,
-    ),
-    "aliases": (
-        """
-        import wpilib as w, wpimath.geometry as geo
-        from wpilib.drive import DifferentialDrive as DD
-        drive = DD(w.Spark(0), w.Spark(1))
-        drive.arcadeDrive(0, 0)
-        angle = geo.Rotation2d.fromDegrees(3)
-        """,
-        """
-        import wpilib as w, wpimath as geo
-        import wpilib_drivers
-        from wpilib import DifferentialDrive as DD
-        drive = DD(wpilib_drivers.Spark(0), wpilib_drivers.Spark(1))
-        drive.arcade_drive(0, 0)
-        angle = geo.Rotation2d.from_degrees(3)
-        """,
-    ),
-    "everything from a module": (
-        """
-        from wpilib import *
-        from wpimath.geometry import *
-        motor = PWMSparkMax(0)
-        stick = PS4Controller(1)
-        pose = Pose2d().transformBy(Transform2d())
-        """,
-        """
-        from wpilib import *
-        from wpilib_drivers import PWMSparkMax
-        from wpimath import Pose2d, Transform2d
-        motor = PWMSparkMax(0)
-        stick = DualShock4Controller(1)
-        pose = Pose2d().transform_by(Transform2d())
-        """,
-    ),
-    "imports in branches": (
-        """
-        from typing import TYPE_CHECKING
-        if TYPE_CHECKING:
-            from wpilib import Encoder
-            from wpimath.geometry import Pose2d
+    "a stand-in for the simulator": """
+          import wpilib
+          class Fake:
+        -     def getRate(self): return 0.0
+        +     def get_rate(self): return 0.0
+          class Slow(Fake):
+        -     def getRate(self): return super().getRate() / 2
+        +     def get_rate(self): return super().get_rate() / 2
+          def made(real):
+              return wpilib.Encoder(0, 1) if real else Slow()
+        - print(made(True).getRate(), Fake().getRate())
+        + print(made(True).get_rate(), Fake().get_rate())
+    """,
+    "what a callable returns": """
+          from typing import Callable
+        - from wpimath.geometry import Pose2d
+        + from wpimath import Pose2d
+          class Drive:
+              def __init__(self, pose: Callable[[], Pose2d]):
+                  self.pose = pose
+              def far(self):
+        -         return self.pose().X()
+        +         return self.pose().x
+    """,
+    "a protocol": """
+          import typing
+          import wpilib
+          class HasRate(typing.Protocol):
+        -     def getRate(self) -> float: ...
+        +     def get_rate(self) -> float: ...
+          def show(sensor: HasRate):
+        -     print(sensor.getRate())
+        +     print(sensor.get_rate())
+          show(wpilib.Encoder(0, 1))
+    """,
+    "motors by setattr, in lambdas, by map and in dictionaries": """
+          import wpilib
+        + import wpilib_drivers
+          class Drive:
+              def __init__(self, left=None, right=None):
+                  self.sides = [left, right]
+                  for name in ("front", "back"):
+        -             setattr(self, name, wpilib.Talon(2))
+        +             setattr(self, name, wpilib_drivers.Talon(2))
+              @staticmethod
+              def run(each, speed):
+        -         each.set(speed)
+        +         each.set_throttle(speed)
+              def each(self, do):
+                  for motor in self.sides:
+                      do(motor)
+              def stop(self):
+        -         self.front.set(0)
+        -         self.each(lambda motor: motor.set(0))
+        -         list(map(lambda motor: motor.set(1), self.sides))
+        +         self.front.set_throttle(0)
+        +         self.each(lambda motor: motor.set_throttle(0))
+        +         list(map(lambda motor: motor.set_throttle(1), self.sides))
+                  Drive.run(self.back, 1)
+        - drive = Drive(**{"left": wpilib.Talon(0), "right": wpilib.Talon(1)})
+        + drive = Drive(**{"left": wpilib_drivers.Talon(0), "right": wpilib_drivers.Talon(1)})
+          for each in map(wpilib.Encoder, range(2), range(2, 4)):
+        -     each.getRate()
+        +     each.get_rate()
+    """,
+    "what a mixin and an own base use of derived classes": """
+          import commands2
+          import wpilib
+          class Sided:
+        -     def isFinished(self): return self.encoder.getDistance() > 1
+        +     def is_finished(self): return self.encoder.get_distance() > 1
+          class Turn(Sided, commands2.Command):
+              def __init__(self):
+                  self.encoder = wpilib.Encoder(0, 1)
+    """,
+    "comments and line breaks": """
+          import wpilib
+        - from wpimath import applyDeadband
+        + import telemetry
+          class Robot(wpilib.TimedRobot):
+        -     def robotInit(self):
+        +     def __init__(self):
+                  # nothing yet
+        -         pass  # so far
+        -     def teleopPeriodic(self):
+        -         wpilib.SmartDashboard.putNumber(  # shown
+        +         super().__init__()  # so far
+        +     def teleop_periodic(self):
+        +         telemetry.log(  # shown
+                      "a",
+                      1)
+        -         now = wpilib.RobotController.getFPGATime(  # in microseconds
+        -         )
+        -         turn = applyDeadband(wpilib.XboxController(0)
+        -             .getLeftY(), 0.1)
+        +         # in microseconds
+        +         now = (wpilib.RobotController.get_monotonic_time() // 1000)
+        +         turn = (wpilib.XboxController(0)
+        +             .get_left_y())
+    """,
+    "methods that are not called where they are named": """
+          import wpilib
+        + import telemetry
+          from wpilib import RobotController
+        - now = wpilib.RobotController.getFPGATime
+        - then, put = RobotController.getFPGATime, wpilib.SmartDashboard.putNumber
+        + now = (lambda: (wpilib.RobotController.get_monotonic_time() // 1000))
+        + then, put = (lambda: (RobotController.get_monotonic_time() // 1000)), telemetry.log
+          put("passed", now() - then())
+    """,
+    "the constructor of a base of the team's": """
+          import wpilib
+          class Base(wpilib.TimedRobot):
+        -     def robotInit(self):
+        +     def __init__(self):
+        +         super().__init__()
+                  self.encoder = wpilib.Encoder(0, 1)
+          class Robot(Base):
+        -     def robotInit(self):
+        -         super().robotInit()
+        +     def __init__(self):
+        +         super().__init__()
+                  self.timer = wpilib.Timer()
+    """,
+    "names that tests replace": """
+          from unittest.mock import patch
+          import wpilib
+        - with patch.object(wpilib.Encoder, "getRate"):
+        + with patch.object(wpilib.Encoder, "get_rate"):
+              pass
+    """,
+    "an old name of a base class": """
+          import commands2
+        - from commands2 import Command, SubsystemBase, SubsystemBase as Part
+        - class Drive(commands2.SubsystemBase):
+        + from commands2 import Command, Subsystem, Subsystem as Part
+        + class Drive(commands2.Subsystem):
+              pass
+          class Arm(Part):
+              def setup(self):
+        -         self.setDefaultCommand(Move(self))
+        - class Shooter(SubsystemBase):
+        +         self.set_default_command(Move(self))
+        + class Shooter(Subsystem):
+              pass
+          class Move(Command):
+        -     def isFinished(self):
+        +     def is_finished(self):
+                  return True
+    """,
+    "buttons and axes of controllers, by numbers and by names": """
+          from commands2.button import CommandXboxController
+          from wpilib import XboxController
+          pad = CommandXboxController(0)
+        - shoots, fast = pad.button(5), pad.axisGreaterThan(2, 0.5)
+        - stops = pad.button(XboxController.Button.kA)
+        - slow = pad.axisLessThan(XboxController.Axis.kLeftX, 0.1)
+        - x = pad.getRawAxis(XboxController.Axis.kRightX) + pad.getHID().getRawAxis(4)
+        + shoots, fast = pad.get_hid().button(9), pad.get_hid().axis_greater_than(4, 0.5)
+        + stops = pad.get_hid().button(XboxController.Button.A)
+        + slow = pad.get_hid().axis_less_than(XboxController.Axis.LEFT_X, 0.1)
+        + x = pad.get_hid().get_raw_axis(XboxController.Axis.RIGHT_X) + pad.get_controller().get_hid().get_raw_axis(2)
+    """,
+    "a name of several types": """
+          from typing import List, Union
+          import rev
+          Config = Union[rev.SparkMaxConfig, "rev.SparkFlexConfig"]
+          def prepare(configs: Union[Config, List[Config]]):
+              for each in configs if isinstance(configs, list) else [configs]:
+        -         each.smartCurrentLimit(40)
+        +         each.smart_current_limit(40)
+    """,
+    "a short name of the dashboard": """
+          import wpilib
+        + import telemetry
+          def show(x):
+              sd = wpilib.SmartDashboard
+        -     sd.putNumber("x", x)
+        +     telemetry.log("x", x)
+    """,
+    "cameras": """
+        - from cscore import CameraServer as CS, VideoMode
+        + from cscore import CameraServer as CS
+        + from wpiutil import PixelFormat
+          def main():
+        -     CS.enableLogging()
+        -     camera = CS.startAutomaticCapture()
+        -     camera.setVideoMode(VideoMode.PixelFormat.kMJPEG, 320, 240, 30)
+        -     sink, out = CS.getVideo(), CS.putVideo("a", 320, 240)
+        -     time, image = sink.grabFrame(None)
+        -     out.notifyError(sink.getError())
+        +     CS.enable_logging()
+        +     camera = CS.start_automatic_capture()
+        +     camera.set_video_mode(PixelFormat.MJPEG, 320, 240, 30)
+        +     sink, out = CS.get_video(), CS.put_video("a", 320, 240)
+        +     time, image = sink.grab_frame(None)
+        +     out.notify_error(sink.get_error())
+    """,
+    "what the dashboard shows": """
+          import wpilib
+        - import wpilib.drive
+        + import telemetry
+        + import tunables
+          from commands2 import Command, CommandScheduler
+        - from wpilib import SmartDashboard
+        - from wpimath.controller import PIDController
+        + from wpimath import PIDController
+          class Shoot(Command): pass
+          class R(wpilib.TimedRobot):
+        -     def robotPeriodic(self):
+        -         SmartDashboard.putData("Field", wpilib.Field2d())
+        -         SmartDashboard.putData(PIDController(1, 0, 0))
+        -         SmartDashboard.putData("Shoot", Shoot())
+        -         SmartDashboard.putData(CommandScheduler.getInstance())
+        -         SmartDashboard.putData("Arm", wpilib.Mechanism2d(1, 1))
+        +     def robot_periodic(self):
+        +         telemetry.log("Field", wpilib.Field2d())
+        +         tunables.publish("PIDController", PIDController(1, 0, 0))
+        +         tunables.publish("Shoot", Shoot())
+        +         tunables.publish("Scheduler", CommandScheduler.get_instance())
+        +         telemetry.log("Arm", wpilib.Mechanism2d(1, 1))
+          if __name__ == "__main__":
+        -     wpilib.run(R)
+        +     pass
+    """,
+    "PlayStation controllers": """
+          import wpilib
+        - from commands2.button import CommandPS4Controller, JoystickButton
+        - pad = wpilib.PS5Controller(0)
+        - print(pad.getRawButton(2), pad.getRawAxis(5), pad.getL2Axis())
+        - shoot = JoystickButton(wpilib.PS4Controller(1), 1)
+        - fast = CommandPS4Controller(2).getR2Axis()
+        + from commands2.button import CommandDualShock4Controller, JoystickButton
+        + pad = wpilib.DualSenseController(0)
+        + print(pad.get_hid().get_raw_button(0), pad.get_hid().get_raw_axis(3), pad.get_l2())
+        + shoot = JoystickButton(wpilib.DualShock4Controller(1).get_hid(), 2)
+        + fast = CommandDualShock4Controller(2).get_r2()
+    """,
+    "what is put into containers": """
+          import rev
+        + import wpilib_drivers
+          import wpilib
+          KINDS = {"drive": rev.SparkMax}
+          class Robot(wpilib.TimedRobot):
+              def __init__(self):
+                  self.objects, self.motors, self.mine = {}, [], []
+                  field = wpilib.Field2d()
+                  for name in ("a", "b"):
+        -             self.objects[name] = field.getObject(name)
+        -             self.motors.append(wpilib.Talon(0))
+        +             self.objects[name] = field.get_object(name)
+        +             self.motors.append(wpilib_drivers.Talon(0))
+                      self.mine.append(3)
+        -         self.spark = KINDS["drive"](1, rev.SparkMax.MotorType.kBrushless)
+        +         self.spark = KINDS["drive"](wpilib.CANPort.CAN_S0, 1, rev.SparkMax.MotorType.BRUSHLESS)
+                  self.requirements.add(3)
+              def show(self):
+        -         self.objects["a"].setPoses([])
+        +         self.objects["a"].set_poses([])
+                  for motor in self.motors:
+        -             motor.set(self.mine[0])
+        -         self.spark.set(1)
+        +             motor.set_throttle(self.mine[0])
+        +         self.spark.set_throttle(1)
+    """,
+    "one of two gamepads": """
+        - from commands2.button import CommandPS4Controller, CommandXboxController
+        + from commands2.button import CommandDualShock4Controller, CommandXboxController
+          def made(sony):
+        -     return CommandPS4Controller(0) if sony else CommandXboxController(0)
+        +     return CommandDualShock4Controller(0) if sony else CommandXboxController(0)
+          pad = made(True)
+        - start = pad.options() if pad.L1() else pad.start()
+        + start = pad.options() if pad.l1() else pad.menu()
+    """,
+    "CTRE's devices": """
+          from phoenix6 import CANBus, hardware
+        + import phoenix6
+        + import wpilib
+        + from wpilib import CANPort
+          from phoenix6.hardware import TalonFX
+          UPPER = "canivore"
+          bus = CANBus(UPPER)
+        - left = TalonFX(1)
+        - right = TalonFX(2, "rio")
+        - arm = TalonFX(3, canbus=UPPER)
+        - gyro = hardware.Pigeon2(device_id=4)
+        + left = TalonFX(1, CANBus(CANPort.CAN_S0))
+        + right = TalonFX(2, CANBus(CANPort.CAN_S0))
+        + arm = TalonFX(3, canbus=CANBus(UPPER))
+        + gyro = hardware.Pigeon2(device_id=4, canbus=phoenix6.CANBus(wpilib.CANPort.CAN_S0))
+          encoder = hardware.CANcoder(5, bus)
+        - own = CANBus.roborio()
+        - recorded = CANBus("rio", "./logs/example.hoot"), CANBus(canbus=UPPER, hoot_filepath="a.hoot")
+        - left.set(right.get())
+        - left.setNeutralMode(1)
+        - angle = gyro.getRotation2d().degrees()
+        + own = CANBus(CANPort.CAN_S0)
+        + recorded = CANBus(CANPort.CAN_S0), CANBus(UPPER)
+        + left.set_throttle(right.get_throttle())
+        + left.config_neutral_mode(1)
+        + angle = gyro.get_rotation2d().degrees()
+          turned = left.get_position().value
+    """,
+    "classes made of generic ones, and of devices": """
+          import rev
+          import wpilib
+          from commands2 import Subsystem
+          from phoenix6 import hardware, swerve
+          class Drive(Subsystem, swerve.SwerveDrivetrain[hardware.TalonFX, hardware.TalonFX, hardware.CANcoder]):
+              def show(self):
+                  state = self.get_state()
+        -         print(state.pose.X(), state.speeds.vx)
+        -         return self.runOnce(self.show)
+        +         print(state.pose.x, state.velocity.vx)
+        +         return self.run_once(self.show)
+          class Motor(rev.SparkMax):
+              def __init__(self, number):
+        -         super().__init__(number, rev.SparkMax.MotorType.kBrushless)
+        +         super().__init__(wpilib.CANPort.CAN_S0, number, rev.SparkMax.MotorType.BRUSHLESS)
+    """,
+    "trajectories": """
+        - from wpimath.controller import RamseteController
+        - from wpimath.geometry import Pose2d
+        - from wpimath.trajectory import TrajectoryConfig, TrajectoryGenerator
+        - path = TrajectoryGenerator.generateTrajectory(Pose2d(), [], Pose2d(3, 0, 0), TrajectoryConfig(1, 1))
+        - there = path.sample(path.totalTime() / 2)
+        - speeds = RamseteController(2.0, 0.7).calculate(Pose2d(), there)
+        - print(there.pose.X(), there.velocity, path.initialPose().Y(), speeds.vx)
+        + from wpimath import DrivetrainSplineTrajectoryGenerator, LTVUnicycleController, Pose2d, TrajectoryConfig
+        + path = DrivetrainSplineTrajectoryGenerator.generate(Pose2d(), [], Pose2d(3, 0, 0), TrajectoryConfig(1, 1))
+        + there = path.sample_at(path.duration() / 2)
+        + speeds = LTVUnicycleController(0.02).calculate(Pose2d(), there)
+        + print(there.pose.x, there.forward_velocity(), path.initial_pose().y, speeds.vx)
+    """,
+    "lists of lights that patterns are applied to": """
+          import wpilib
+          class Lights:
+              LENGTH = 60
+              def __init__(self):
+                  self.strip = wpilib.AddressableLED(1)
+        -         self.buffer = [wpilib.AddressableLED.LEDData() for _ in range(self.LENGTH)]
+        -         self.other = [self.strip.LEDData()] * 5
+        -         self.strip.setData(self.buffer)
+        +         self.buffer = wpilib.AddressableLEDBuffer(self.LENGTH)
+        +         self.other = wpilib.AddressableLEDBuffer(5)
+        +         self.strip.set_data(self.buffer)
+              def show(self):
+        -         wpilib.LEDPattern.rainbow(255, 128).applyTo(self.buffer)
+        -         self.buffer[0].setRGB(1, 2, 3)
+        +         wpilib.LEDPattern.rainbow(255, 128).apply_to(self.buffer)
+        +         self.buffer[0].set_rgb(1, 2, 3)
+    """,
+    "a rumble of both sides in an expression": """
+        - from wpilib.interfaces import GenericHID
+        + from wpilib import GenericHID
+          stick, Side = GenericHID(0), GenericHID.RumbleType
+        - shake = lambda: stick.setRumble(Side.kBothRumble, 1)
+        + shake = lambda: (stick.set_rumble(Side.LEFT_RUMBLE, 1), stick.set_rumble(Side.RIGHT_RUMBLE, 1))
+    """,
+    "buttons in hal_data": """
+          from wpilib import XboxController
+          def test_it(control, hal_data):
+              stick = hal_data["joysticks"][0]
+        -     stick["buttons"][1] = True
+        -     hal_data["joysticks"][1]["buttons"][XboxController.Button.kA] = True
+        +     stick["buttons"][0] = True
+        +     hal_data["joysticks"][1]["buttons"][XboxController.Button.A] = True
+              for each in range(1, 3):
+        -         stick["buttons"][each] = False
+        +         stick["buttons"][each - 1] = False
+              mine = {"buttons": [1, 2]}
+              mine["buttons"][1] = 3
+    """,
+    "modules that are one now": """
+        - import wpimath.geometry
+        - import wpimath.controller
+        - from wpimath.kinematics import ChassisSpeeds
+        - pose = wpimath.geometry.Pose2d()
+        - pid = wpimath.controller.PIDController(Kp=1, Ki=0, Kd=0)
+        - speeds = ChassisSpeeds(1, 0, 0)
+        - turned = pose.rotation().rotateBy(wpimath.geometry.Rotation2d.fromDegrees(90))
+        - far, get = pose.X() + (pose.translation().Y()), pose.X
+        + import wpimath
+        + from wpimath import ChassisVelocities
+        + pose = wpimath.Pose2d()
+        + pid = wpimath.PIDController(kp=1, ki=0, kd=0)
+        + speeds = ChassisVelocities(1, 0, 0)
+        + turned = pose.rotation().rotate_by(wpimath.Rotation2d.from_degrees(90))
+        + far, get = pose.x + (pose.translation().y), (lambda: pose.x)
+    """,
+    "aliases": """
+        - import wpilib as w, wpimath.geometry as geo
+        - from wpilib.drive import DifferentialDrive as DD
+        - drive = DD(w.Spark(0), w.Spark(1))
+        - drive.arcadeDrive(0, 0)
+        - angle = geo.Rotation2d.fromDegrees(3)
+        + import wpilib as w, wpimath as geo
+        + import wpilib_drivers
+        + from wpilib import DifferentialDrive as DD
+        + drive = DD(wpilib_drivers.Spark(0), wpilib_drivers.Spark(1))
+        + drive.arcade_drive(0, 0)
+        + angle = geo.Rotation2d.from_degrees(3)
+    """,
+    "everything from a module": """
+          from wpilib import *
+        - from wpimath.geometry import *
+        + from wpilib_drivers import PWMSparkMax
+        + from wpimath import Pose2d, Transform2d
+          motor = PWMSparkMax(0)
+        - stick = PS4Controller(1)
+        - pose = Pose2d().transformBy(Transform2d())
+        + stick = DualShock4Controller(1)
+        + pose = Pose2d().transform_by(Transform2d())
+    """,
+    "imports in branches": """
+          from typing import TYPE_CHECKING
+          if TYPE_CHECKING:
+              from wpilib import Encoder
+        -     from wpimath.geometry import Pose2d
+        +     from wpimath import Pose2d
 
-        def far(encoder: "Encoder", poses: "list[Pose2d]") -> float:
-            return encoder.getDistance() + poses[0].x
-        """,
-        """
-        from typing import TYPE_CHECKING
-        if TYPE_CHECKING:
-            from wpilib import Encoder
-            from wpimath import Pose2d
+          def far(encoder: "Encoder", poses: "list[Pose2d]") -> float:
+        -     return encoder.getDistance() + poses[0].x
+        +     return encoder.get_distance() + poses[0].x
+    """,
+    "motors": """
+          import wpilib
+        - from wpilib.interfaces import MotorController
+        + from wpilib import MotorController
 
-        def far(encoder: "Encoder", poses: "list[Pose2d]") -> float:
-            return encoder.get_distance() + poses[0].x
-        """,
-    ),
-    "motors": (
-        """
-        import wpilib
-        from wpilib.interfaces import MotorController
+          def run(motors: list[MotorController], led: wpilib.DigitalOutput):
+              for motor in motors:
+        -         motor.set(0.5)
+        -         print(f"{motor.get():.2f} {motors[0].getInverted()}")
+        +         motor.set_throttle(0.5)
+        +         print(f"{motor.get_throttle():.2f} {motors[0].get_inverted()}")
+              led.set(True)
+        -     [m.stopMotor() for m in motors]
+        +     [m.disable() for m in motors]
+    """,
+    "the driver station": """
+        - from wpilib import DriverStation
+        + from wpilib import Alliance, MatchState, RobotState
+          import wpilib
+        - if DriverStation.isEnabled() and wpilib.DriverStation.getAlliance() == DriverStation.Alliance.kRed:
+        -     data = DriverStation.getGameSpecificMessage()[:1]
+        + if RobotState.is_enabled() and wpilib.MatchState.get_alliance() == Alliance.RED:
+        +     data = (MatchState.get_game_data() or '')[:1]
+    """,
+    "times": """
+          import wpilib
+        - start = wpilib.RobotController.getFPGATime()
+        - late = 1e6 / wpilib.RobotController.getFPGATime()
+        - now = wpilib.Timer.getFPGATimestamp()
+        + start = (wpilib.RobotController.get_monotonic_time() // 1000)
+        + late = 1e6 / (wpilib.RobotController.get_monotonic_time() // 1000)
+        + now = wpilib.Timer.get_monotonic_timestamp()
+    """,
+    "buttons count from 0": """
+          import wpilib
+          from commands2.button import CommandXboxController, JoystickButton
+          stick = wpilib.Joystick(0)
+          driver = CommandXboxController(1)
+          FIRE = 3
+        - if stick.getRawButton(1) or stick.getRawButtonPressed(FIRE):
+        + if stick.get_raw_button(0) or stick.get_raw_button_pressed(FIRE - 1):
+              pass
+        - JoystickButton(stick, 2).onTrue(None)
+        - driver.button(4).onTrue(None)
+        + JoystickButton(stick.get_hid(), 1).on_true(None)
+        + driver.get_hid().button(3).on_true(None)
+    """,
+    "directions of a POV": """
+          import wpilib
+          stick = wpilib.Joystick(0)
+        - if stick.getPOV() == 90:
+        + if stick.get_pov() == wpilib.POVDirection.RIGHT:
+              pass
+        - free = stick.getPOV(0) in (180, -1)
+        + free = stick.get_pov(0) in (wpilib.POVDirection.DOWN, wpilib.POVDirection.CENTER)
+    """,
+    "dashboards": """
+          import wpilib
+        + import ntcore
+        + import telemetry
+        + import tunables
 
-        def run(motors: list[MotorController], led: wpilib.DigitalOutput):
-            for motor in motors:
-                motor.set(0.5)
-                print(f"{motor.get():.2f} {motors[0].getInverted()}")
-            led.set(True)
-            [m.stopMotor() for m in motors]
-        """,
-        """
-        import wpilib
-        from wpilib import MotorController
+          class Auto:
+              def __init__(self):
+        -         self.chooser = wpilib.SendableChooser()
+        -         self.chooser.setDefaultOption("none", None)
+        -         self.chooser.addOption("one", 1)
+        -         wpilib.SmartDashboard.putData("Auto", self.chooser)
+        -         wpilib.SmartDashboard.putNumber("gain", 1)
+        -         wpilib.SmartDashboard.putBoolean("ready", True)
+        +         self.chooser = tunables.Selectable()
+        +         self.chooser.add_default("none", None)
+        +         self.chooser.add("one", 1)
+        +         tunables.publish("Auto", self.chooser)
+        +         ntcore.NetworkTableInstance.get_default().get_table("SmartDashboard").put_number("gain", 1)
+        +         telemetry.log("ready", True)
 
-        def run(motors: list[MotorController], led: wpilib.DigitalOutput):
-            for motor in motors:
-                motor.set_throttle(0.5)
-                print(f"{motor.get_throttle():.2f} {motors[0].get_inverted()}")
-            led.set(True)
-            [m.disable() for m in motors]
-        """,
-    ),
-    "the driver station": (
-        """
-        from wpilib import DriverStation
-        import wpilib
-        if DriverStation.isEnabled() and wpilib.DriverStation.getAlliance() == DriverStation.Alliance.kRed:
-            data = DriverStation.getGameSpecificMessage()[:1]
-        """,
-        """
-        from wpilib import Alliance, MatchState, RobotState
-        import wpilib
-        if RobotState.is_enabled() and wpilib.MatchState.get_alliance() == Alliance.RED:
-            data = (MatchState.get_game_data() or '')[:1]
-        """,
-    ),
-    "times": (
-        """
-        import wpilib
-        start = wpilib.RobotController.getFPGATime()
-        late = 1e6 / wpilib.RobotController.getFPGATime()
-        now = wpilib.Timer.getFPGATimestamp()
-        """,
-        """
-        import wpilib
-        start = (wpilib.RobotController.get_monotonic_time() // 1000)
-        late = 1e6 / (wpilib.RobotController.get_monotonic_time() // 1000)
-        now = wpilib.Timer.get_monotonic_timestamp()
-        """,
-    ),
-    "buttons count from 0": (
-        """
-        import wpilib
-        from commands2.button import CommandXboxController, JoystickButton
-        stick = wpilib.Joystick(0)
-        driver = CommandXboxController(1)
-        FIRE = 3
-        if stick.getRawButton(1) or stick.getRawButtonPressed(FIRE):
-            pass
-        JoystickButton(stick, 2).onTrue(None)
-        driver.button(4).onTrue(None)
-        """,
-        """
-        import wpilib
-        from commands2.button import CommandXboxController, JoystickButton
-        stick = wpilib.Joystick(0)
-        driver = CommandXboxController(1)
-        FIRE = 3
-        if stick.get_raw_button(0) or stick.get_raw_button_pressed(FIRE - 1):
-            pass
-        JoystickButton(stick.get_hid(), 1).on_true(None)
-        driver.get_hid().button(3).on_true(None)
-        """,
-    ),
-    "directions of a POV": (
-        """
-        import wpilib
-        stick = wpilib.Joystick(0)
-        if stick.getPOV() == 90:
-            pass
-        free = stick.getPOV(0) in (180, -1)
-        """,
-        """
-        import wpilib
-        stick = wpilib.Joystick(0)
-        if stick.get_pov() == wpilib.POVDirection.RIGHT:
-            pass
-        free = stick.get_pov(0) in (wpilib.POVDirection.DOWN, wpilib.POVDirection.CENTER)
-        """,
-    ),
-    "dashboards": (
-        """
-        import wpilib
+              def get(self):
+        -         gain = wpilib.SmartDashboard.getNumber("gain", 0)
+        -         return self.chooser.getSelected()
+        +         gain = ntcore.NetworkTableInstance.get_default().get_table("SmartDashboard").get_number("gain", 0)
+        +         return self.chooser.get_selected()
+    """,
+    "simulation": """
+          import wpilib
+        + import wpilib_drivers
+          from magicbot import MagicRobot
 
-        class Auto:
-            def __init__(self):
-                self.chooser = wpilib.SendableChooser()
-                self.chooser.setDefaultOption("none", None)
-                self.chooser.addOption("one", 1)
-                wpilib.SmartDashboard.putData("Auto", self.chooser)
-                wpilib.SmartDashboard.putNumber("gain", 1)
-                wpilib.SmartDashboard.putBoolean("ready", True)
+          class MyRobot(MagicRobot):
+        -     def createObjects(self):
+        -         self.motor = wpilib.Talon(0)
+        +     def create_objects(self):
+        +         self.motor = wpilib_drivers.Talon(0)
 
-            def get(self):
-                self.gain = wpilib.SmartDashboard.getNumber("gain", 0)
-                return self.chooser.getSelected()
-        """,
-        """
-        import wpilib
-        import ntcore
-        import telemetry
-        import tunables
+        -     def _simulationPeriodic(self):
+        +     def simulation_periodic(self):
+                  pass
+    """,
+    "a constructor that there is": """
+          import wpilib
 
-        class Auto:
-            def __init__(self):
-                self.chooser = tunables.Selectable()
-                self.chooser.add_default("none", None)
-                self.chooser.add("one", 1)
-                tunables.publish("Auto", self.chooser)
-                ntcore.NetworkTableInstance.get_default().get_table("SmartDashboard").put_number("gain", 1)
-                telemetry.log("ready", True)
+          class MyRobot(wpilib.TimedRobot):
+              def __init__(self):
+                  super().__init__(0.01)
+        +         self.robot_init()
 
-            def get(self):
-                self.gain = ntcore.NetworkTableInstance.get_default().get_table("SmartDashboard").get_number("gain", 0)
-                return self.chooser.get_selected()
-        """,
-    ),
-    "simulation": (
-        """
-        import wpilib
-        from magicbot import MagicRobot
+        -     def robotInit(self):
+        +     def robot_init(self):
+                  self.timer = wpilib.Timer()
+    """,
+    "commands": """
+          import commands2
+          import commands2.cmd
 
-        class MyRobot(MagicRobot):
-            def createObjects(self):
-                self.motor = wpilib.Talon(0)
+          class Lift(commands2.Subsystem):
+              def up(self) -> commands2.Command:
+        -         return self.runOnce(self.raiseIt).andThen(commands2.cmd.waitSeconds(1)).withName("up")
+        +         return self.run_once(self.raiseIt).and_then(commands2.cmd.wait_seconds(1)).with_name("up")
 
-            def _simulationPeriodic(self):
-                pass
-        """,
-        """
-        import wpilib
-        import wpilib_drivers
-        from magicbot import MagicRobot
+              def raiseIt(self):
+        -         self.getCurrentCommand()
+        +         self.get_current_command()
 
-        class MyRobot(MagicRobot):
-            def create_objects(self):
-                self.motor = wpilib_drivers.Talon(0)
+          class Wait(commands2.Command):
+              def __init__(self, lift: Lift):
+                  super().__init__()
+        -         self.addRequirements(lift)
+        +         self.add_requirements(lift)
 
-            def simulation_periodic(self):
-                pass
-        """,
-    ),
-    "a constructor that there is": (
-        """
-        import wpilib
+        -     def isFinished(self):
+        +     def is_finished(self):
+                  return True
 
-        class MyRobot(wpilib.TimedRobot):
-            def __init__(self):
-                super().__init__(0.01)
+        - Wait(Lift()).isFinished()
+        - commands2.CommandScheduler.getInstance().run()
+        + Wait(Lift()).is_finished()
+        + commands2.CommandScheduler.get_instance().run()
+    """,
+    "arguments that are gone": """
+        - from wpimath.estimator import DifferentialDrivePoseEstimator
+        - from wpimath.geometry import Pose2d, Rotation2d
+        - from wpimath.kinematics import DifferentialDriveKinematics
+        + from wpimath import DifferentialDriveKinematics, DifferentialDrivePoseEstimator, Pose2d, Rotation2d
+          kinematics = DifferentialDriveKinematics(0.5)
+        - estimator = DifferentialDrivePoseEstimator(kinematics, Rotation2d(), 0, 0, Pose2d())
+        + estimator = DifferentialDrivePoseEstimator(Rotation2d(), 0, 0, Pose2d())
+    """,
+    "choosers in tests": """
+        - from wpilib.simulation import SendableChooserSim, XboxControllerSim
+        + from ntcore.util import SelectableControl
+        + from wpilib.simulation import XboxControllerSim
 
-            def robotInit(self):
-                self.timer = wpilib.Timer()
-        """,
-        """
-        import wpilib
+          def test_it(control):
+        -     SendableChooserSim("/SmartDashboard/Auto Mode/").setSelected("Stay")
+        +     SelectableControl("Auto Mode").set_selected("Stay")
+    """,
+    "an Xbox controller by numbers": """
+          import wpilib
+          driver, stick = wpilib.XboxController(0), wpilib.Joystick(1)
+        - turn = driver.getRawAxis(4) + stick.getRawAxis(4)
+        - fire = driver.getRawButton(6) or stick.getRawButton(6)
+        + turn = driver.get_hid().get_raw_axis(2) + stick.get_raw_axis(4)
+        + fire = driver.get_hid().get_raw_button(10) or stick.get_raw_button(5)
+    """,
+    "a PlayStation controller by numbers": """
+        - from wpilib import PS4Controller
+        - pad = PS4Controller(0)
+        - turn, fire = pad.getRawAxis(5), pad.getRawButton(1)
+        + from wpilib import DualShock4Controller
+        + pad = DualShock4Controller(0)
+        + turn, fire = pad.get_hid().get_raw_axis(3), pad.get_hid().get_raw_button(2)
+          def test_it(hal_data):
+        -     hal_data["joysticks"][0]["axes"][5] = hal_data["joysticks"][0]["buttons"][2] = 1
+        +     hal_data["joysticks"][0]["axes"][3] = hal_data["joysticks"][0]["buttons"][0] = 1
+    """,
+    "an Xbox controller in hal_data": """
+          import wpilib
+          DRIVER = 0
+        - X, Y = wpilib.XboxController.Button.kX, wpilib.XboxController.Button.kY
+        + X, Y = wpilib.XboxController.Button.X, wpilib.XboxController.Button.Y
+          A = 1
+          B = 2
+          driver, stick = wpilib.XboxController(DRIVER), wpilib.Joystick(1)
+          def test_it(control, hal_data):
+              gamepad = hal_data["joysticks"][0]
+        -     gamepad["axes"][4] = hal_data["joysticks"][DRIVER]["axes"][1] = 0.5
+        -     gamepad["buttons"][5] = hal_data["joysticks"][0]["buttons"][1] = True
+        -     hal_data["joysticks"][1]["buttons"][5] = True
+        +     gamepad["axes"][2] = hal_data["joysticks"][DRIVER]["axes"][1] = 0.5
+        +     gamepad["buttons"][9] = hal_data["joysticks"][0]["buttons"][0] = True
+        +     hal_data["joysticks"][1]["buttons"][4] = True
+              buttons = hal_data["joysticks"][0]["buttons"]
+        -     buttons[5] = buttons[B] = buttons[X] = hal_data["joysticks"][0]["buttons"][A] = True
+        +     buttons[9] = buttons[B - 1] = buttons[X] = hal_data["joysticks"][0]["buttons"][A - 1] = True
+    """,
+    "the deadband that sticks have": """
+          from wpilib import Joystick, XboxController
+        - from wpimath import applyDeadband
 
-        class MyRobot(wpilib.TimedRobot):
-            def __init__(self):
-                super().__init__(0.01)
-                self.robot_init()
+          class Driver:
+              def __init__(self):
+                  self.pad = XboxController(0)
 
-            def robot_init(self):
-                self.timer = wpilib.Timer()
-        """,
-    ),
-    "commands": (
-        """
-        import commands2
-        import commands2.cmd
+              def forward(self):
+        -         return -applyDeadband(self.pad.getLeftY(), 0.1) * 4
+        +         return -self.pad.get_left_y() * 4
+    """,
+    "deadbands of another size": """
+          from wpilib import Joystick, XboxController
+        - from wpimath import applyDeadband
+        - forward = applyDeadband(Joystick(1).getY(), 0.1) + applyDeadband(XboxController(0).getLeftX(), 0.2)
+        + from wpimath import apply_deadband
+        + forward = apply_deadband(Joystick(1).get_y(), 0.1) + apply_deadband(XboxController(0).get_left_x(), 0.2)
+    """,
+    "controllers on the dashboard": """
+          import wpilib
+        - from wpimath.controller import PIDController
+        + import tunables
+        + from wpimath import PIDController
 
-        class Lift(commands2.Subsystem):
-            def up(self) -> commands2.Command:
-                return self.runOnce(self.raiseIt).andThen(commands2.cmd.waitSeconds(1)).withName("up")
+          class Own(PIDController):
+              pass
 
-            def raiseIt(self):
-                self.getCurrentCommand()
+        - wpilib.SmartDashboard.putData("turn", PIDController(1, 0, 0))
+        - wpilib.SmartDashboard.putData("lift", Own(1, 0, 0))
+        + tunables.publish("turn", PIDController(1, 0, 0))
+        + tunables.publish("lift", Own(1, 0, 0))
+    """,
+    "what dashboards show again and again": """
+          import wpilib
+        + import telemetry
+          from commands2 import Subsystem
+        - from wpilib import SmartDashboard
 
-        class Wait(commands2.Command):
-            def __init__(self, lift: Lift):
-                super().__init__()
-                self.addRequirements(lift)
+          class MyRobot(wpilib.TimedRobot):
+        -     def robotInit(self):
+        +     def __init__(self):
+        +         super().__init__()
+                  self.field = wpilib.Field2d()
+        -         # The field.
+        -         SmartDashboard.putData(self.field)
+                  self.picture = wpilib.Mechanism2d(1, 1)
+        -         wpilib.SmartDashboard.putData("picture", self.picture)
+                  self.timer = wpilib.Timer()
 
-            def isFinished(self):
-                return True
+        -     def robotPeriodic(self):
+        -         pass
+        +     def robot_periodic(self):
+        +         # The field.
+        +         telemetry.log("Field", self.field)
+        +         telemetry.log("picture", self.picture)
 
-        Wait(Lift()).isFinished()
-        commands2.CommandScheduler.getInstance().run()
-        """,
-        """
-        import commands2
-        import commands2.cmd
+          class Arm(Subsystem):
+              def __init__(self):
+                  super().__init__()
+                  self.encoder = wpilib.Encoder(0, 1)
+        -         SmartDashboard.putData("arm", self.encoder)
 
-        class Lift(commands2.Subsystem):
-            def up(self) -> commands2.Command:
-                return self.run_once(self.raiseIt).and_then(commands2.cmd.wait_seconds(1)).with_name("up")
+              def periodic(self):
+        -         self.encoder.getRate()
+        +         self.encoder.get_rate()
+        +         telemetry.log("arm", self.encoder)
+    """,
+    "what cannot be shown again and again": """
+          import wpilib
+        + import telemetry
 
-            def raiseIt(self):
-                self.get_current_command()
+          class MyRobot(wpilib.TimedRobot):
+        -     def robotInit(self):
+        +     def __init__(self):
+        +         super().__init__()
+                  self.field = wpilib.Field2d()
+        -         wpilib.SmartDashboard.putData("field", self.field)
+        +         telemetry.log("field", self.field)
 
-        class Wait(commands2.Command):
-            def __init__(self, lift: Lift):
-                super().__init__()
-                self.add_requirements(lift)
+        -     def robotPeriodic(self):
+        -         if self.isDisabled():
+        +     def robot_periodic(self):
+        +         if self.is_disabled():
+                      return
 
-            def is_finished(self):
-                return True
+          class Arm(wpilib.TimedRobot):
+              def __init__(self):
+                  super().__init__()
+                  encoder = wpilib.Encoder(0, 1)
+        -         wpilib.SmartDashboard.putData("arm", encoder)
+        +         telemetry.log("arm", encoder)
 
-        Wait(Lift()).is_finished()
-        commands2.CommandScheduler.get_instance().run()
-        """,
-    ),
-    "arguments that are gone": (
-        """
-        from wpimath.estimator import DifferentialDrivePoseEstimator
-        from wpimath.geometry import Pose2d, Rotation2d
-        from wpimath.kinematics import DifferentialDriveKinematics
-        kinematics = DifferentialDriveKinematics(0.5)
-        estimator = DifferentialDrivePoseEstimator(kinematics, Rotation2d(), 0, 0, Pose2d())
-        """,
-        """
-        from wpimath import DifferentialDriveKinematics, DifferentialDrivePoseEstimator, Pose2d, Rotation2d
-        kinematics = DifferentialDriveKinematics(0.5)
-        estimator = DifferentialDrivePoseEstimator(Rotation2d(), 0, 0, Pose2d())
-        """,
-    ),
-    "choosers in tests": (
-        """
-        from wpilib.simulation import SendableChooserSim, XboxControllerSim
+        -     def robotPeriodic(self):
+        +     def robot_periodic(self):
+                  pass
+    """,
+    "gyros that physics turns": """
+          from pyfrc.physics.core import PhysicsInterface
 
-        def test_it(control):
-            SendableChooserSim("/SmartDashboard/Auto Mode/").setSelected("Stay")
-        """,
-        """
-        from ntcore.util import SelectableControl
-        from wpilib.simulation import XboxControllerSim
+          class PhysicsEngine:
+              def __init__(self, physics_controller: PhysicsInterface, robot):
+        -         physics_controller.add_device_gyro_channel("adxrs450_spi_0_angle")
+                  physics_controller.add_device_gyro_channel("navX-Sensor[4]_Yaw")
+    """,
+    "dictionaries": """
+          import wpilib
+        - motors = {"left": wpilib.Talon(0)}
+        - alerts = {name: wpilib.Alert(name, wpilib.Alert.AlertType.kInfo) for name in motors}
+        + import wpilib_drivers
+        + import wpiutil
+        + motors = {"left": wpilib_drivers.Talon(0)}
+        + alerts = {name: wpiutil.Alert(name, name, wpiutil.Alert.Level.LOW) for name in motors}
+          for name, motor in motors.items():
+        -     motor.set(len(name))
+        +     motor.set_throttle(len(name))
+              alerts[name].set(True)
+    """,
+    "swerve": """
+        - from wpimath.geometry import Rotation2d
+        - from wpimath.kinematics import ChassisSpeeds, SwerveModuleState
+        + from wpimath import ChassisVelocities, Rotation2d, SwerveModuleVelocity
 
-        def test_it(control):
-            SelectableControl("Auto Mode").set_selected("Stay")
-        """,
-    ),
-    "an Xbox controller by numbers": (
-        """
-        import wpilib
-        driver, stick = wpilib.XboxController(0), wpilib.Joystick(1)
-        turn = driver.getRawAxis(4) + stick.getRawAxis(4)
-        fire = driver.getRawButton(6) or stick.getRawButton(6)
-        """,
-        """
-        import wpilib
-        driver, stick = wpilib.XboxController(0), wpilib.Joystick(1)
-        turn = driver.get_hid().get_raw_axis(2) + stick.get_raw_axis(4)
-        fire = driver.get_hid().get_raw_button(10) or stick.get_raw_button(5)
-        """,
-    ),
-    "a PlayStation controller by numbers": (
-        """
-        from wpilib import PS4Controller
-        pad = PS4Controller(0)
-        turn, fire = pad.getRawAxis(5), pad.getRawButton(1)
-        def test_it(hal_data):
-            hal_data["joysticks"][0]["axes"][5] = hal_data["joysticks"][0]["buttons"][2] = 1
-        """,
-        """
-        from wpilib import DualShock4Controller
-        pad = DualShock4Controller(0)
-        turn, fire = pad.get_hid().get_raw_axis(3), pad.get_hid().get_raw_button(2)
-        def test_it(hal_data):
-            hal_data["joysticks"][0]["axes"][3] = hal_data["joysticks"][0]["buttons"][0] = 1
-        """,
-    ),
-    "an Xbox controller in hal_data": (
-        """
-        import wpilib
-        DRIVER = 0
-        X, Y = wpilib.XboxController.Button.kX, wpilib.XboxController.Button.kY
-        A = 1
-        B = 2
-        driver, stick = wpilib.XboxController(DRIVER), wpilib.Joystick(1)
-        def test_it(control, hal_data):
-            gamepad = hal_data["joysticks"][0]
-            gamepad["axes"][4] = hal_data["joysticks"][DRIVER]["axes"][1] = 0.5
-            gamepad["buttons"][5] = hal_data["joysticks"][0]["buttons"][1] = True
-            hal_data["joysticks"][1]["buttons"][5] = True
-            buttons = hal_data["joysticks"][0]["buttons"]
-            buttons[5] = buttons[B] = buttons[X] = hal_data["joysticks"][0]["buttons"][A] = True
-        """,
-        """
-        import wpilib
-        DRIVER = 0
-        X, Y = wpilib.XboxController.Button.X, wpilib.XboxController.Button.Y
-        A = 1
-        B = 2
-        driver, stick = wpilib.XboxController(DRIVER), wpilib.Joystick(1)
-        def test_it(control, hal_data):
-            gamepad = hal_data["joysticks"][0]
-            gamepad["axes"][2] = hal_data["joysticks"][DRIVER]["axes"][1] = 0.5
-            gamepad["buttons"][9] = hal_data["joysticks"][0]["buttons"][0] = True
-            hal_data["joysticks"][1]["buttons"][4] = True
-            buttons = hal_data["joysticks"][0]["buttons"]
-            buttons[9] = buttons[B - 1] = buttons[X] = hal_data["joysticks"][0]["buttons"][A - 1] = True
-        """,
-    ),
-    "the deadband that sticks have": (
-        """
-        from wpilib import Joystick, XboxController
-        from wpimath import applyDeadband
+        - def turn(state: SwerveModuleState, angle: Rotation2d):
+        -     state.optimize(angle)
+        -     return state.speed
+        + def turn(state: SwerveModuleVelocity, angle: Rotation2d):
+        +     state = state.optimize(angle)
+        +     return state.velocity
 
-        class Driver:
-            def __init__(self):
-                self.pad = XboxController(0)
-
-            def forward(self):
-                return -applyDeadband(self.pad.getLeftY(), 0.1) * 4
-        """,
-        """
-        from wpilib import Joystick, XboxController
-
-        class Driver:
-            def __init__(self):
-                self.pad = XboxController(0)
-
-            def forward(self):
-                return -self.pad.get_left_y() * 4
-        """,
-    ),
-    "deadbands of another size": (
-        """
-        from wpilib import Joystick, XboxController
-        from wpimath import applyDeadband
-        forward = applyDeadband(Joystick(1).getY(), 0.1) + applyDeadband(XboxController(0).getLeftX(), 0.2)
-        """,
-        """
-        from wpilib import Joystick, XboxController
-        from wpimath import apply_deadband
-        forward = apply_deadband(Joystick(1).get_y(), 0.1) + apply_deadband(XboxController(0).get_left_x(), 0.2)
-        """,
-    ),
-    "controllers on the dashboard": (
-        """
-        import wpilib
-        from wpimath.controller import PIDController
-
-        class Own(PIDController):
-            pass
-
-        wpilib.SmartDashboard.putData("turn", PIDController(1, 0, 0))
-        wpilib.SmartDashboard.putData("lift", Own(1, 0, 0))
-        """,
-        """
-        import wpilib
-        import tunables
-        from wpimath import PIDController
-
-        class Own(PIDController):
-            pass
-
-        tunables.publish("turn", PIDController(1, 0, 0))
-        tunables.publish("lift", Own(1, 0, 0))
-        """,
-    ),
-    "what dashboards show again and again": (
-        """
-        import wpilib
-        from commands2 import Subsystem
-        from wpilib import SmartDashboard
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                self.field = wpilib.Field2d()
-                # The field.
-                SmartDashboard.putData(self.field)
-                self.picture = wpilib.Mechanism2d(1, 1)
-                wpilib.SmartDashboard.putData("picture", self.picture)
-                self.timer = wpilib.Timer()
-
-            def robotPeriodic(self):
-                pass
-
-        class Arm(Subsystem):
-            def __init__(self):
-                super().__init__()
-                self.encoder = wpilib.Encoder(0, 1)
-                SmartDashboard.putData("arm", self.encoder)
-
-            def periodic(self):
-                self.encoder.getRate()
-        """,
-        """
-        import wpilib
-        import telemetry
-        from commands2 import Subsystem
-
-        class MyRobot(wpilib.TimedRobot):
-            def __init__(self):
-                super().__init__()
-                self.field = wpilib.Field2d()
-                self.picture = wpilib.Mechanism2d(1, 1)
-                self.timer = wpilib.Timer()
-
-            def robot_periodic(self):
-                # The field.
-                telemetry.log("Field", self.field)
-                telemetry.log("picture", self.picture)
-
-        class Arm(Subsystem):
-            def __init__(self):
-                super().__init__()
-                self.encoder = wpilib.Encoder(0, 1)
-
-            def periodic(self):
-                self.encoder.get_rate()
-                telemetry.log("arm", self.encoder)
-        """,
-    ),
-    "what cannot be shown again and again": (
-        """
-        import wpilib
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                self.field = wpilib.Field2d()
-                wpilib.SmartDashboard.putData("field", self.field)
-
-            def robotPeriodic(self):
-                if self.isDisabled():
-                    return
-
-        class Arm(wpilib.TimedRobot):
-            def __init__(self):
-                super().__init__()
-                encoder = wpilib.Encoder(0, 1)
-                wpilib.SmartDashboard.putData("arm", encoder)
-
-            def robotPeriodic(self):
-                pass
-        """,
-        """
-        import wpilib
-        import telemetry
-
-        class MyRobot(wpilib.TimedRobot):
-            def __init__(self):
-                super().__init__()
-                self.field = wpilib.Field2d()
-                telemetry.log("field", self.field)
-
-            def robot_periodic(self):
-                if self.is_disabled():
-                    return
-
-        class Arm(wpilib.TimedRobot):
-            def __init__(self):
-                super().__init__()
-                encoder = wpilib.Encoder(0, 1)
-                telemetry.log("arm", encoder)
-
-            def robot_periodic(self):
-                pass
-        """,
-    ),
-    "gyros that physics turns": (
-        """
-        from pyfrc.physics.core import PhysicsInterface
-
-        class PhysicsEngine:
-            def __init__(self, physics_controller: PhysicsInterface, robot):
-                physics_controller.add_device_gyro_channel("adxrs450_spi_0_angle")
-                physics_controller.add_device_gyro_channel("navX-Sensor[4]_Yaw")
-        """,
-        """
-        from pyfrc.physics.core import PhysicsInterface
-
-        class PhysicsEngine:
-            def __init__(self, physics_controller: PhysicsInterface, robot):
-                physics_controller.add_device_gyro_channel("navX-Sensor[4]_Yaw")
-        """,
-    ),
-    "dictionaries": (
-        """
-        import wpilib
-        motors = {"left": wpilib.Talon(0)}
-        alerts = {name: wpilib.Alert(name, wpilib.Alert.AlertType.kInfo) for name in motors}
-        for name, motor in motors.items():
-            motor.set(len(name))
-            alerts[name].set(True)
-        """,
-        """
-        import wpilib
-        import wpilib_drivers
-        import wpiutil
-        motors = {"left": wpilib_drivers.Talon(0)}
-        alerts = {name: wpiutil.Alert(name, name, wpiutil.Alert.Level.LOW) for name in motors}
-        for name, motor in motors.items():
-            motor.set_throttle(len(name))
-            alerts[name].set(True)
-        """,
-    ),
-    "swerve": (
-        """
-        from wpimath.geometry import Rotation2d
-        from wpimath.kinematics import ChassisSpeeds, SwerveModuleState
-
-        def turn(state: SwerveModuleState, angle: Rotation2d):
-            state.optimize(angle)
-            return state.speed
-
-        speeds = ChassisSpeeds.fromFieldRelativeSpeeds(1, 0, 0, Rotation2d())
-        """,
-        """
-        from wpimath import ChassisVelocities, Rotation2d, SwerveModuleVelocity
-
-        def turn(state: SwerveModuleVelocity, angle: Rotation2d):
-            state = state.optimize(angle)
-            return state.velocity
-
-        speeds = ChassisVelocities(1, 0, 0).to_robot_relative(Rotation2d())
-        """,
-    ),
-    "devices on a CAN bus": (
-        """
-        import wpilib
-        import rev
-        pdp = wpilib.PowerDistribution()
-        spark = rev.SparkMax(3, rev.SparkMax.MotorType.kBrushless)
-        encoder = spark.getEncoder()
-        angle, later = encoder.getPosition() * 360, encoder.getVelocity
-        """,
-        """
-        import wpilib
-        import rev
-        pdp = wpilib.PowerDistribution(wpilib.CANPort.CAN_S0)
-        spark = rev.SparkMax(wpilib.CANPort.CAN_S0, 3, rev.SparkMax.MotorType.BRUSHLESS)
-        encoder = spark.get_encoder()
-        angle, later = encoder.get_position().get() * 360, (lambda: encoder.get_velocity().get())
-        """,
-    ),
-    "members named in strings": (
-        """
-        import wpilib
-        encoder = wpilib.Encoder(0, 1)
-        distance = getattr(encoder, "getDistance")()
-        """,
-        """
-        import wpilib
-        encoder = wpilib.Encoder(0, 1)
-        distance = getattr(encoder, "get_distance")()
-        """,
-    ),
-    "servos": (
-        """
-        import wpilib
-        hood = wpilib.Servo(1)
-        hood.set(0.5)
-        hood.setAngle(90)
-        """,
-        """
-        import wpilib
-        hood = wpilib.PWM(1)
-        hood.set_pulse_time(int(600 + 1800 * 0.5))
-        hood.set_pulse_time(int(600 + 10 * 90))
-        """,
-    ),
-    "rumble on both sides": (
-        """
-        import wpilib
-        stick = wpilib.XboxController(0)
-        if True:
-            stick.setRumble(wpilib.XboxController.RumbleType.kBothRumble, 0.5)
-        """,
-        """
-        import wpilib
-        stick = wpilib.XboxController(0)
-        if True:
-            stick.set_rumble(wpilib.GenericHID.RumbleType.LEFT_RUMBLE, 0.5)
-            stick.set_rumble(wpilib.GenericHID.RumbleType.RIGHT_RUMBLE, 0.5)
-        """,
-    ),
+        - speeds = ChassisSpeeds.fromFieldRelativeSpeeds(1, 0, 0, Rotation2d())
+        + speeds = ChassisVelocities(1, 0, 0).to_robot_relative(Rotation2d())
+    """,
+    "devices on a CAN bus": """
+          import wpilib
+          import rev
+        - pdp = wpilib.PowerDistribution()
+        - spark = rev.SparkMax(3, rev.SparkMax.MotorType.kBrushless)
+        - encoder = spark.getEncoder()
+        - angle, later = encoder.getPosition() * 360, encoder.getVelocity
+        + pdp = wpilib.PowerDistribution(wpilib.CANPort.CAN_S0)
+        + spark = rev.SparkMax(wpilib.CANPort.CAN_S0, 3, rev.SparkMax.MotorType.BRUSHLESS)
+        + encoder = spark.get_encoder()
+        + angle, later = encoder.get_position().get() * 360, (lambda: encoder.get_velocity().get())
+    """,
+    "members named in strings": """
+          import wpilib
+          encoder = wpilib.Encoder(0, 1)
+        - distance = getattr(encoder, "getDistance")()
+        + distance = getattr(encoder, "get_distance")()
+    """,
+    "servos": """
+          import wpilib
+        - hood = wpilib.Servo(1)
+        - hood.set(0.5)
+        - hood.setAngle(90)
+        + hood = wpilib.PWM(1)
+        + hood.set_pulse_time(int(600 + 1800 * 0.5))
+        + hood.set_pulse_time(int(600 + 10 * 90))
+    """,
+    "rumble on both sides": """
+          import wpilib
+          stick = wpilib.XboxController(0)
+          if True:
+        -     stick.setRumble(wpilib.XboxController.RumbleType.kBothRumble, 0.5)
+        +     stick.set_rumble(wpilib.GenericHID.RumbleType.LEFT_RUMBLE, 0.5)
+        +     stick.set_rumble(wpilib.GenericHID.RumbleType.RIGHT_RUMBLE, 0.5)
+    """,
 }
 
 
 @pytest.mark.parametrize("name", CODE)
 def test_code(tmp_path: Path, name: str) -> None:
-    before, after = CODE[name]
-    assert migrated(tmp_path, robot=before)["robot"] == dedent(after).lstrip("\n")
+    lines = dedent(CODE[name]).strip("\n").splitlines()
+    before, after = ("".join(f"{line[2:]}\n" for line in lines if line[:1] != sign) for sign in "+-")
+    assert migrated(tmp_path, robot=before)["robot"] == after
 
 
 #: Code that stays as it is.
 OWN = {
+    "lists of lights without a pattern": """
+        import wpilib
+        buffer = [wpilib.AddressableLED.LEDData() for _ in range(9)]
+        buffer[3] = wpilib.AddressableLED.LEDData(1, 2, 3)
+    """,
     "a method with WPILib's name": """
         class Drive:
             def getRate(self):

@@ -10,9 +10,9 @@ import pytest
 from loops import for_each
 
 from pyfrc_core.collector import collector_paused
-from pyfrc_core.migrate.names.packages import Class, Packages
-from pyfrc_core.migrate.names.table import HERE, corrections, table
+from pyfrc_core.season.names.table import HERE, corrections, table
 from pyfrc_core.season.spelling import snake_case
+from tools.names.packages import Class, Packages
 
 
 @pytest.fixture(scope="module")

@@ -21,7 +21,7 @@ from .installed import Installed, Package, fits
 
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
-    from ..runtime.checks.code_warning import CodeWarning
+    from ..runtime.checks.sources import CodeWarning
 
 Answer = TypeVar("Answer")
 

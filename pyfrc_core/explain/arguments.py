@@ -17,25 +17,24 @@ from ..wording import counted
 from .calls import called_on_class
 from .explanation import Explanation, ask_for
 from .names import home_of
+from .other_season import in_2027
 from .places import (
     calls_at,
     frames_of,
     last_name,
     owner_of,
     passed_to,
-    robot_calls,
     users_frame,
     value_of,
     without_return,
 )
-from .returned import class_of, numbers_of
+from .returned import class_of, numbers_of, public_name
 
 _INCOMPATIBLE = re.compile(
     r"TypeError: (?:\nTypeError: )?(?:\w+\.)*(?P<name>\w+)\(\): incompatible (?:function|constructor) arguments\..*?\n"
     r"(?P<forms>(?:    \d+\. .*\n)+)\s*Invoked with:? ?(?P<got>.*)",
     re.DOTALL,
 )
-_CAST = re.compile(r"RuntimeError: Unable to cast Python instance of type <class '(?P<type>[\w.]+)'>")
 _FORM = re.compile(r"    \d+\. (?:[\w.]+)?\((?P<parameters>.*)\)(?: -> .*)?\n")
 _PARAMETER = re.compile(r"(?<![.\w])(\w+): ")
 _NOT_CALLABLE = re.compile(r"assert (?:\w+ is None or )?callable\((\w+)\)")
@@ -55,10 +54,6 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return explained
     if isinstance(error, (TypeError, AttributeError)) and "'list'" in text and (explained := _list(error, files)):
         return explained
-    if text.startswith("ArgumentError: argument "):
-        return _wrong_type(error, files)
-    if (found := _CAST.match(text)) and (where := users_frame(error, files)) is not None:
-        return _wrong_struct(found["type"], *where)
     return None
 
 
@@ -108,19 +103,6 @@ def _annotated(frame: FrameType, value: object) -> str:
     return "wpilib.XboxController(0)" if isinstance(value, int) else "the one that its documentation names"
 
 
-def _wrong_struct(got: str, frame: FrameType, line: int) -> Explanation | None:
-    """Explain a value that NetworkTables cannot publish as the struct of its topic."""
-    for call in calls_at(frame, line, ""):
-        topic = getattr(owner_of(call.func, frame), "getTopic", None)
-        if callable(topic) and call.args:
-            struct = re.sub(r"^struct:|\[\]$", "", topic().getTypeString())
-            written = ast.unparse(call.args[0])
-            text = f"{last_name(call.func)}() got {written}, which is of type {got}, and not of type {struct}"
-            return Explanation(text, f"Write {struct}(...)")
-    text = f"a value of type {got} is not of the type that the function takes"
-    return Explanation(text, "Create an object of that type.")
-
-
 def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles) -> Explanation:
     forms = [_parameters(form["parameters"]) for form in _FORM.finditer(found["forms"])]
     name = found["name"]
@@ -142,8 +124,6 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
     takes = " or ".join(f"{name}({', '.join(form)})" for form in dict.fromkeys(map(tuple, forms)))
     takes += "".join(map(_members, dict.fromkeys(re.findall(r": ([\w.]+)", found["forms"]))))
     if call is None:
-        if passed := _text_passed(found["got"], files):
-            return passed
         return Explanation(f"{name}() got arguments that it does not take", f"It takes: {takes}")
     owner = owner_of(call.func, where[0]) if where is not None and name == found["name"] else None
     of_objects = all("self: " in form for form in found["forms"].strip().splitlines())
@@ -172,10 +152,6 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
             else ""
         )
         return Explanation(text, f"{written}It takes: {takes}")
-    if len(got) == 2 and not call.keywords and (swapped := _swapped(values, got, forms)):
-        return Explanation(
-            f"{name}() got its two values in the wrong order", f"Write {name}({swapped})\n  It takes: {takes}"
-        )
     paths = {each.rpartition(".")[2]: each for each in re.findall(r": ([\w.]+)", found["forms"])}
     for at, (value, written) in enumerate(zip(values, got, strict=False)):
         kinds = [form[at].partition(": ")[2].partition(" = ")[0] for form in forms if at < len(form)]
@@ -239,19 +215,12 @@ def _wrong(value: str, written: str, kinds: list[str], paths: dict[str, str]) ->
     return None
 
 
-def _swapped(values: list[str], got: list[str], forms: list[list[str]]) -> str:
-    """Return two arguments in the other order, if one is a text where a number belongs, and the other the opposite."""
-    kinds = [[each.partition(": ")[2].partition(" = ")[0] for each in form] for form in forms]
-    are = ["str" if each[:1] in "'\"" else "number" for each in values]
-    return ", ".join(reversed(got)) if len(are) == 2 and are[0] != are[1] and [are[1], are[0]] in kinds else ""
-
-
 def _value_for(text: str, kinds: list[str]) -> str:
     """Return what to write for a text, where an enum's value or something else belongs."""
     for cls in (class_of(each) for each in kinds):
         known = {re.sub("^k", "", each).lower(): each for each in getattr(cls, "__members__", ())}
         if cls is not None and (close := get_close_matches(text.lower(), known, n=1)):
-            return f"Write {cls.__module__.replace('._wpilib', '')}.{cls.__qualname__}.{known[close[0]]}"
+            return f"Write {public_name(cls)}.{known[close[0]]}"
     if kinds == ["number"]:
         return "Pass a number, and no text."
     return f"It must be: {' or '.join(each.rpartition('.')[2] for each in kinds)}."
@@ -259,8 +228,10 @@ def _value_for(text: str, kinds: list[str]) -> str:
 
 def _object_for(cls: type[Any] | None, kind: str, written: str) -> str:
     """Return what to write for an argument that is a number, and must be an object of a class."""
-    if hasattr(cls, "fromDegrees"):
-        return f"Write {kind}.fromDegrees({written}), if it is in degrees: from {home_of(kind)} import {kind}"
+    if hasattr(cls, in_2027("fromDegrees")):
+        return (
+            f"Write {kind}.{in_2027('fromDegrees')}({written}), if it is in degrees: from {home_of(kind)} import {kind}"
+        )
     if kind == "MotorController":
         return f"Write wpilib.PWMSparkMax({written}), or the name of a motor controller that is made already."
     name = cls.__qualname__ if cls is not None else kind
@@ -273,17 +244,6 @@ def _pass_function(written: str) -> str:
     if re.fullmatch(r"[\w.]+\(\)", written):
         return f"Pass the function itself: {written[:-2]} without (), or lambda: {written}"
     return f"Write lambda: {written or 'function(1)'}"
-
-
-def _text_passed(got: str, files: RobotFiles) -> Explanation | None:
-    """Explain an error that comes later than the call that has got a text for a number."""
-    texts = [each for each in _values(got, got.count(", ") + 1) if each[:1] in "'\""]
-    for place, call in robot_calls(files):
-        for each in (*call.args, *(keyword.value for keyword in call.keywords)):
-            if isinstance(each, ast.Constant) and repr(each.value) in texts:
-                text = f"{last_name(call.func)}() got {each.value!r}, a text"
-                return Explanation(text, "Pass a number, without quotes.", place)
-    return None
 
 
 def _got_none(name: str, written: str, files: RobotFiles, takes: str = "") -> Explanation:
@@ -357,19 +317,3 @@ def _called_from(error: BaseException, frame: FrameType) -> FrameType | None:
         entry = entry.tb_next
     called = entry.tb_next.tb_frame if entry is not None and entry.tb_next is not None else None
     return None if called is None or is_pyfrc(called.f_code.co_filename) else called
-
-
-def _wrong_type(error: BaseException, files: RobotFiles) -> Explanation | None:
-    """Explain an error of a library in C, by the arguments of the library's function that the user has called."""
-    where = users_frame(error, files)
-    called = _called_from(error, where[0]) if where is not None else None
-    if called is None or where is None:
-        return None
-    name = called.f_code.co_name
-    names = called.f_code.co_varnames[: called.f_code.co_argcount]
-    wrong = [each for each in names if called.f_locals.get(each) is None and each != "self"]
-    call = next(iter(calls_at(*where, name)), None)
-    got = _written(call) if call is not None else []
-    if wrong:
-        return _got_none(name, got[0] if len(got) == 1 else "", files)
-    return Explanation(f"{name}() does not take {', '.join(got) or 'a value of this type'}", "Pass a number.")

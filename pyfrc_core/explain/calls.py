@@ -12,8 +12,8 @@ from typing import Any
 from ..errors import nearest, text_of
 from ..project.robot_files import RobotFiles
 from ..wording import counted
-from .earlier_names import earlier_name
 from .explanation import Explanation, ask_for
+from .other_season import earlier_name
 from .places import (
     UNKNOWN,
     beginning,
@@ -62,8 +62,6 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     where = users_frame(error, files)
     if where is None:
         return None
-    if (statement := statement_at(*where)) and isinstance(statement, ast.ClassDef):
-        return _base(statement)
     if _OF_A_FUNCTION.match(text) and (explained := _not_called(*where, files)):
         return explained
     if text == "TypeError: 'module' object is not callable":
@@ -80,14 +78,6 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return _whole_number(*where)
     if found := _COUNT.match(text):
         return _count(found, *where, files)
-    return None
-
-
-def _base(definition: ast.ClassDef) -> Explanation | None:
-    """Explain ``class MyRobot(wpilib.TimedRobot()):``."""
-    for each in (each for each in definition.bases if isinstance(each, ast.Call)):
-        text = f"{ast.unparse(each)} is an object, and a class is derived from a class"
-        return Explanation(text, f"Write class {definition.name}({ast.unparse(each.func)}):")
     return None
 
 
@@ -184,9 +174,6 @@ def _none_from_call(frame: FrameType, line: int) -> Explanation | None:
 
 def _no_number(found: re.Match[str], frame: FrameType, line: int) -> Explanation | None:
     """Explain a text, None, or an object of a library's class, such as a Rotation2d, among numbers."""
-    for each in ast.walk(statement_at(frame, line)):
-        if isinstance(each, ast.Compare) and (joined := joined_by_bits(each)):
-            return Explanation(*joined)
     computed = (_operands(node) for node in ast.walk(statement_at(frame, line)) if not isinstance(node, ast.Call))
     operands = next(filter(None, computed), [])
     for each, name in zip(operands, filter(None, found.groups()), strict=False):
@@ -231,18 +218,6 @@ def _whole_number(frame: FrameType, line: int) -> Explanation | None:
         if call.args:
             written = ast.unparse(call.args[0])
             return Explanation(f"{last_name(call.func)}() takes whole numbers", f"Write int({written})")
-    return None
-
-
-def joined_by_bits(node: ast.Compare) -> tuple[str, str] | None:
-    """Return what is wrong with ``a > 1 & b < 2``, and what to write."""
-    for at, each in enumerate(node.comparators[:-1]):
-        if isinstance(each, ast.BinOp) and isinstance(each.op, (ast.BitAnd, ast.BitOr)):
-            sign, word, split = ("&", "and", at + 1) if isinstance(each.op, ast.BitAnd) else ("|", "or", at + 1)
-            first = ast.Compare(node.left, node.ops[:split], [*node.comparators[:at], each.left])
-            second = ast.Compare(each.right, node.ops[split:], node.comparators[split:])
-            text = f"{sign} computes with the bits of {ast.unparse(each.left)} and {ast.unparse(each.right)}"
-            return f"{text} before anything is compared", f"Write {ast.unparse(first)} {word} {ast.unparse(second)}"
     return None
 
 

@@ -9,7 +9,9 @@ from typing import TypeAlias
 
 from ..errors import text_of
 from ..project.robot_files import RobotFiles
+from ..season.spelling import normalized
 from .explanation import Explanation
+from .other_season import in_2027
 from .places import last_name, robot_calls, robot_trees
 
 _NO_COMMAND = re.compile(
@@ -18,7 +20,8 @@ _NO_COMMAND = re.compile(
 )
 #: What in a function makes a command.
 _MAKES_COMMAND = re.compile(r"\bcommands2\b|\bself\.(?:run|runOnce|runEnd|startEnd)\(|Command\(")
-BINDINGS = frozenset({"onTrue", "onFalse", "onChange", "whileTrue", "whileFalse", "toggleOnTrue", "toggleOnFalse"})
+#: The methods of triggers that take a command, as `normalized` spells them.
+BINDINGS = frozenset({"ontrue", "onfalse", "onchange", "whiletrue", "whilefalse", "toggleontrue", "toggleonfalse"})
 
 Definition: TypeAlias = tuple[str, ast.FunctionDef | ast.ClassDef]
 
@@ -28,9 +31,14 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return None
     defined = dict(users_definitions(robot_trees(files)))
     for place, call in robot_calls(files):
-        if last_name(call.func) in BINDINGS and call.args and (found := no_command(call.args[0], defined)):
+        if is_binding(call) and call.args and (found := no_command(call.args[0], defined)):
             return Explanation(f"{last_name(call.func)}() got {found[0]}", found[1], place)
     return None
+
+
+def is_binding(call: ast.Call) -> bool:
+    """Return whether a command is bound to a trigger."""
+    return normalized(last_name(call.func)) in BINDINGS
 
 
 def users_definitions(trees: Iterable[tuple[str, ast.Module]]) -> Iterator[tuple[str, Definition]]:
@@ -44,7 +52,7 @@ def users_definitions(trees: Iterable[tuple[str, ast.Module]]) -> Iterator[tuple
 def no_command(bound: ast.expr, defined: dict[str, Definition]) -> tuple[str, str] | None:
     """Return what is bound, and what to write, if that is no command."""
     written = ast.unparse(bound)
-    run_once = f"Write commands2.cmd.runOnce({written}, SUBSYSTEM), with the subsystem that it uses."
+    run_once = f"Write {in_2027('commands2.cmd.runOnce')}({written}, SUBSYSTEM), with the subsystem that it uses."
     if isinstance(bound, ast.Lambda):
         return f"the function {written}, and no command", run_once
     called = isinstance(bound, ast.Call)

@@ -9,7 +9,6 @@ import re
 import sys
 from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
-from importlib import import_module
 from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import PurePath
@@ -17,19 +16,18 @@ from traceback import walk_tb
 from types import FrameType
 
 from ..project.robot_files import RobotFiles
+from ..season import CURRENT
+from ..season.names.table import table
 from . import places
-from .earlier_names import GONE, earlier_name
 from .explanation import Explanation
-from .other_season import OF_WPIMATH, in_2027
+from .other_season import earlier_name, in_2027
 from .places import (
     imported_name,
     last_name,
     line_of_class,
     made_by,
     owner_of,
-    passed_to,
     place_of_assignment,
-    robot_calls,
     robot_trees,
     statement_at,
     users_frame,
@@ -46,13 +44,6 @@ _FIXTURES = frozenset({"control", "fake_time", "hal_data", "physics_controller",
 _SHOWN = 8
 #: The methods that create what a robot has.
 _AT_START = ("robotInit", "robot_init", "createObjects", "__init__")
-#: The modules of WPILib with classes that robot code often uses.
-_HOMES = (
-    *("wpilib", "wpilib.drive", "wpilib.interfaces", "commands2", "commands2.button", "commands2.sysid", "wpimath"),
-    *(f"wpimath.{each}" for each in (*OF_WPIMATH, "spline", "system", "system.plant", "trajectory", "units")),
-    *("ntcore", "wpilib.simulation", "cscore"),
-)
-
 #: The libraries whose names may be in the table.
 _KNOWN = (
     *("wpilib", "wpilib_drivers", "commands2", "rev", "phoenix6", "phoenix5", "navx", "ntcore", "wpimath", "magicbot"),
@@ -166,8 +157,6 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
         return Explanation(f"{written} has no attributes: its values have keys", f"Write {written}[{name!r}]")
     if isinstance(obj, (int, float, str)):
         of = [each for each in _of_attribute(name, *where) if value_of(each, where[0]) is obj] if where else []
-        if of and where is not None and (passed := _passed_in(of[0], obj, where[0], files)):
-            return passed
         written = ast.unparse(of[0]) if of else ""
         kind = "a text" if isinstance(obj, str) else "True or False" if isinstance(obj, bool) else "a number"
         return Explanation(f"{written or repr(obj)} is {kind} ({obj!r}) and has no {name}", meant(name, known))
@@ -247,7 +236,7 @@ def _elsewhere(owner: type, name: str, written: str, files: RobotFiles) -> str:
         calls = f"{written}.{method}().{name}(...)"
         kept_once = f"{kept} = {written}.{method}() once, and then {kept}.{name}(...)"
         return f"{cls.__name__} has it: write {calls if method.startswith('get') else kept_once}"
-    if (other := sibling_of(owner, name, _HOMES)) is None:
+    if (other := sibling_of(owner, name, _with_classes())) is None:
         return ""
     module, cls = other
     if returning := returned_by(cls, module):
@@ -265,25 +254,6 @@ def _missing_base(owner: type, name: str) -> str:
     return next(found, "")
 
 
-def _passed_in(held: ast.expr, value: object, frame: FrameType, files: RobotFiles) -> Explanation | None:
-    """Explain a value in ``self.drive`` that the user's own __init__ has got: which call has passed it."""
-    owner = type(frame.f_locals.get("self"))
-    for file, tree in robot_trees(files):
-        classes = (each for each in ast.walk(tree) if isinstance(each, ast.ClassDef) and each.name == owner.__name__)
-        methods = [each for cls in classes for each in cls.body if isinstance(each, ast.FunctionDef)]
-        for made in (each for each in methods if each.name == "__init__"):
-            assigned = (each for each in ast.walk(made) if isinstance(each, ast.Assign))
-            source = next((each.value for each in assigned if ast.unparse(each.targets[0]) == ast.unparse(held)), None)
-            parameters = [each.arg for each in made.args.args]
-            for place, call in robot_calls(files) if last_name(source or held) in parameters else ():
-                given = passed_to(call, parameters).get(last_name(source or held))
-                if last_name(call.func) == owner.__name__ and given is not None and value_of(given, frame) == value:
-                    text = f"{owner.__name__}() gets {ast.unparse(given)} as {last_name(source or held)}"
-                    takes = ast.unparse(made.args).removeprefix("self, ")
-                    return Explanation(text, f"It takes: {owner.__name__}({takes}) ({file}:{made.lineno})", place)
-    return None
-
-
 def _of_attribute(name: str, frame: FrameType, line: int) -> Iterator[ast.expr]:
     """Yield what stands before an attribute of this name in a statement."""
     for each in ast.walk(statement_at(frame, line)):
@@ -292,14 +262,16 @@ def _of_attribute(name: str, frame: FrameType, line: int) -> Iterator[ast.expr]:
 
 
 def home_of(name: str) -> str:
-    """Return the module of WPILib that has a class or function of this name; empty if none has."""
-    for module in _HOMES if len(name) > 5 and "wpilib" in sys.modules else ():
-        try:
-            if find_spec(module) is not None and callable(getattr(import_module(module), name, None)):
-                return module
-        except ImportError:  # the package is not installed
-            continue
-    return ""
+    """Return the module of WPILib or a vendor's that has a class or function of this name; empty if none has."""
+    homes = table().homes(name, new=CURRENT.year >= 2027) if len(name) > 5 and "wpilib" in sys.modules else []
+    return next((each for each in homes if find_spec(each.partition(".")[0]) is not None), "")
+
+
+def _with_classes() -> list[str]:
+    """Return the imported public modules of WPILib, with the names of the robot's classes first."""
+    tops = ("wpilib", "commands2", "wpimath", "ntcore", "cscore")
+    found = [each for each in sys.modules if each.partition(".")[0] in tops and "._" not in each]
+    return sorted(found, key=lambda each: (tops.index(each.partition(".")[0]), "simulation" in each, each))
 
 
 def _in_project(name: str, files: RobotFiles) -> str:
@@ -319,8 +291,8 @@ def _nested(name: str, module: object) -> str:
 
 
 def _import(name: str, module: str) -> Explanation:
-    if module.partition(".")[0] in _KNOWN and name in GONE:
-        return Explanation(f"{module} has no {name} any more", f"Instead: {in_2027(GONE[name])}.")
+    if module.partition(".")[0] in _KNOWN and (instead := earlier_name(name, object)):
+        return Explanation(f"{module} has no {name} any more", f"Instead: {instead}.")
     known = [each for each in dir(sys.modules.get(module)) if not each.startswith("_")]
     if home := home_of(name):
         return Explanation(f"{module} has no {name}", f"Write: from {home} import {name}")

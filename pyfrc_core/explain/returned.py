@@ -73,3 +73,8 @@ def sibling_of(owner: type[Any], name: str, modules: Iterable[str]) -> tuple[str
         if each.__name__.endswith(owner.__name__) or (shared & set(each.__mro__))
     ]
     return min(found, key=lambda each: (owner not in each[1].__mro__, "Xbox" not in each[1].__name__), default=None)
+
+
+def public_name(cls: type[Any]) -> str:
+    """Return a library's class as code names it: ``wpilib.DriverStation.Alliance``."""
+    return re.sub(r"\._\w+", "", f"{cls.__module__}.{cls.__qualname__}")

@@ -13,9 +13,9 @@ from ..config.robotpy import load_robot_packages
 from ..errors import UsageError
 from ..project import walk
 from ..project.git import git_output
+from ..season.names.table import table
 from ..season.season_2027 import SEASON_2027
 from .deep import with_deep_stack
-from .names.table import table
 from .project import Progress, Source, rewrite_all
 from .report import Report
 from .settings import Settings

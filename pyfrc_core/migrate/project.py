@@ -9,7 +9,7 @@ from pathlib import Path
 
 import libcst as cst
 
-from .names.table import Table
+from ..season.names.table import Table
 from .report import Report
 from .rewrite import robot_init
 from .rewrite.arguments import Arguments
@@ -186,9 +186,6 @@ def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
             calls.call(node, scope)
             leftovers.call(node, scope)
             project.unknown.call(file, node, scope)
-    for node, scope in sites:
-        if isinstance(node, cst.Assign):
-            calls.short_name(node, scope)
     for node, scope in sites:
         if isinstance(node, cst.Attribute):
             file.attribute(node, scope)

@@ -9,9 +9,9 @@ import pytest
 pytest.importorskip("libcst")
 
 from pyfrc_core.migrate.migration import migrate
-from pyfrc_core.migrate.names.table import table
 from pyfrc_core.migrate.report import Report
 from pyfrc_core.migrate.rewrite.ports import Ports
+from pyfrc_core.season.names.table import table
 
 _ALL = "SystemCore's ports 0 to 5 are for PWM, digital, analog and LEDs together"
 
@@ -128,6 +128,40 @@ def test_a_name_that_another_file_imports_for_this_one_is_renamed_in_both(tmp_pa
         text == "from parts import DualShock4Controller, Pad, Timer\npads = DualShock4Controller(0), Pad(1), Timer()\n"
     )
     assert "DualShock4Controller, DualShock4Controller as Pad, Timer" in (tmp_path / "parts.py").read_text("utf-8")
+
+
+def test_an_old_name_of_a_base_class_is_renamed_wherever_a_file_has_it_from(tmp_path: Path) -> None:
+    files = {
+        "base": ("from commands2 import SubsystemBase\n", "from commands2 import Subsystem\n"),
+        "other": ("from base import SubsystemBase as S\nclass C(S): pass\n", None),
+        "third": ("import base\nclass D(base.SubsystemBase): pass\n", "import base\nclass D(base.Subsystem): pass\n"),
+    }
+    for name, (before, _) in files.items():
+        (tmp_path / f"{name}.py").write_text(before, "utf-8")
+    text, said = migrated(tmp_path, "from base import SubsystemBase\nclass B(SubsystemBase): pass\n")
+    assert (text, said) == ("from base import Subsystem\nclass B(Subsystem): pass\n", [])
+    new = {name: (tmp_path / f"{name}.py").read_text("utf-8") for name in files}
+    assert new["other"] == "from base import Subsystem as S\nclass C(S): pass\n"
+    assert (new["base"], new["third"]) == (files["base"][1], files["third"][1])
+
+
+def test_a_circle_of_imports_that_defines_nothing_is_reported(tmp_path: Path) -> None:
+    (tmp_path / "parts.py").write_text("from robot import Arm\n", "utf-8")
+    _, said = migrated(tmp_path, "from parts import Arm\nclass B: pass\n")
+    assert said == [
+        f"1 Arm is imported in a circle: {each} and what it imports define no Arm." for each in ("parts", "robot")
+    ]
+    (tmp_path / "parts.py").write_text("from robot import B\nclass Arm: pass\n", "utf-8")
+    assert migrated(tmp_path, "from parts import Arm\nclass B: pass\n")[1] == []
+
+
+def test_a_type_of_2027_is_understood_and_asked_for(tmp_path: Path) -> None:
+    code = "import wpimath.geometry\ndef go(r{}):\n    return r.rotateBy(r)\n"
+    text, said = migrated(tmp_path, code.format(": wpimath.Rotation2d"))
+    assert (text, said) == ("import wpimath\ndef go(r: wpimath.Rotation2d):\n    return r.rotate_by(r)\n", [])
+    (tmp_path / "robot.py").write_text("def go(angle):\n    return angle.rotateBy(angle), angle.cos()\n", "utf-8")
+    ((_, _, remedy, _),) = remarks_of(migrate(tmp_path).report)
+    assert remedy.startswith("Write its type there: angle: wpimath.Rotation2d.")
 
 
 def test_a_statement_that_is_left_out_after_a_colon_becomes_pass(tmp_path: Path) -> None:

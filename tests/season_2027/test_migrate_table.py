@@ -7,8 +7,8 @@ from pathlib import Path
 
 import wpilib
 
-from pyfrc_core.migrate.names.packages import Class, Packages
-from pyfrc_core.migrate.names.table import HERE, table
+from pyfrc_core.season.names.table import HERE, table
+from tools.names.packages import Class, Packages
 
 
 def test_every_new_name_exists() -> None:

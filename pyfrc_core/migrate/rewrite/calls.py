@@ -269,31 +269,6 @@ class Calls:
         self._file.consume(cst.ensure_type(node.value, cst.Call).func, scope)
         self._file.remove(node)
 
-    def short_name(self, node: cst.Assign, scope: Scope) -> None:
-        """Remove a function's own name of what is gone (`sd = SmartDashboard`), if all its uses are rewritten."""
-        target = node.targets[0].target
-        refs = self._file.inference.infer(node.value, scope)
-        gone = all(isinstance(each, Ref) and self._file.table.new_path(each.path) is None for each in refs)
-        if (
-            scope.kind != "function"
-            or not isinstance(target, cst.Name)
-            or len(node.targets) > 1
-            or not refs
-            or not gone
-        ):
-            return
-        named = scope.find(target.value)
-        uses = [
-            each
-            for each, where in self._file.module.sites
-            if isinstance(each, cst.Name) and each.value == target.value and where.find(each.value) is named
-            if each is not target
-        ]
-        if uses and self._file.handled.issuperset(uses):
-            self._file.consume(node.value, scope)
-            self._file.edit(node, lambda updated: cst.Pass(semicolon=updated.semicolon))
-            self._file.removed.add(node)
-
     def _add_to_tab(self, node: cst.Call) -> None:
         self._file.handled.add(node.func)
         self._file.edit(node.func, renamed("log"))

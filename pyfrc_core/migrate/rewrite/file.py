@@ -11,7 +11,7 @@ from libcst.metadata import CodeRange, MetadataWrapper, PositionProvider
 
 from ...season.spelling import snake_case
 from ..report import Place, Report
-from ..types.atoms import Ref
+from ..types.atoms import OwnModuleRef, Ref
 from ..types.scopes import Module, OwnClass, Scope
 from .edits import Edit, chain, fill, renamed
 from .imports import Imports
@@ -84,6 +84,7 @@ class FileRewriter:
             return
         found = self.lookup.attribute(node, scope)
         if all(each.stays for each in found):
+            self._of_own_module(node, scope)
             return
         new = {self.lookup.new_name(each) for each in found}
         if len(new) > 1:
@@ -103,6 +104,14 @@ class FileRewriter:
             self._rename_member(node, scope, target, is_value=is_value)
         elif target != first.path or target.rpartition(".")[2] != node.attr.value:
             self._respell(node, scope, first.path, target)
+
+    def _of_own_module(self, node: cst.Attribute, scope: Scope) -> None:
+        """Rename what another file of the project has from an import: `base.SubsystemBase`."""
+        for owner in self.inference.infer(node.value, scope):
+            if isinstance(owner, OwnModuleRef) and owner.module is not None:
+                new = self.lookup.name_from(f"{owner.name}.{node.attr.value}")
+                if new is not None and new != node.attr.value:
+                    self.edit(node, renamed(new))
 
     def _as_function(self, node: cst.Attribute, scope: Scope, template: str) -> None:
         """Rewrite a method that is not called here, such as `now = RobotController.getFPGATime`."""
@@ -201,14 +210,9 @@ class FileRewriter:
         if not bindings:
             self._from_star(node, scope, old, new)
             return
-        as_imported = node.value == old.rpartition(".")[2] or old in {
-            self.table.canonical(each.path) for each in bindings
-        }
-        if as_imported and node.value != new.rpartition(".")[2] and not self._renamed_by_import(node, scope):
-            self.edit(node, renamed(new.rpartition(".")[2]))
-
-    def _renamed_by_import(self, node: cst.Name, scope: Scope) -> bool:
-        return any(each.path.rpartition(".")[2] != node.value for each in scope.find(node.value))
+        names = {self.lookup.name_from(each.path) for each in bindings if each.path.endswith(f".{node.value}")}
+        if len(names) == 1 and (name := names.pop()) not in (None, node.value):
+            self.edit(node, renamed(str(name)))
 
     def _from_star(self, node: cst.Name, scope: Scope, old: str, new: str) -> None:
         module, rest = self.imports.split(new)
@@ -231,24 +235,28 @@ class FileRewriter:
             if not isinstance(local, cst.Name) or not isinstance(alias.name, cst.Name):
                 continue
             for binding in scope.bindings.get(local.value, ()):
-                if binding.node is not node:
-                    continue
-                for ref in self.inference.bound(binding, local.value):
-                    if isinstance(ref, Ref):
-                        self._import_alias(node, alias, binding.path, ref.path)
+                if binding.node is node:
+                    self._import_alias(node, alias, binding.path)
+                    for ref in self.inference.bound(binding, local.value):
+                        if isinstance(ref, Ref) and self.table.new_path(ref.path) is None:
+                            self._say_gone_import(node, alias, ref.path)
 
-    def _import_alias(self, node: cst.ImportFrom, alias: cst.ImportAlias, path: str, ref: str) -> None:
-        known = self.table.name(path) is not None or path in self.table.modules
-        new = self.table.new_path(ref)
-        if new is None:
-            if self.imports.is_unused(alias):
-                self.say(node, f"{ref} is gone, and its import, which is not used, is removed.", done=True)
-            elif not (self.imports.consumed.get(alias) and not self.imports.uses.get(alias)):
-                self.say(node, f"{ref} is gone.", self.table.advice(ref))
-        elif not known and isinstance(alias.name, cst.Name) and ref not in self.table.modules:
-            old_last, new_last = ref.rpartition(".")[2], new.rpartition(".")[2]
-            if alias.name.value == old_last != new_last:
-                self.edit(alias, renamed(new_last))
+    def _import_alias(self, node: cst.ImportFrom, alias: cst.ImportAlias, path: str) -> None:
+        """Rename what another file of the project renamed, and report what no file defines."""
+        module, _, name = path.rpartition(".")
+        if module in self.inference.modules:
+            new = self.lookup.name_from(path)
+            if new is None:
+                what = f"{name} is imported in a circle: {module} and what it imports define no {name}."
+                self.say(node, what, f"Import {name} from the file that defines it.")
+            elif new != name:
+                self.edit(alias, renamed(new))
+
+    def _say_gone_import(self, node: cst.ImportFrom, alias: cst.ImportAlias, ref: str) -> None:
+        if self.imports.is_unused(alias):
+            self.say(node, f"{ref} is gone, and its import, which is not used, is removed.", done=True)
+        elif not (self.imports.consumed.get(alias) and not self.imports.uses.get(alias)):
+            self.say(node, f"{ref} is gone.", self.table.advice(ref))
 
     # Classes
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import libcst as cst
 
-from ..names.table import Table
+from ...season.names.table import Table
 from ..types.atoms import Bound, Obj, Ref
 from ..types.scopes import Module, Scope
 from ..types.values import Types, written_number

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import libcst as cst
 
-from ..names.table import Table
+from ...season.names.table import Table
 from ..types.scopes import Module, Scope, dotted, import_source
 from .edits import chain
 

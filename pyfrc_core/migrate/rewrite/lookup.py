@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import libcst as cst
 
-from ..names.table import Member, Table
+from ...season.names.table import Member, Table
 from ..types.atoms import Atoms, Obj, OwnObj, OwnRef, Ref
 from ..types.inference import Inference
 from ..types.scopes import Module, OwnClass, Scope
@@ -115,6 +115,25 @@ class Lookup:
         is_new = not self.stand_ins.keys() >= linked
         self.stand_ins |= {each: (name_now, path) for each in linked if each not in self.stand_ins}
         return is_new
+
+    def name_from(self, path: str, seen: frozenset[str] = frozenset()) -> str | None:
+        """Return the name that a `from` import of a path has to say now; None if a circle defines it nowhere.
+
+        A module of the project's that has the name from an import of its own has it under the new name, too.
+        """
+        module, _, name = path.rpartition(".")
+        if path in seen:
+            return None
+        if module not in self.inference.modules:
+            new = self.table.new_path(self.table.canonical(path)) if self.table.name(path) is not None else None
+            return name if new is None else new.rpartition(".")[2]
+        scope = self.inference.modules[module].scope
+        bindings = scope.bindings.get(name, [])
+        found = [
+            self.name_from(each.path, seen | {path}) if each.kind == "from" and each.path.endswith(f".{name}") else name
+            for each in bindings
+        ]
+        return next((each for each in found if each is not None), None if found else name)
 
     def renamed_methods(self, module: Module) -> Iterator[tuple[cst.FunctionDef, str, str]]:
         """Return the methods of a module that stand in for WPILib's: each with its new name, and of what."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..names.table import Table
+from ...season.names.table import Table
 from ..report import Report
 
 #: The base class of the motor controllers on PWM channels.

@@ -103,7 +103,8 @@ class Unknown:
             more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
             new = [_MOTOR[each][1] if each in _MOTOR else self._new(each, types) for each in names[:_SHOWN]]
             what = f"{_subject(cause, where)} not known, so these names stay: {', '.join(names[:_SHOWN])}{more}."
-            hint = _hint(cause, types[0] if 0 < len(types) <= _TYPES else "")
+            type_ = types[0] if 0 < len(types) <= _TYPES else ""
+            hint = _hint(cause, self._table.new_path(type_) or type_)
             remedy = f"{hint}Migrate again; or write {', '.join(new)}{more}."
             for file, line, _ in uses.places:
                 report.add(file, line, what, remedy)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 
 import libcst as cst
 
-from ..names.table import Table
+from ...season.names.table import Table
 from .atoms import (
     NOTHING,
     Atom,
@@ -32,12 +32,33 @@ from .atoms import (
     of_type,
     union,
 )
-from .library import ITEM, ITEMS, OPERATORS, SAME, SINGLE
 from .passed import Passed
-from .scopes import Binding, Module, OwnClass, OwnFunction, Scope
+from .scopes import Binding, Module, OwnClass, OwnFunction, Scope, dotted
 
 _TIMES = 6
 _AUTONOMOUS = "robotpy_ext.autonomous.StatefulAutonomous"
+
+#: What an annotation puts around one type, or several.
+_SINGLE = {"Optional", "Union", "Final", "ClassVar", "Annotated", "Type", "type"}
+#: Functions that give what is in their arguments.
+_SAME = {
+    *("list", "tuple", "set", "sorted", "reversed", "iter", "frozenset", "zip", "enumerate", "filter", "deepcopy"),
+    "copy",
+}
+#: Methods of a dictionary that give what is in it, one by one.
+_ITEMS = {"values", "items", "copy"}
+#: Methods of a container that give one thing of it.
+_ITEM = {"get", "pop", "setdefault", "popleft"}
+
+#: The methods of operators.
+_OPERATORS: dict[type[cst.CSTNode], str] = {
+    cst.Add: "__add__",
+    cst.Subtract: "__sub__",
+    cst.Multiply: "__mul__",
+    cst.Divide: "__truediv__",
+    cst.BitAnd: "__and__",
+    cst.BitOr: "__or__",
+}
 
 
 class Inference:
@@ -199,14 +220,26 @@ class Inference:
             if name.lower() in ("dict", "mapping", "mutablemapping", "defaultdict") and len(inner) == 2:
                 return dictionary(self.annotated(inner[0], scope), self.annotated(inner[1], scope))
             found = union(self.annotated(each, scope) for each in inner)
-            return found if name in SINGLE else frozenset({Many(found)}) if found else NOTHING
+            return found if name in _SINGLE else frozenset({Many(found)}) if found else NOTHING
         found = frozenset(instance(each) for each in self.infer(node, scope) if isinstance(each, Ref | OwnRef))
+        if not found and isinstance(node, cst.Name | cst.Attribute):
+            found = self._of_the_new_season(node, scope)
         if not found and isinstance(node, cst.Name):  # Alias = Union[A, B]
             aliases = [each for each in scope.find(node.value) if each.kind == "value"]
             found = union(
                 self.annotated(each.node, each.scope) for each in aliases if not isinstance(each.node, cst.Name)
             )
         return found
+
+    def _of_the_new_season(self, node: cst.Name | cst.Attribute, scope: Scope) -> Atoms:
+        """Return what a class of 2027 is that an annotation names, as the report asks for it: `wpimath.Rotation2d`."""
+        head, _, rest = dotted(node).partition(".")
+        for binding in scope.find(head) if head else ():
+            path = f"{binding.path}.{rest}" if rest else binding.path
+            old = [each for each in self.table.before(path.rpartition(".")[2]) if self.table.new_path(each) == path]
+            if binding.kind in ("import", "from") and len(old) == 1:
+                return frozenset({Obj(old[0])})
+        return NOTHING
 
     # Modules
 
@@ -316,10 +349,10 @@ class Inference:
             if name == "super":
                 own = scope.class_around()
                 return frozenset({OwnObj(own, above=True)}) if own is not None else NOTHING
-            if name in SAME or name in ("next", "max", "min"):
+            if name in _SAME or name in ("next", "max", "min"):
                 found = union(self.infer(each.value, scope) for each in node.args)
                 self._passed.give_elements(node, scope)
-                return found if name in SAME else elements(found) | found
+                return found if name in _SAME else elements(found) | found
             if name == "map":
                 self._passed.give_elements(node, scope)
                 return many(self._result(each) for arg in node.args[:1] for each in self.infer(arg.value, scope))
@@ -329,9 +362,9 @@ class Inference:
             owner = self.infer(node.func.value, scope)
             kept = frozenset(each for each in owner if isinstance(each, Many))
             name = node.func.attr.value
-            if kept and name in ITEMS:
+            if kept and name in _ITEMS:
                 return kept if name == "copy" else many([items(kept), *([elements(kept)] if name == "items" else [])])
-            if kept and name in ITEM:
+            if kept and name in _ITEM:
                 return items(kept)
         return union(self._result(each) for each in called)
 
@@ -356,7 +389,7 @@ class Inference:
         return union(self._result(each) for each in self.attribute(owners, method))
 
     def _operation(self, node: cst.BinaryOperation, scope: Scope) -> Atoms:
-        name = OPERATORS.get(type(node.operator), "")
+        name = _OPERATORS.get(type(node.operator), "")
         left, right = self.infer(node.left, scope), self.infer(node.right, scope)
         return self._results(left, name) | self._results(right, name.replace("__", "__r", 1))
 

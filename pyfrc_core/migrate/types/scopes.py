@@ -11,7 +11,8 @@ from pathlib import Path
 
 import libcst as cst
 
-from .library import PUTS
+#: Methods that put their last argument into a container.
+_PUTS = {"add", "append", "appendleft", "insert", "setdefault"}
 
 
 @dataclass(eq=False)
@@ -181,7 +182,7 @@ class _Builder(cst.CSTVisitor):
     def visit_Call(self, node: cst.Call) -> None:
         self._site(node)
         self._module.called.add(node.func)
-        if isinstance(node.func, cst.Attribute) and node.func.attr.value in PUTS and node.args:
+        if isinstance(node.func, cst.Attribute) and node.func.attr.value in _PUTS and node.args:
             self._put(node.func.value, node.args[-1].value)
         if isinstance(node.func, cst.Name) and node.func.value == "setattr" and len(node.args) == 3:
             self._set(*(each.value for each in node.args))

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import libcst as cst
 
-from ..names.table import Table
+from ...season.names.table import Table
 from .atoms import Atoms, OwnModuleRef, OwnObj, OwnRef
 from .scopes import Binding, Module, OwnClass, OwnFunction, Scope
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from ...config.toml_file import TomlFile
 from ...errors import PyfrcError
 from ...explain.names import meant
-from .code_warning import CodeWarning
 from .enum_values import find_early_reads, find_sticks_read_once, find_wrong_comparisons
 from .foreign_paths import find_foreign_paths
 from .kinds import Kinds
@@ -18,7 +17,7 @@ from .misspelled_methods import find_misspelled_methods
 from .never_used import find_never_used, find_unmatched_keys
 from .no_effect import find_lines_without_effect
 from .opmodes_never_run import find_opmodes_never_run
-from .sources import sources
+from .sources import CodeWarning, sources
 from .wrong_moments import find_wrong_moments
 from .wrong_tests import find_wrong_tests
 from .wrong_units import find_wrong_units

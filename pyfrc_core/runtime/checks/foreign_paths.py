@@ -11,8 +11,7 @@ import re
 from collections.abc import Iterator
 
 from ...season import CURRENT
-from .code_warning import CodeWarning
-from .sources import Source
+from .sources import CodeWarning, Source
 
 #: The functions that write the file or directory of an argument: its name as a keyword. `open` depends on the mode.
 _WRITERS = {

@@ -7,7 +7,6 @@ import re
 import sys
 from collections.abc import Iterator
 from functools import cached_property
-from types import BuiltinFunctionType
 from typing import Any
 
 from ...explain.places import last_name
@@ -21,12 +20,6 @@ _BY_SUBSYSTEM = re.compile(r"self\.(run|run_?once|run_?end|start_?end|start_?run
 _ENDLESS = re.compile(
     r"run|run_?end|start_?end|start_?run|idle|repeatedly|repeating_?sequence|RunCommand|StartEndCommand|RepeatCommand"
 )
-#: What the documentation of a function says that returns a value.
-_VALUE = re.compile(r"\) -> (?:float|int|bool|str|wpimath\.(?:units|geometry)\.[\w.]+)$", re.MULTILINE)
-#: How methods begin that change nothing.
-_ASKS = re.compile(
-    r"(?:get|is|has|at|to|from|calculate)(?=[A-Z_]|$)(?!.*(?:Pressed|Released|_pressed|_released|nstance))"
-)
 
 
 class Kinds:
@@ -37,11 +30,12 @@ class Kinds:
 
     def __init__(self, sources: list[Source]) -> None:
         self.sources = sources
+        self.robot = [each for each in sources if not each.is_test]
         #: By name, in all files ("") and in each.
         self._held: dict[tuple[str, str], type[Any] | None] = {}
         self._functions: dict[str, list[tuple[ast.FunctionDef, Source]]] = {}
         for source in sources:
-            for node in ast.walk(source.tree):
+            for node in source.nodes:
                 if isinstance(node, ast.FunctionDef):
                     self._functions.setdefault(node.name, []).append((node, source))
                 elif isinstance(node, (ast.Assign, ast.AnnAssign, ast.arg)):
@@ -75,21 +69,14 @@ class Kinds:
             found = getattr(self.of(call.func.value, source), call.func.attr, None)
         return found
 
+    def owner(self, call: ast.Call, source: Source) -> type[Any] | None:
+        """Return the class of the object whose method is called; None if that is not certain."""
+        return self.of(call.func.value, source) if isinstance(call.func, ast.Attribute) else None
+
     def is_library(self, call: ast.Call, source: Source) -> bool:
         """Return whether a method of an object of a library's class is called."""
-        owner = self.of(call.func.value, source) if isinstance(call.func, ast.Attribute) else None
+        owner = self.owner(call, source)
         return owner is not None and owner.__module__.partition(".")[0] in (*names.LIBRARIES, "wpimath", "rev")
-
-    def only_returns(self, call: ast.Call, source: Source) -> bool:
-        """Return whether a library's function is called that computes a value and changes nothing."""
-        called = self.called(call, source)
-        module = str(getattr(called, "__module__", None))
-        if isinstance(called, type) or not module.startswith(("wpimath", "wpilib", "math")):
-            return False
-        asks = _ASKS.match(last_name(call.func)) is not None
-        is_value = module == "math" or _VALUE.search(str(called.__doc__)) is not None
-        is_function = isinstance(called, BuiltinFunctionType) and not module.startswith("wpilib")
-        return is_value and (asks or is_function or "geometry" in module)
 
     # -- commands --------------------------------------------------------------------------------------------------
 
@@ -129,8 +116,7 @@ class Kinds:
         return bool(found) and not any(isinstance(node, ast.Return) for each, _ in found for node in ast.walk(each))
 
     def _by_subsystem(self, made: ast.Call, source: Source) -> bool:
-        owner = self.of(made.func.value, source) if isinstance(made.func, ast.Attribute) else None
-        function = getattr(owner, last_name(made.func), None)
+        function = getattr(self.owner(made, source), last_name(made.func), None)
         return getattr(function, "__annotations__", {}).get("return") == "Command"
 
     def _returned(self, name: str, calls: int) -> Iterator[tuple[ast.expr, Source]]:

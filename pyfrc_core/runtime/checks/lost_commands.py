@@ -6,47 +6,38 @@ import ast
 import sys
 from collections.abc import Iterator
 
-from ...explain.commands import BINDINGS, no_command, users_definitions
+from ...explain.commands import BINDINGS, is_binding, no_command, users_definitions
+from ...explain.other_season import in_2027
 from ...explain.places import last_name
+from ...season.spelling import normalized
 from ...wpi import names
-from .code_warning import CodeWarning
 from .kinds import Kinds, object_of
-from .sources import Source
+from .sources import CodeWarning, Source
 
 #: What calls the functions that it gets, and throws away what they return.
-_CALLING = frozenset({"run", "runOnce", "runEnd", "startEnd", "RunCommand", "InstantCommand", "StartEndCommand"})
+_CALLING = frozenset({"run", "runonce", "runend", "startend", "runcommand", "instantcommand", "startendcommand"})
 #: What runs commands one after the other.
-_SEQUENCES = frozenset({"sequence", "repeatingSequence", "SequentialCommandGroup", "andThen", "beforeStarting"})
+_SEQUENCES = frozenset({"sequence", "repeatingsequence", "sequentialcommandgroup", "andthen", "beforestarting"})
 
 
 def find_lost_commands(kinds: Kinds) -> Iterator[CodeWarning]:
-    robots = [each for each in kinds.sources if not each.is_test and "commands2" in sys.modules]
+    robots = kinds.robot if "commands2" in sys.modules else []
     defined = dict(users_definitions((each.name, each.tree) for each in robots))
     callers = {last_name(call.func): place for place, call in _used_calls(robots)}
     for source in robots:
-        assigned = {
-            each.id for each in ast.walk(source.tree) if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)
-        }
-        for function in (each for each in ast.walk(source.tree) if isinstance(each, ast.FunctionDef)):
-            for each in ast.walk(function):
-                if (
-                    isinstance(each, ast.Expr)
-                    and isinstance(each.value, ast.Call)
-                    and kinds.makes_command(each.value, source)
-                ):
-                    yield _dropped(each.value, function, source, callers.get(function.name, ""))
-        for call in (each for each in ast.walk(source.tree) if isinstance(each, ast.Call)):
+        assigned = {each.id for each in source.all(ast.Name) if isinstance(each.ctx, ast.Store)}
+        for function in source.all(ast.FunctionDef):
+            for each in (node.value for node in ast.walk(function) if isinstance(node, ast.Expr)):
+                if isinstance(each, ast.Call) and kinds.makes_command(each, source):
+                    yield _dropped(each, function, source, callers.get(function.name, ""))
+        for call in source.all(ast.Call):
             name = last_name(call.func)
-            if (
-                name in BINDINGS
-                and call.args
-                and last_name(call.args[0]) not in assigned
-                and (found := no_command(call.args[0], defined))
-            ):
-                yield CodeWarning(source.at(call), f"{name}() got {found[0]}", found[1])
-            elif name in _CALLING:
+            bound = call.args[0] if is_binding(call) and call.args else None
+            if bound is not None and last_name(bound) not in assigned and (found := no_command(bound, defined)):
+                yield source.warning(call, f"{name}() got {found[0]}", found[1])
+            elif normalized(name) in _CALLING:
                 yield from _made_inside(call, kinds, source)
-            elif name in _SEQUENCES:
+            elif normalized(name) in _SEQUENCES:
                 yield from _behind_endless(call, kinds, source)
     yield from _without_scheduler(robots)
 
@@ -54,11 +45,8 @@ def find_lost_commands(kinds: Kinds) -> Iterator[CodeWarning]:
 def _used_calls(robots: list[Source]) -> Iterator[tuple[str, ast.Call]]:
     """Yield the calls whose value is used, each with its place, the last first."""
     for source in robots:
-        nodes = list(ast.walk(source.tree))
-        alone = [each.value for each in nodes if isinstance(each, ast.Expr)]
-        yield from (
-            (source.at(each), each) for each in reversed(nodes) if isinstance(each, ast.Call) and each not in alone
-        )
+        alone = [each.value for each in source.all(ast.Expr)]
+        yield from ((source.at(each), each) for each in reversed(source.all(ast.Call)) if each not in alone)
 
 
 def _dropped(made: ast.Call, function: ast.FunctionDef, source: Source, caller: str) -> CodeWarning:
@@ -69,20 +57,20 @@ def _dropped(made: ast.Call, function: ast.FunctionDef, source: Source, caller: 
     returns = any(isinstance(each, (ast.Return, ast.Yield, ast.YieldFrom)) for each in ast.walk(function))
     if caller and not returns and made is getattr(function.body[-1], "value", None):
         text = f"{function.name}() returns nothing, so {caller} gets None, and not the command"
-        return CodeWarning(source.at(made), text, f"Write return {ast.unparse(made).partition('(')[0]}(...)")
+        return source.warning(made, text, f"Write return {ast.unparse(made).partition('(')[0]}(...)")
     written, changed = ast.unparse(made), made.func.value if isinstance(made.func, ast.Attribute) else None
     if isinstance(changed, (ast.Name, ast.Attribute)) and last_name(made.func) in Kinds([]).decorators:
-        text = (
-            f"{last_name(made.func)}() returns a new command, which nothing uses; {ast.unparse(changed)} is unchanged"
-        )
-        return CodeWarning(source.at(made), text, f"Write {ast.unparse(changed)} = {written}")
+        kept = ast.unparse(changed)
+        text = f"{last_name(made.func)}() returns a new command, which nothing uses; {kept} is unchanged"
+        return source.warning(made, text, f"Write {kept} = {written}")
     text = f"{written} makes a command, and nothing runs it"
+    bind = in_2027("onTrue")
     if function.name in names.OF_MODES or function.name in names.OF_A_COMMAND:
-        once = function.name.replace("Periodic", "Init")
-        remedy = f"Write {written}.schedule() in {once}; or bind it to a button, as in button.onTrue({written})"
+        once = function.name.replace("Periodic", "Init").replace("_periodic", "_init")
+        remedy = f"Write {written}.schedule() in {once}; or bind it to a button, as in button.{bind}({written})"
     else:
-        remedy = f"Write return {written}, bind it to a button with onTrue(...), or call .schedule()"
-    return CodeWarning(source.at(made), text, remedy)
+        remedy = f"Write return {written}, bind it to a button with {bind}(...), or call .schedule()"
+    return source.warning(made, text, remedy)
 
 
 def _made_inside(call: ast.Call, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
@@ -91,30 +79,29 @@ def _made_inside(call: ast.Call, kinds: Kinds, source: Source) -> Iterator[CodeW
         if isinstance(each, ast.Call) and kinds.returns_nothing(last_name(each.func)):
             text = f"{ast.unparse(each)} runs here, once, and {last_name(call.func)}() gets None"
             right = f"lambda: {ast.unparse(each)}" if each.args else f"{ast.unparse(each.func)} without ()"
-            yield CodeWarning(source.at(each), text, f"Write {right}")
+            yield source.warning(each, text, f"Write {right}")
         made = each.body if isinstance(each, ast.Lambda) else ast.Call(each, [], [])
-        if not isinstance(each, (ast.Lambda, ast.Attribute, ast.Name)) or not kinds.makes_command(made, source):
-            continue
-        text = f"{ast.unparse(made)} makes a command, which {last_name(call.func)}() throws away: it never runs"
-        yield CodeWarning(source.at(call), text, f"Write {ast.unparse(made)} in place of {ast.unparse(call)}")
+        if isinstance(each, (ast.Lambda, ast.Attribute, ast.Name)) and kinds.makes_command(made, source):
+            text = f"{ast.unparse(made)} makes a command, which {last_name(call.func)}() throws away: it never runs"
+            yield source.warning(call, text, f"Write {ast.unparse(made)} in place of {ast.unparse(call)}")
 
 
 def _behind_endless(call: ast.Call, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
-    parts = call.args[:-1]
-    if last_name(call.func) in ("andThen", "beforeStarting") and isinstance(call.func, ast.Attribute):
-        parts = [call.func.value, *parts] if last_name(call.func) == "andThen" else call.args
+    name, parts = normalized(last_name(call.func)), call.args[:-1]
+    if name in ("andthen", "beforestarting") and isinstance(call.func, ast.Attribute):
+        parts = [call.func.value, *parts] if name == "andthen" else call.args
     for each in parts:
         if kinds.is_endless(each, source):
             written = ast.unparse(each)
             text = f"{written} never ends by itself, so what follows it never begins"
-            remedy = f"Write {written}.withTimeout(2), in seconds, or .until(condition)"
-            yield CodeWarning(source.at(each), text, remedy)
+            remedy = f"Write {written}.{in_2027('withTimeout')}(2), in seconds, or .until(condition)"
+            yield source.warning(each, text, remedy)
 
 
 def _without_scheduler(robots: list[Source]) -> Iterator[CodeWarning]:
     """Yield a robot with commands that does not call their scheduler."""
-    used = {last_name(node) for each in robots for node in ast.walk(each.tree) if isinstance(node, ast.expr)}
-    if not used & {*BINDINGS, "schedule", "setDefaultCommand"} or used & {"CommandScheduler", "Scheduler"}:
+    used = {normalized(last_name(node)) for each in robots for node in each.all(ast.expr)}
+    if not used & {*BINDINGS, "schedule", "setdefaultcommand"} or used & {"commandscheduler", "scheduler"}:
         return
     for source in robots:
         for node in (each for each in source.tree.body if isinstance(each, ast.ClassDef)):
@@ -122,4 +109,4 @@ def _without_scheduler(robots: list[Source]) -> Iterator[CodeWarning]:
             bases = [each.__name__ for each in getattr(cls, "__mro__", ())]
             if "TimedRobot" in bases and not any("CommandRobot" in each for each in bases):
                 text = f"no command ever runs: {node.name} is a {ast.unparse(node.bases[0])}, which does not run them"
-                yield CodeWarning(source.at(node), text, f"Write class {node.name}(commands2.TimedCommandRobot):")
+                yield source.warning(node, text, f"Write class {node.name}(commands2.TimedCommandRobot):")

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from ...errors import RobotCodeError
 from ...project.loaded_modules import loaded_modules
 from ...wpi import names
-from .code_warning import CodeWarning
+from .sources import CodeWarning
 
 if TYPE_CHECKING:
     from ...project import Project

@@ -12,7 +12,7 @@ from ...project.loaded_modules import loaded_modules
 from ...project.walk import python_files, text_to_search
 from ...season import CURRENT
 from ...wpi.opmodes import DECORATORS
-from .code_warning import CodeWarning
+from .sources import CodeWarning
 
 if TYPE_CHECKING:
     from ...project import Project

@@ -19,7 +19,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ...season.spelling import normalized, snake_case
+from pyfrc_core.season.spelling import normalized, snake_case
+
 from .packages import Class, Entry, Function, Packages, Value
 
 _MOVED_PACKAGES = ("wpilib", "wpilib_drivers", "wpimath", "wpiutil", "wpilog")

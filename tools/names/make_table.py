@@ -3,7 +3,7 @@
 Run it with the site-packages directories of environments that have each season's packages; none of them is imported.
 After `--`, those of the new season:
 
-    python -m pyfrc_core.migrate.names.make_table .venv/lib/python3.11/site-packages -- .venv27/lib/.../site-packages
+    python -m tools.names.make_table .venv/lib/python3.11/site-packages -- .venv27/lib/.../site-packages
 
 It was made from wpilib 2026.2.2, robotpy-rev 2026.0.4 and phoenix6 26.3.0, and from wpilib 2027.0.0a7, robotpy-rev
 2027.0.0a7.post1 and phoenix6 26.70.0a2.
@@ -17,9 +17,10 @@ import json
 import sys
 from pathlib import Path
 
+from pyfrc_core.season.names.table import HERE, corrections
+
 from .compare import compare
 from .packages import Class, Packages
-from .table import HERE, corrections
 
 
 def main(old_sites: list[Path], new_sites: list[Path]) -> int:

@@ -15,7 +15,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ...season.spelling import snake_case
+from ..spelling import snake_case
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -76,6 +76,7 @@ class Table:
         self._names: dict[str, Name | None] = {}
         self._members: dict[str, frozenset[str]] = {}
         self._camel: frozenset[str] | None = None
+        self._new_names: dict[str, list[str]] = {}
 
     def canonical(self, path: str) -> str:
         """Return the first path of a name that has several."""
@@ -135,6 +136,28 @@ class Table:
         module, _, last = path.rpartition(".")
         return f"{self.modules[module]}.{last}" if self.modules.get(module) else path
 
+    def before(self, name: str) -> list[str]:
+        """Return the classes, functions and constants of modules whose new path ends in a name."""
+        if not self._new_names:
+            for path in self._lines:
+                new = self.new_path(path) or ""
+                self._new_names.setdefault(new.rpartition(".")[2], []).append(path)
+        return self._new_names.get(name, [])
+
+    def inside(self, outer: str) -> list[tuple[str, str | None]]:
+        """Return the classes inside a class: the path and the new one of each; None if it is gone."""
+        return [(path, self.new_path(path)) for path in self._lines if path.rpartition(".")[0] == outer]
+
+    def homes(self, name: str, *, new: bool) -> list[str]:
+        """Return the modules that have a class, function or constant of a name, the ones with short names first.
+
+        :param new: ask of the new season
+        """
+        paths = self.before(name) if new else [path for path in self._lines if path.rpartition(".")[2] == name]
+        found = {(self.new_path(path) or "" if new else path).rpartition(".")[0] for path in paths}
+        known = {*self.modules.values()} if new else {*self.modules}
+        return sorted(found & known - {""}, key=lambda each: (each.count("."), len(each), each))
+
     def advice(self, *paths: str) -> str:
         """Return what `corrections.toml` says about the first of the paths that it knows."""
         gone: Mapping[str, str] = self.corrections["gone"]
@@ -159,12 +182,31 @@ class Table:
 
 def corrections() -> dict[str, Any]:
     """Return what was written by hand: `corrections.toml`, where a key can have several paths with spaces between."""
-    found = tomllib.loads((HERE / "corrections.toml").read_text(encoding="utf-8"))
+    found = _read("corrections.toml")
     for section in ("gone", "notes", "templates", "other_arguments"):
-        found[section] = {path: text for paths, text in found[section].items() for path in paths.split()}
+        found[section] = _separate(found[section])
     for outer, pairs in found.pop("moved_together").items():
         found["moved"] |= {f"{outer}.{name}": new for name, _, new in (pair.partition("=") for pair in pairs.split())}
     return found
+
+
+@cache
+def earlier_names() -> Mapping[str, str]:
+    """Return the names of the seasons before 2026, alone or after their class, and what to write instead in 2026."""
+    found = _read("earlier.toml")
+    once = "MOTOR.configure(config, rev.ResetMode.kResetSafeParameters, rev.PersistMode.kPersistParameters)"
+    return _separate(found["names"]) | {
+        name: f"config = rev.SparkMaxConfig(); config.{setting}; and once, with all settings: {once}"
+        for name, setting in _separate(found["spark"]).items()
+    }
+
+
+def _read(name: str) -> dict[str, Any]:
+    return tomllib.loads((HERE / name).read_text(encoding="utf-8"))
+
+
+def _separate(section: Mapping[str, Any]) -> dict[str, Any]:
+    return {path: value for paths, value in section.items() for path in paths.split()}
 
 
 @cache
