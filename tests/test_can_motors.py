@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import pytest
+from wpimath.geometry import Translation2d
 from wpimath.system.plant import DCMotor
 
 from pyfrc.physics.can_motors import Mechanism, SwerveDrive, SwerveModule
@@ -68,3 +69,21 @@ def test_a_swerve_drive_moves_as_its_wheels() -> None:
     speeds = drive(around).update(0.02)
     assert (speeds.vx, speeds.vy) == pytest.approx((0, 0), abs=0.001)
     assert speeds.omega == pytest.approx(speed / math.hypot(0.3, 0.2), rel=0.03)
+
+
+class Wheel:
+    """A module of a swerve drive with a given velocity."""
+
+    def __init__(self, place: tuple[float, float], velocity: tuple[float, float]) -> None:
+        self.place, self.velocity = Translation2d(*place), Translation2d(*velocity)
+
+    def update(self, tm_diff: float) -> Translation2d:
+        return self.velocity
+
+
+def test_the_wheels_of_a_swerve_drive_may_be_anywhere() -> None:
+    vx, vy, omega = 1.0, -2.0, 3.0
+    places = [(0.5, 0.1), (0.2, -0.3), (-0.1, 0.4)]
+    wheels: list[Any] = [Wheel((x, y), (vx - omega * y, vy + omega * x)) for x, y in places]
+    speeds = SwerveDrive(*wheels).update(0.02)
+    assert (speeds.vx, speeds.vy, speeds.omega) == pytest.approx((vx, vy, omega))
