@@ -7,6 +7,8 @@ import math
 import pytest
 from conftest import MakeProject
 
+from pyfrc_core.wpi import encoder_channels
+
 ROBOT = """
     import wpilib
 
@@ -104,3 +106,12 @@ def test_the_channels_of_an_encoder(made: str, make_project: MakeProject) -> Non
     )
     result = project.run("test")
     assert result.code == 0, result.output
+
+
+def test_an_encoders_channels_are_those_of_its_constructor(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(encoder_channels, "_channels", {})
+    encoder_channels.note(0, 2, 3)
+    encoder_channels.note(1, 2, bChannel=3)
+    encoder_channels.note(2, aChannel=2, bChannel=3, reverseDirection=True)
+    encoder_channels.note(3, a_channel=2, b_channel=3)  # as in 2027
+    assert [encoder_channels.channels_of(index) for index in range(5)] == [(2, 3)] * 4 + [None]

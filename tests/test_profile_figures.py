@@ -6,11 +6,13 @@ from array import array
 from pathlib import Path
 
 import pytest
+import wpilib
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pyfrc_core.measure.figures import Figures, Measurand, Overrun, added_up, distribution
 from pyfrc_core.measure.profile_report import as_json, as_text
+from pyfrc_core.wpi import callbacks
 
 TELEOP = Measurand("robot", "MyRobot.teleopPeriodic", "robot.py:3")
 LOOP = Measurand("loop", "the whole loop", "")
@@ -109,3 +111,13 @@ def test_all_of_it_is_in_the_json() -> None:
 
 def test_nothing_measured_is_said() -> None:
     assert "no function of the robot was called" in as_text(Figures(), top=5)
+
+
+def test_of_a_robot_with_its_own_loop_all_but_the_loop_may_be_called() -> None:
+    class Own(wpilib.RobotBase):
+        def startCompetition(self) -> None: ...
+        def endCompetition(self) -> None: ...
+        def turn(self) -> None: ...
+
+    assert callbacks.called_methods(Own) == ("robot", {"turn"})
+    assert callbacks.called_methods(Path) == ("", frozenset())
