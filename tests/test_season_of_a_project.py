@@ -16,7 +16,7 @@ from conftest import MakeProject, Result, RobotProject, sampled
 
 from pyfrc_core.config.robotpy import load_season_settings
 from pyfrc_core.errors import ProjectError
-from pyfrc_core.season import CURRENT, SEASONS, refuse_other_season
+from pyfrc_core.season import CURRENT, SEASONS, SeasonSetting, refuse_other_season
 
 ROBOT = """
     import wpilib
@@ -211,3 +211,11 @@ def test_a_project_of_a_season_that_pyfrc_does_not_know(tmp_path: Path) -> None:
     pyproject.write_text(asks_for("2028.1.1"), "utf-8")
     with pytest.raises(ProjectError, match=r"robotpy_version is 2028.* runs robots of 2026 and 2027"):
         refuse_other_season("2027.0.0a7", load_season_settings(pyproject))
+
+
+def test_settings_of_two_seasons_are_refused_and_of_one_are_not() -> None:
+    first = SeasonSetting("robotpy_version is 2026.2.2", 2026, "pyproject.toml:2")
+    same, other = (SeasonSetting(f"requires has {year}", year, "pyproject.toml:3") for year in (2026, 2027))
+    refuse_other_season("2026.2.2", [first, same])
+    with pytest.raises(ProjectError, match=r"but requires has 2027 in .+, which is of another season"):
+        refuse_other_season("2026.2.2", [first, same, other])
