@@ -19,7 +19,14 @@ from ports import refusing_port
 from pyfrc_core._version import __version__
 from pyfrc_core.doctor import NEXT_STEP, CheckResult, robot_project
 from pyfrc_core.doctor.check_result import hint, ok, problem
-from pyfrc_core.doctor.examine import DoctorOptions, _project, _season_settings, check_downloads, check_extras
+from pyfrc_core.doctor.examine import (
+    DoctorOptions,
+    _project,
+    _season_settings,
+    check_downloads,
+    check_extras,
+    check_window,
+)
 from pyfrc_core.doctor.installed import Installed, Package, find_installed
 from pyfrc_core.doctor.packages import NEWEST, OLDEST, check_imports, check_pyfrc, check_python, check_wpilib
 from pyfrc_core.doctor.robot import RobotSearch
@@ -462,3 +469,23 @@ def test_a_file_that_cannot_be_looked_at(error: Exception, text: str, monkeypatc
     assert isinstance(found, CheckResult)
     assert (found.topic, found.status, found.text) == ("program", "problem", text)
     assert found.remedy
+
+
+@pytest.mark.parametrize(
+    ("display", "tkinter", "status", "text"),
+    [
+        (True, True, "ok", "there is a display, and tkinter"),
+        (True, False, "hint", "pyfrc sim --ui tk cannot show one: this Python has no tkinter"),
+        (False, True, "hint", "pyfrc sim --ui tk cannot show one: there is no display"),
+        (False, False, "hint", "pyfrc sim --ui tk cannot show one: there is no display"),
+    ],
+)
+def test_whether_there_can_be_a_window(
+    display: bool, tkinter: bool, status: str, text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    examine = sys.modules[check_window.__module__]
+    monkeypatch.setattr(examine, "has_display", lambda: display)
+    monkeypatch.setattr(examine, "has_tkinter", lambda: tkinter)
+    (found,) = check_window()
+    assert (found.status, found.text) == (status, text)
+    assert (found.remedy is None) is (status == "ok")
