@@ -22,7 +22,6 @@ _FIELD_SHARE, _TRACEBACK_SHARE = 0.72, 0.45
 #: The zoom factor of the buttons.
 _ZOOM = 1.5
 
-_HOW = "Wheel: zoom, drag: move"
 _HELP = (
     "The wheel comes nearer, dragging the field moves it, a double click shows it whole. "
     "Drag the robot to put it elsewhere; drag it with the right button to turn it."
@@ -49,10 +48,6 @@ class CenterView:
     def show_pose(self, robot: Pose | None) -> None:
         """Show the robot's place."""
         self._pose.configure(text=pose_text(robot))
-        others = sum(each.winfo_reqwidth() for each in self._bar.winfo_children() if each is not self._how)
-        # A hint that does not fit is replaced by "?", whose tooltip explains it.
-        fits = others + self._how_width + self._gaps <= self._bar.winfo_width()
-        self._how.configure(text=_HOW if fits else "?")
 
     def make_space_for_traceback(self, failed: bool) -> None:
         """Make the console higher when the robot has failed, and as high as before afterwards."""
@@ -65,7 +60,7 @@ class CenterView:
 
     def _make_bar(self, card: tk.Frame, theme: Theme, tooltip: Tooltip) -> None:
         px, field = theme.px, self.field
-        self._bar = bar = tk.Frame(card, background=colors.CARD)
+        bar = tk.Frame(card, background=colors.CARD)
         bar.pack(side="bottom", fill="x")
         self._pose = ttk.Label(bar, style="CardMuted.TLabel")
         self._pose.pack(side="left", padx=px(10), pady=px(3))
@@ -76,9 +71,8 @@ class CenterView:
         ):
             button = ttk.Button(bar, text=text, width=3, command=act, style="Tiny.TButton", takefocus=False)
             button.pack(side="right", padx=(0, px(4)), pady=px(3))
-        self._how = how = ttk.Label(bar, style="CardMuted.TLabel", text=_HOW)
+        how = ttk.Label(bar, style="CardMuted.TLabel", text="?")
         how.pack(side="right", padx=px(10))
-        self._how_width, self._gaps = how.winfo_reqwidth(), px(60)
         tooltip.attach(how, _HELP)
 
     def _share(self, event: tk.Event[tk.Misc]) -> None:

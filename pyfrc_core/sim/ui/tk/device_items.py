@@ -76,6 +76,14 @@ class Item:
     def _value_text(self, right: int, color: str = colors.MUTED) -> int:
         return self._canvas.create_text(right, self.place.y, anchor="e", font=self._theme.small, fill=color)
 
+    def _rectangles(self, before: list[int], count: int) -> list[int]:
+        """Return this many rectangles of the canvas; those that are there stay if their number is right."""
+        if len(before) == count:
+            return before
+        for item in before:
+            self._canvas.delete(item)
+        return [self._canvas.create_rectangle(0, 0, 0, 0, outline="") for _ in range(count)]
+
     def _number(self, value: object) -> str:
         return self._with_unit(number_text(value, self.row.decimals)) if isinstance(value, int | float) else str(value)
 
@@ -262,10 +270,7 @@ class Bars(Item):
     def show(self, values: Sequence[Any]) -> None:
         numbers = [value for value in values[0] if isinstance(value, int | float)]
         left, right, foot = self.place.left, self.place.right - self._theme.px(52), self.place.y + self._theme.px(8)
-        if len(self._bars) != len(numbers):
-            for item in self._bars:
-                self._canvas.delete(item)
-            self._bars = [self._canvas.create_rectangle(0, 0, 0, 0, outline="") for _ in numbers]
+        self._bars = self._rectangles(self._bars, len(numbers))
         each = (right - left) / max(len(numbers), 1)
         for number, (item, value) in enumerate(zip(self._bars, numbers, strict=True)):
             high = max(min(abs(value) / self.row.high, 1.0) * self._theme.px(16), 1)
@@ -284,18 +289,11 @@ class Leds(Item):
     def show(self, values: Sequence[Any]) -> None:
         strip = list(values[0])[:_MOST_LEDS]
         left, right, y, half = self.place.left, self.place.right, self.place.y, self._theme.px(6)
-        if len(self._leds) != len(strip):
-            for item in self._leds:
-                self._canvas.delete(item)
-            each = min((right - left) / max(len(strip), 1), 2 * half)
-            start = right - each * len(strip)
-            self._leds = [
-                self._canvas.create_rectangle(
-                    start + number * each, y - half, start + (number + 1) * each, y + half, outline=""
-                )
-                for number in range(len(strip))
-            ]
-        for item, color in zip(self._leds, strip, strict=True):
+        self._leds = self._rectangles(self._leds, len(strip))
+        each = min((right - left) / max(len(strip), 1), 2 * half)
+        start = right - each * len(strip)
+        for number, (item, color) in enumerate(zip(self._leds, strip, strict=True)):
+            self._canvas.coords(item, start + number * each, y - half, start + (number + 1) * each, y + half)
             self._canvas.itemconfigure(item, fill="#{:02x}{:02x}{:02x}".format(*(int(part) & 255 for part in color)))
 
 

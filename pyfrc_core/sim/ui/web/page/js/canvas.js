@@ -1,5 +1,6 @@
 // Canvases with sharp lines on dense screens.
 import { isDark } from "#js/settings.js";
+import { Live, createRef } from "#js/view.js";
 
 // An element's size without its borders, in pixels of the page. Asking the element itself in each drawing would have the
 // browser lay out the page at once, and again before it paints.
@@ -62,4 +63,28 @@ export function sizeCanvas(canvas, width, height) {
   context.setTransform(density, 0, 0, density, 0, 0);
   context.clearRect(0, 0, width, height);
   return context;
+}
+
+// What is drawn on a canvas that fills the element around it.
+// Calls `draw`, and thereby `paint`, when its size has changed. `picture` says whether what it shows is something else than before.
+export class Drawn extends Live {
+  canvas = createRef();
+  picture = new Picture();
+
+  componentDidMount() {
+    super.componentDidMount();
+    this.size = new ElementSize(this.canvas.current.parentElement, () => this.draw());
+  }
+
+  componentWillUnmount() {
+    super.componentWillUnmount();
+    this.size.disconnect();
+  }
+
+  draw() {
+    const { width, height } = this.size ?? {};
+    if (this.canvas.current && width && height) this.paint(sizeCanvas(this.canvas.current, width, height), width, height);
+  }
+
+  paint(_context, _width, _height) {}
 }

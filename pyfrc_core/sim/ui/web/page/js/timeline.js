@@ -1,7 +1,6 @@
 // The timeline: modes as colours, marks, and the moment that the panels show.
-import { font } from "#js/canvas.js";
+import { Drawn, font } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
-import { Drawn } from "#js/drawn.js";
 import { clock, clockTick } from "#js/format.js";
 import { gapsOf, hatch } from "#js/gaps.js";
 import { lookByKey } from "#js/input/moment_keys.js";

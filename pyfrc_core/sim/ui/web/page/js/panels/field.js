@@ -1,7 +1,6 @@
 // The field: the season's picture, the robot, its path, and what robot code publishes. The wheel zooms, dragging moves.
-import { font } from "#js/canvas.js";
+import { Drawn, font } from "#js/canvas.js";
 import { command } from "#js/connection.js";
-import { Drawn } from "#js/drawn.js";
 import { numberText } from "#js/format.js";
 import { COORDINATES, originOf, unitOf, written } from "#js/field/coordinates.js";
 import * as draw from "#js/field/draw.js";

@@ -1,6 +1,5 @@
 // The Mechanism2d drawings that robot code publishes.
-import { font } from "#js/canvas.js";
-import { Drawn } from "#js/drawn.js";
+import { Drawn, font } from "#js/canvas.js";
 import { plain } from "#js/format.js";
 import { model } from "#js/model.js";
 import { color } from "#js/settings.js";

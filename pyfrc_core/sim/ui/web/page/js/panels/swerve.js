@@ -1,5 +1,5 @@
 // A swerve drive from above: measured and wanted states of its modules, the chassis' speeds, the robot's heading.
-import { Drawn } from "#js/drawn.js";
+import { Drawn } from "#js/canvas.js";
 import { arrow } from "#js/field/draw.js";
 import { swerveDrive, swerveNeeds } from "#js/field/swerve.js";
 import { numberText } from "#js/format.js";
