@@ -2,7 +2,6 @@
 import { compared } from "#js/compare.js";
 import { clock } from "#js/format.js";
 import { goTo } from "#js/input/moment_keys.js";
-import { nameOf } from "#js/names.js";
 import { html, render } from "#js/view.js";
 
 const SOURCES = [
@@ -12,6 +11,11 @@ const SOURCES = [
   ["real time", "Simulated in real time: differs in each run"],
   ["replay", "Only by the replay of AdvantageKit or PyKit"],
 ];
+
+// The path of a value as the command prints it, and as its options take it.
+function pathText(path) {
+  return path.replace(/^nt:(\/SmartDashboard\/|\/)?/, "");
+}
 
 // The sentence about the first difference, which a click goes to.
 export function FirstDifference({ difference, found }) {
@@ -29,7 +33,7 @@ export function FirstDifference({ difference, found }) {
 
 // What the comparison has found, up to when: "no difference" only where most of what the log has was compared.
 function result(difference, { paths, until, compared: count, mostly }) {
-  if (difference !== null) return `Differs first at ${clock(difference)}, in ${nameOf(paths[0])}`;
+  if (difference !== null) return `Differs first at ${clock(difference)}, in ${pathText(paths[0])}`;
   const same = count === 0 ? "Nothing to compare" : mostly ? "No difference" : "What was compared does not differ";
   return `${same} up to ${clock(until)}`;
 }
@@ -50,10 +54,10 @@ export function showComparison() {
       ${found.others.length === 0 && html`<p>${result(null, found)}.</p>`}
       ${found.others.length > 0 && html`<table><thead><tr><th>Differs first at</th><th>Value</th><th>In the log</th><th>Here</th></tr></thead>
         <tbody>${found.others.map(([path, t, there, here]) => html`<tr key=${path}>
-          <td><button type="button" class="quiet" onClick=${closeAt(t)}>${clock(t)}</button></td><td>${nameOf(path)}</td><td>${there}</td><td>${here}</td></tr>`)}</tbody></table>`}
+          <td><button type="button" class="quiet" onClick=${closeAt(t)}>${clock(t)}</button></td><td>${pathText(path)}</td><td>${there}</td><td>${here}</td></tr>`)}</tbody></table>`}
       ${found.slight.length > 0 && html`<table><thead><tr><th>Differs most at</th><th>Differs slightly</th><th>At most, of its range</th></tr></thead>
         <tbody>${found.slight.map(([path, share, t]) => html`<tr key=${path}>
-          <td><button type="button" class="quiet" onClick=${closeAt(t)}>${clock(t)}</button></td><td>${nameOf(path)}</td><td>${Number((share * 100).toPrecision(2))} %</td></tr>`)}</tbody></table>`}
+          <td><button type="button" class="quiet" onClick=${closeAt(t)}>${clock(t)}</button></td><td>${pathText(path)}</td><td>${Number((share * 100).toPrecision(2))} %</td></tr>`)}</tbody></table>`}
       <table><thead><tr><th>Sensors</th><th>Value</th></tr></thead>
         <tbody>${SOURCES.flatMap(([source, text]) => found.sensors[source].map((path) => html`<tr key=${path}><td>${text}</td><td>${path}</td></tr>`))}</tbody></table>
       <div class="dialog-buttons"><button class="primary" value="ok">Close</button></div>
