@@ -5,7 +5,9 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
+from tokenize import detect_encoding
 
 import libcst as cst
 
@@ -75,7 +77,7 @@ def rewrite_all(
     for position, source in enumerate(sources):
         progress("reading", position, len(sources))
         try:
-            tree = cst.parse_module(source.text)
+            tree = _parsed(source.text)
         except Exception as error:
             wrong = why_invalid(source.text) or error
             line = getattr(error, "raw_line", None) or getattr(wrong, "lineno", None) or 1
@@ -113,6 +115,18 @@ def rewrite_all(
     project.unknown.report(report, files)
     progress("rewriting", len(modules), len(modules))
     return Rewritten(changed, project.gamepads)
+
+
+def _parsed(text: bytes) -> cst.Module:
+    """Return the tree of a file. LibCST does not find its encoding where lines end in CR alone, as Python does.
+
+    :raises Exception: when LibCST cannot read it
+    """
+    try:
+        return cst.parse_module(text)
+    except SyntaxError:
+        lines = BytesIO(text.replace(b"\r", b"\n"))
+        return cst.parse_module(text, cst.PartialParserConfig(encoding=detect_encoding(lines.readline)[0]))
 
 
 def why_invalid(code: bytes) -> Exception | None:

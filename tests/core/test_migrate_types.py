@@ -114,3 +114,9 @@ def test_names_that_are_each_other_have_no_cause_without_end(tmp_path: Path) -> 
     assert remark.what.startswith("What a is, a parameter of go (robot.py:1), is not known")
     (tmp_path / "robot.py").write_text("b = 1\nc = b\nb = c\nc.getRate()\n", "utf-8")
     assert migrate(tmp_path).report.by_hand() == []
+
+
+def test_an_encoding_that_is_named_in_lines_that_end_in_cr(tmp_path: Path) -> None:
+    (tmp_path / "robot.py").write_bytes(b"# coding: cp1252\rimport wpilib.drive\rname = '\xe9'")
+    done = migrate(tmp_path)
+    assert (done.after["robot.py"], done.report.by_hand()) == (b"# coding: cp1252\rimport wpilib\rname = '\xe9'", [])
