@@ -107,6 +107,8 @@ def growths_of(sizes: list[int]) -> list[Growth]:
 
 def test_what_grows_all_the_time() -> None:
     assert growths_of([0, 40, 90, 130, 200, 250]) == [Growth("arm.log", 12.5, 250)]
+    # From some input on.
+    assert growths_of([7, 7, 7, 7, 0, 40, 90, 130, 200, 250]) == [Growth("arm.log", 12.5, 250)]
 
 
 @pytest.mark.parametrize(

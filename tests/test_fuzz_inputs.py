@@ -13,6 +13,7 @@ from conftest import sampled
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.fuzz.guidance.seed_schedule import SeedSchedule
+from pyfrc_core.fuzz.inputs.drivers import MODELS
 from pyfrc_core.fuzz.inputs.match_plan import FieldData
 from pyfrc_core.fuzz.inputs.network_values import NetworkRead, NetworkValues
 from pyfrc_core.fuzz.inputs.robot_constants import find_constants
@@ -261,6 +262,13 @@ def test_of_a_gyro_what_code_reads_changes_most() -> None:
     constants = RobotConstants(names=frozenset({"getRotation2d", "setPitchLimit"}))
     asked = [name for name in ("Yaw", "Pitch", "Roll", "CompassHeading", "rawYaw") if constants.asks_for(name)]
     assert asked == ["Yaw", "Pitch", "rawYaw"]
+
+
+def test_a_joystick_that_is_plugged_in_says_how_many_controls_it_has() -> None:
+    for model in MODELS:
+        writes = model.writes(1)
+        counts = [writes[f"joysticks[1].{sort}_count"] for sort in ("axis", "button", "pov")]
+        assert counts == [model.axes, model.buttons, model.povs]
 
 
 def test_the_robots_own_random_numbers_differ_between_matches() -> None:

@@ -64,6 +64,15 @@ def test_modes_of_the_robot_are_repeated_three_to_five_times() -> None:
     assert sum(modes[:1] == ["test"] and "teleop" in modes for modes in plans) > 15
 
 
+def test_messages_are_like_those_of_past_seasons() -> None:
+    plans = [plan_match(random.Random(seed), SECONDS, SETTINGS) for seed in range(200)]
+    target = "event.game_specific_message"
+    sent = [str(event.writes[target]) for plan in plans for event in plan if target in event.writes]
+    assert {"LRL", "R", "Y", ""} <= set(sent)
+    assert {len(message) for message in sent} >= {0, 1, 3}
+    assert 2 not in {len(message) for message in sent if set(message) <= set("LR") and len(set(message)) > 1}
+
+
 def test_the_match_time_is_sometimes_over_before_the_period() -> None:
     early = 0
     for seed in range(200):

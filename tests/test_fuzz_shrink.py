@@ -126,6 +126,25 @@ def test_only_what_is_needed_is_left(count: int, needed: set[int]) -> None:
     assert shrinker.runs < 2_000
 
 
+def test_gaps_become_as_short_as_possible() -> None:
+    first, second = "dio[1].value", "dio[2].value"
+
+    def robot() -> Callable[[float, dict[str, object]], bool]:
+        since: list[float] = []
+
+        def fails(now: float, values: dict[str, object]) -> bool:
+            if values.get(first) and not values.get(second):
+                since.append(now)
+            return bool(since and values.get(second) and now - since[0] >= 0.1)
+
+        return fails
+
+    shrinker, _ = shrunk(robot, script_of([(10, first, True), (16, second, True)]))
+    one, other = shrinker.script.steps
+    assert (dict(one.writes), dict(other.writes)) == ({first: True}, {second: True})
+    assert other.at_us - one.at_us <= 100_000
+
+
 def test_what_remains_keeps_its_moment() -> None:
     def late() -> Callable[[float, dict[str, object]], bool]:
         return lambda now, values: values.get("dio[3].value") is True and now > 15.3

@@ -20,6 +20,7 @@ from pyfrc_core.fuzz.campaign.executors import WorkExecutor
 from pyfrc_core.fuzz.campaign.first_starts import START_US, STARTS
 from pyfrc_core.fuzz.campaign.results import Campaign, CampaignOptions, CampaignProgress, FuzzFinding, Shard
 from pyfrc_core.fuzz.guidance.seed_schedule import match_seconds
+from pyfrc_core.fuzz.inputs import match_plan
 from pyfrc_core.fuzz.match.work import FuzzTask, MatchResult, NoMoreWork, ReplayTask, Result, ShrinkTask, Shrunk, Work
 from pyfrc_core.fuzz.oracle.failure import WHILE_DISABLED, FuzzFailure
 from pyfrc_core.project import Project
@@ -353,7 +354,11 @@ def test_doubtful_failures_are_shrunk_when_the_matches_are_over(project: Path, r
     assert players.tasks[-1].failure == lights
 
 
-def test_a_match_of_the_usual_length_is_never_too_long(project: Path, run: Run, clock: SimpleNamespace) -> None:
+def test_a_match_of_the_usual_length_is_never_too_long(
+    project: Path, run: Run, clock: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(match_plan, "_WHOLE", 0.5)  # half of the matches are longer than usual
+
     def match(number: int) -> MatchResult:
         clock.now += 5.0
         return passed(number % 10)

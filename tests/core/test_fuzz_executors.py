@@ -15,7 +15,7 @@ from pyfrc_core.fuzz.campaign.executors import LocalMatchExecutor
 from pyfrc_core.fuzz.guidance.seed_schedule import SeedSchedule
 from pyfrc_core.fuzz.match.journal import Journal
 from pyfrc_core.fuzz.match.work import FuzzTask, MatchResult, NoMoreWork, ReplayTask, ShrinkTask, Shrunk, Work
-from pyfrc_core.fuzz.oracle.failure import HANGS, PROCESS_ENDED, FuzzFailure
+from pyfrc_core.fuzz.oracle.failure import HANGS, PROCESS_ENDED, FuzzFailure, NotedFailure
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import InputScript, Step
 
@@ -176,6 +176,14 @@ def test_the_inputs_of_a_match_that_died_are_those_of_its_journal(local: Local, 
     assert len(set(journals)) == 2
     assert not any(each is not None and each.exists() for each in journals)
     assert task.journal is None
+
+
+def test_a_failure_after_which_a_match_went_on_has_the_inputs_until_then() -> None:
+    steps = tuple(Step(at_us, {"dio[0].value": True}) for at_us in (0, 40_000, 80_000))
+    played = MatchResult(FAILURE, InputScript(steps, 100_000), noted=(NotedFailure(FAILURE, 40_000),))
+    first, last = played.each_failure()
+    assert (first.script, first.went_on) == (InputScript(steps[:1], 40_000), True)
+    assert (last.script, last.went_on, last.noted) == (played.script, False, ())
 
 
 def test_a_process_that_died_while_it_made_a_script_short_leaves_the_long_one(local: Local) -> None:
