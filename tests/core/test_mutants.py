@@ -178,6 +178,7 @@ def test_verdicts(
     assert (repository / program).read_text("utf-8") == PROGRAM
 
 
+@pytest.mark.slow  # it waits for a time limit
 def test_a_mutant_that_never_ends_is_stopped_and_tests_that_fail_without_one_are_not_believed(
     repository: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
