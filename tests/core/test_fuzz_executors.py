@@ -123,6 +123,17 @@ def test_an_interrupt_ends_what_runs(local: Local) -> None:
     assert [each.closed for each in local.begun] == [1] * len(local.begun)
 
 
+def test_a_match_that_the_interrupt_has_ended_is_no_result(local: Local, monkeypatch: pytest.MonkeyPatch) -> None:
+    def wait(calls: list[Call]) -> None:
+        local.begun[0].finished = local.interrupted = True
+
+    local.outcome = lambda task: RobotCodeError("the process ended by signal 15 (SIGTERM)")
+    monkeypatch.setattr(executors, "wait_for_calls", wait)
+    with pytest.raises(KeyboardInterrupt):
+        next(local.play([replay(1)]))
+    assert [each.closed for each in local.begun] == [1]
+
+
 def test_no_more_work_ends_without_the_results_that_are_missing(local: Local) -> None:
     works: list[Work | Exception | None] = [replay(1), replay(2), None, NoMoreWork()]
     local.ends = iter([0])

@@ -156,6 +156,8 @@ class LocalMatchExecutor(WorkExecutor):
                 if not running:
                     return
                 wait_for_calls(list(running))
+                # A signal that has ended this command may have ended its matches, too: they have not failed.
+                self._check_interrupt()
                 for call in list(running):
                     if call.finished:
                         task, noted = running.pop(call)
