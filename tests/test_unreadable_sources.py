@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 from pathlib import Path
 
 import pytest
 
-from pyfrc_core.physics.create.try_tests import _not_needed
 from pyfrc_core.project.walk import SourceError, read_source
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="links and pipes that Windows has not")
@@ -67,10 +65,3 @@ def test_a_comment_may_have_any_bytes_as_in_an_import(tmp_path: Path) -> None:
     file.write_bytes(b"name = 'h\xf6chstens'\n")
     with pytest.raises(SourceError, match=r"robot\.py:1: this line is not UTF-8"):
         read_source(file)
-
-
-def test_a_copy_for_create_physics_has_no_pipes(tmp_path: Path) -> None:
-    (tmp_path / "tests").mkdir()
-    spoil(tmp_path)
-    shutil.copytree(tmp_path, tmp_path / "copy", symlinks=True, ignore=_not_needed)
-    assert sorted(each.name for each in (tmp_path / "copy").rglob("*.py")) == ["drive.py", "old.py"]

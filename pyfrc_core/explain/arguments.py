@@ -24,6 +24,7 @@ from .places import (
     last_name,
     owner_of,
     passed_to,
+    robot_calls,
     users_frame,
     value_of,
     without_return,
@@ -124,6 +125,8 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
     takes = " or ".join(f"{name}({', '.join(form)})" for form in dict.fromkeys(map(tuple, forms)))
     takes += "".join(map(_members, dict.fromkeys(re.findall(r": ([\w.]+)", found["forms"]))))
     if call is None:
+        if passed := _text_passed(found["got"], files):
+            return passed
         return Explanation(f"{name}() got arguments that it does not take", f"It takes: {takes}")
     owner = owner_of(call.func, where[0]) if where is not None and name == found["name"] else None
     of_objects = all("self: " in form for form in found["forms"].strip().splitlines())
@@ -244,6 +247,17 @@ def _pass_function(written: str) -> str:
     if re.fullmatch(r"[\w.]+\(\)", written):
         return f"Pass the function itself: {written[:-2]} without (), or lambda: {written}"
     return f"Write lambda: {written or 'function(1)'}"
+
+
+def _text_passed(got: str, files: RobotFiles) -> Explanation | None:
+    """Explain an error that comes later than the call that has got a text for a number."""
+    texts = [each for each in _values(got, got.count(", ") + 1) if each[:1] in "'\""]
+    for place, call in robot_calls(files):
+        for each in (*call.args, *(keyword.value for keyword in call.keywords)):
+            if isinstance(each, ast.Constant) and repr(each.value) in texts:
+                text = f"{last_name(call.func)}() got {each.value!r}, a text"
+                return Explanation(text, "Pass a number, without quotes.", place)
+    return None
 
 
 def _got_none(name: str, written: str, files: RobotFiles, takes: str = "") -> Explanation:

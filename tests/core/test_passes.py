@@ -20,6 +20,7 @@ from pyfrc_core.passes import memory
 from pyfrc_core.passes.memory import Passes
 from pyfrc_core.project import Project
 from pyfrc_core.project.walk import LEFT_OUT
+from pyfrc_core.test_support import remembered_passes
 from pyfrc_core.test_support.options import TestOptions
 from pyfrc_core.test_support.remembered_passes import RememberedPasses
 
@@ -303,6 +304,12 @@ def test_a_failure_takes_back_a_pass(tmp_path: Path) -> None:
     assert not stands(project)
 
 
+@pytest.fixture
+def no_real_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a process that has no such library: this one may have loaded one for another test."""
+    monkeypatch.setattr(remembered_passes, "real_time_libraries", tuple)
+
+
 class _Session:
     def __init__(self, **options: object) -> None:
         self.exitstatus: int = pytest.ExitCode.OK
@@ -325,6 +332,7 @@ def run_of(project: Project, *tests: str, changed: bool = False, failed: str = "
     return session, plugin, [item.nodeid for item in items]
 
 
+@pytest.mark.usefixtures("no_real_time")
 def test_only_tests_run_again_that_have_not_passed(tmp_path: Path) -> None:
     project = make(tmp_path)
     assert run_of(project, "test_a", "test_b", failed="test_b")[2] == ["test_a", "test_b"]
@@ -339,6 +347,7 @@ def test_only_tests_run_again_that_have_not_passed(tmp_path: Path) -> None:
     assert Passes(project).green_since() is None, "no run has passed with all of them"
 
 
+@pytest.mark.usefixtures("no_real_time")
 def test_a_run_of_all_tests_counts_for_a_deploy_and_one_of_some_does_not(tmp_path: Path) -> None:
     project = make(tmp_path)
     run_of(project, "test_a", args=("-k", "a"))
