@@ -84,16 +84,20 @@ class ChangeFeed:
 
     def __init__(self) -> None:
         self._readers: WeakSet[ChangeCursor] = WeakSet()
+        self._lock = threading.Lock()  # a set must not grow while another thread goes through it
 
     def add(self, entry: RunBegan | Change) -> None:
         """Add what has happened."""
-        for reader in tuple(self._readers):
+        with self._lock:
+            readers = tuple(self._readers)
+        for reader in readers:
             reader.entries.append(entry)
 
     def cursor(self) -> ChangeCursor:
         """Return a reader of its own."""
         reader = ChangeCursor()
-        self._readers.add(reader)
+        with self._lock:
+            self._readers.add(reader)
         return reader
 
 
