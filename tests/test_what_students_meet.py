@@ -382,6 +382,12 @@ NOT_THE_ROBOT = """
     def test_made_before(control, robot):
         robot.robotInit()
         control.run_test(lambda tm: tm < 0.1)
+
+    def test_made_in_the_run(control, robot):
+        with control.run_robot():
+            control.step_timing(seconds=0.1, autonomous=True, enabled=True)
+            control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+            control.step_timing(seconds=0.1, autonomous=True, enabled=True)
 """
 WITH_A_MOTOR = """
     import wpilib
@@ -389,6 +395,9 @@ WITH_A_MOTOR = """
     class MyRobot(wpilib.TimedRobot):
         def robotInit(self):
             self.motor = wpilib.PWMSparkMax(0)
+
+        def autonomousInit(self):
+            self.arm = wpilib.PWMSparkMax(1)
 """
 
 
@@ -402,6 +411,7 @@ def test_tests_that_do_not_test_the_robot_that_runs(make_project: MakeProject) -
         "test_a_number": "For three seconds of robot time, write: control.run_test(lambda tm: tm < 3)",
         "test_almost": "Write assert 0.3512 == pytest.approx(0.36, abs=0.02)",
         "test_made_before": "PWM channel 0 is used already: tests/test_a.py:19 in the test has made it before",
+        "test_made_in_the_run": "This line runs more than once, and makes the device each time.",
     }
     assert {name for name, text in expected.items() if text in blocks[name]} == expected.keys(), result.stdout
     assert "unittest/case.py" not in result.stdout

@@ -31,7 +31,7 @@ from .places import (
     users_frame,
     value_of,
 )
-from .returned import class_of, numbers_of
+from .returned import class_of, numbers_of, public_name
 
 #: How Python names a function in the text of an error about a value.
 _FUNCTION = r"(?:method|builtin_function_or_method|function|instancemethod)"
@@ -287,6 +287,13 @@ def called_on_class(call: ast.Call, cls: type, frame: FrameType, files: RobotFil
     for method in ("getInstance", "getDefault", "get_instance", "get_default"):
         if hasattr(cls, method):
             return Explanation(text, f"Write {written}.{method}().{name}(...)")
+    attribute, owner = written.rpartition(".")[2], type(frame.f_locals.get("self"))
+    if vars(owner).get(attribute) is cls:
+        class_name = public_name(cls)
+        return Explanation(
+            f"{written} is the class {class_name}, and no object: = in the class {owner.__name__} sets it to that",
+            f"For magicbot, write {attribute}: {class_name}. Else create it in __init__: {written} = {class_name}(...)",
+        )
     if held := next((each[1] for each in made_by(cls.__name__, files)), ""):
         return Explanation(text, f"Write {held}.{name}(...)")
     if written.rpartition(".")[2] == cls.__name__:

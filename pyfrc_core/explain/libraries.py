@@ -30,6 +30,10 @@ from .places import (
 )
 
 _STACK_LINE = re.compile(r'File "([^"]+)", line (\d+)')
+#: In that stack, the line of the first function, and the name of the second.
+_CALLED_IN_STACK = re.compile(
+    r'File "[^"]+", line \d+, in .*\n\s+(?P<line>.*)\n\s+File "[^"]+", line \d+, in (?P<name>\w+)'
+)
 _FILE_AND_LINE = re.compile(r"(?P<file>.+\.py):(?P<line>\d+)")
 
 _OWN_CHANNEL = "Each device needs a channel of its own: change one of the two to the number that it is wired to."
@@ -38,6 +42,8 @@ _MADE_AGAIN = (
     "This line runs more than once, and makes the device each time. Make it once, in the __init__ of the robot, and "
     "use it here."
 )
+#: Instead, if another line makes the same attribute.
+_MADE_TWICE = "Both lines make {}. Make it once, in the __init__ of the robot, and remove both lines."
 #: Instead, if it was another opmode that made it.
 _MADE_BY_TWO = (
     "Two opmodes make it. If it is one device, make it once, in the __init__ of the robot, and use it in both; else "
@@ -359,17 +365,36 @@ def _explained(row: KnownError, found: re.Match[str], error: BaseException, file
     remedy = in_2027(row.remedy).format_map(words)
     outer = next(iter(_first_stack(str(error), files)), ("", 0))
     now = {(frame.f_code.co_filename, line) for frame, line in walk_tb(error.__traceback__)}
-    if before and outer[0] and not files.is_robot_code(outer[0]) and outer not in now:
+    if before and outer[0] and not files.is_robot_code(outer[0]) and outer not in now and _is_called_by(str(error)):
         words["since"] = f": {files.relative(outer[0])}:{outer[1]} in the test has made it before the run does"
         remedy = "Remove that line: control.run_test(...) calls robotInit and the other methods itself."
     elif before and before == here:
         again = _made_by(error, files) or Explanation(words["since"], _MADE_AGAIN, line)
         words["since"], remedy, line = again.text, again.remedy, again.place
+    elif here is not None and (made := _attribute_at(before, files)) and made == _attribute_at(here, files):
+        remedy = _MADE_TWICE.format(made[1])
     elif first is not None and is_in_opmode(*first) and (where := users_frame(error, files)) is not None:
         remedy = _MADE_BY_TWO if is_in_opmode(where[0].f_code.co_filename, where[1]) else remedy
     else:
         remedy += _set_elsewhere(words.get("channel", words.get("id", "")), error, files)
     return Explanation(in_2027(row.text).format_map(words), remedy, line)
+
+
+def _is_called_by(text: str) -> bool:
+    """Return whether the outermost line of WPILib's stack makes the device, or calls what does, without the run."""
+    called = _CALLED_IN_STACK.search(text)
+    return called is None or called["name"] == "__init__" or called["name"] in called["line"]
+
+
+def _attribute_at(place: str, files: RobotFiles) -> tuple[str, str] | None:
+    """Return the class and the attribute that is assigned at a place, such as ``Robot`` and ``self.arm``."""
+    for file, tree in robot_trees(files):
+        for cls in (each for each in ast.walk(tree) if isinstance(each, ast.ClassDef)):
+            for node in ast.walk(cls):
+                if isinstance(node, ast.Assign) and f"{file}:{node.lineno}" == place:
+                    target = node.targets[0]
+                    return (cls.name, ast.unparse(target)) if isinstance(target, ast.Attribute) else None
+    return None
 
 
 def _set_elsewhere(number: str, error: BaseException, files: RobotFiles) -> str:

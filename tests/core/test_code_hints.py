@@ -73,6 +73,13 @@ def hints(text: str, is_test: bool = False) -> list[str]:
         ),
         ("if self.pad.getRawButton(0): pass", "there is no button 0: buttons are 1 to 32", "getAButton()"),
         ("commands2.button.JoystickButton(self.pad, 33)", "there is no button 33", "the button's number"),
+        (
+            "if self.pad.getRawButton(1) or 2: pass",
+            "self.pad.getRawButton(1) or 2 is always true",
+            "Write self.pad.getRawButton(1) or self.pad.getRawButton(2)",
+        ),
+        ("if not (self.mode == 1 or 3): pass", "is always true, since 3 counts", "self.mode == 1 or self.mode == 3"),
+        ("while self.timer.get() == 2.0: pass", "is hardly ever 2.0 exactly", "Write self.timer.get() >= 2.0"),
         ("side = getAlliance()\n        if side in ('Blue', 1): pass", "the text 'Blue'", "Alliance.kBlue"),
         ("if DriverStation.getMatchType() == 3: pass", "the number 3", "kPractice"),
     ],
@@ -107,6 +114,9 @@ def test_a_line_that_does_not_do_what_it_says(line: str, text: str, remedy: str)
         "with suppress(AttributeError): self.camera",
         "if getAlliance() == Alliance.kRed: pass",
         "if self.pad.getPOV() == 90: pass",
+        "if (self.name or 'auto') == 'auto': pass",
+        "if self.pad.getAButton() or None: pass",
+        "if self.encoder.get() == 2: pass",
         "self.done = True",
         "a.onTrue(c)",
         "self.pad.getRawButton(1)",
@@ -137,9 +147,16 @@ def test_a_command_whose_end_condition_returns_nothing() -> None:
     class Wait(commands2.Command):
         def isFinished(self):
             return False
+    class Drive(commands2.Command):
+        def isFinished(self):
+            return self.pid.atSetpoint
     """
-    (found,) = hints(command)
-    assert found.startswith("2: isFinished returns nothing")
+    nothing, function = hints(command)
+    assert nothing.startswith("2: isFinished returns nothing")
+    assert function == (
+        "9: self.pid.atSetpoint is a function, which counts as true whatever it would return"
+        " / Write self.pid.atSetpoint()"
+    )
 
 
 @pytest.mark.parametrize(
@@ -179,7 +196,7 @@ def test_a_stick_that_is_read_at_the_start() -> None:
     """
     (found,) = hints(robot.format("-"))
     assert found.startswith("4: robotInit runs once, so this is the stick's position at the start")
-    assert "write lambda: self.stick.getY()" in found
+    assert "write lambda: -self.stick.getY()" in found
     assert hints(robot.format("lambda: -")) == []
 
 

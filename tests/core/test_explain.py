@@ -71,6 +71,18 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "Ports.LEFT is set in robot.py:5.",
         ),
         (
+            "class Robot:\n    def auto(self): self.shooter = wpilib.PWMSparkMax(3)\n"
+            "    def teleop(self): self.shooter = wpilib.PWMSparkMax(3)\nit = Robot()\nit.auto()\nit.teleop()",
+            "PWM channel 3 is used already, since robot.py:3",
+            "Both lines make self.shooter. Make it once, in the __init__ of the robot",
+        ),
+        (
+            "class Left:\n    def __init__(self): self.motor = wpilib.PWMSparkMax(3)\n"
+            "class Right:\n    def __init__(self): self.motor = wpilib.PWMSparkMax(3)\nit = Left(), Right()",
+            "PWM channel 3 is used already, since robot.py:3",
+            "Each device needs a channel of its own",
+        ),
+        (
             "m = wpilib.PneumaticsModuleType.REVPH\na = wpilib.Solenoid(m, 4)\nb = wpilib.DoubleSolenoid(m, 3, 4)",
             "channel 4 of this pneumatics module has a solenoid already",
             "A DoubleSolenoid has two channels",
@@ -123,6 +135,11 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "wpilib.Timer.get()",
             "get() is called on the class wpilib.Timer, and not on an object of it",
             "self.it = wpilib.Timer(...). Then call: self.it.get(...)",
+        ),
+        (
+            "class Drive:\n    left = wpilib.PWMSparkMax\n    def go(self): self.left.set(1)\nDrive().go()",
+            "self.left is the class wpilib.PWMSparkMax, and no object: = in the class Drive sets it to that",
+            "For magicbot, write left: wpilib.PWMSparkMax. Else create it in __init__: self.left = wpilib.PWM",
         ),
         ("'a' + 3", 'can only concatenate str (not "int") to str', 'f"speed: {value}"'),
         ("[1][1]", "IndexError: list index out of range", "Indexes begin with 0"),

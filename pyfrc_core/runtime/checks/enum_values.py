@@ -89,11 +89,12 @@ def find_sticks_read_once(kinds: Kinds) -> Iterator[CodeWarning]:
     """Yield where a joystick's axis is read once, at the start, such as for a command that should follow it."""
     for source in kinds.robot:
         for method in _run_at_start(source):
+            signed = {id(each.operand): each for each in ast.walk(method) if isinstance(each, ast.UnaryOp)}
             for call in _calls_at_once(method):
                 owner = kinds.owner(call, source)
                 hid = any(each.__name__.endswith("GenericHID") for each in getattr(owner, "__mro__", ()))
                 if hid and _AXIS.fullmatch(last_name(call.func)):
-                    written = ast.unparse(call)
+                    written = ast.unparse(signed.get(id(call), call))
                     text = f"{method.name} runs once, so this is the stick's position at the start, and never changes"
                     remedy = f"For a command, write lambda: {written} and call it there; else read it in "
                     yield source.warning(call, text, in_2027(f"{remedy}teleopPeriodic."))

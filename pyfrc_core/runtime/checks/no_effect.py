@@ -45,6 +45,9 @@ def find_lines_without_effect(kinds: Kinds) -> Iterator[CodeWarning]:
                 yield from _of_call(node, source)
             elif isinstance(node, ast.FunctionDef) and normalized(node.name) == "isfinished":
                 inside = {type(each) for each in ast.walk(node)}
+                for each in ast.walk(node):
+                    if isinstance(each, ast.Return) and each.value is not None:
+                        yield from _of_condition(each.value, *functions, source)
                 if ast.Call in inside and not inside & {ast.Return, ast.Raise}:
                     text = f"{node.name} returns nothing, so the command never ends by itself"
                     yield source.warning(node, text, "Write return before what it computes.")
@@ -98,6 +101,16 @@ def _of_condition(
     if isinstance(test, ast.Call) and normalized(last_name(test.func)) == "getpov" and CURRENT.year < 2027:
         written, text = ast.unparse(test), "is -1 if nothing is pressed, which counts as true"
         yield source.warning(test, f"{written} {text}", f"Write {written} == 0 for up, 90 for right")
+    for each in ast.walk(test):
+        if isinstance(each, ast.Compare) and isinstance(each.ops[0], ast.Eq) and _is_time(each.left):
+            written, limit = ast.unparse(each.left), ast.unparse(each.comparators[0])
+            text = f"{written} is hardly ever {limit} exactly: the loop runs every 20 ms"
+            yield source.warning(each, text, f"Write {written} >= {limit}")
+    for joined in _alternatives(test):
+        if always := [each for each in joined.values[1:] if isinstance(each, ast.Constant) and each.value]:
+            text = f"{ast.unparse(joined)} is always true, since {ast.unparse(always[0])} counts as true"
+            again = _with_last(joined.values[0], always[0])
+            yield source.warning(joined, text, f"Write {ast.unparse(joined.values[0])} or {again}")
     for each in _asked(test):
         name, written = last_name(each), ast.unparse(each)
         # Another library's object may have a value of the same name, but hardly one such as getAngle.
@@ -122,6 +135,33 @@ def _of_call(call: ast.Call, source: Source) -> Iterator[CodeWarning]:
             text = f"there is no button {number.value}: buttons are {first} to {first + 31}, so it is never pressed"
             remedy = "Write the button's number, or use a method such as getAButton()."
             yield source.warning(call, text, in_2027(remedy))
+
+
+def _is_time(value: ast.expr) -> bool:
+    """Return whether this asks a timer for its seconds."""
+    return (
+        isinstance(value, ast.Call) and re.search(r"\btimer\.get\(\)$", ast.unparse(value), re.IGNORECASE) is not None
+    )
+
+
+def _alternatives(test: ast.expr) -> Iterator[ast.BoolOp]:
+    """Yield each ``or`` of a condition whose truth is asked for."""
+    if isinstance(test, ast.UnaryOp):
+        yield from _alternatives(test.operand)
+    elif isinstance(test, ast.BoolOp):
+        if isinstance(test.op, ast.Or):
+            yield test
+        for each in test.values:
+            yield from _alternatives(each)
+
+
+def _with_last(question: ast.expr, value: ast.Constant) -> str:
+    """Return a question that is asked of another value, such as ``stick.getRawButton(2)`` for 2."""
+    if isinstance(question, ast.Call) and question.args:
+        return ast.unparse(ast.Call(question.func, [*question.args[:-1], value], question.keywords))
+    if isinstance(question, ast.Compare):
+        return ast.unparse(ast.Compare(question.left, question.ops[:1], [value]))
+    return f"{ast.unparse(question)} == {ast.unparse(value)}"
 
 
 def _asked(test: ast.expr) -> Iterator[ast.expr]:
