@@ -139,6 +139,22 @@ def test_a_comparison_in_a_test_is_no_assertion() -> None:
     ]
 
 
+def test_a_librarys_method_with_the_name_of_one_that_makes_a_command() -> None:
+    robot = """
+    class Drive(commands2.Subsystem):
+        def __init__(self):
+            self.timer = wpilib.Timer()
+            self.timer.restart()
+        def restart(self):
+            return commands2.cmd.none()
+        def go(self):
+            {}.restart()
+    """
+    assert hints(robot.format("self.timer")) == []
+    (found,) = hints(robot.format("self"))
+    assert "self.restart() makes a command, and nothing runs it" in found
+
+
 def test_a_command_whose_end_condition_returns_nothing() -> None:
     command = """
     class Go(commands2.Command):

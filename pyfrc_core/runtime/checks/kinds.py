@@ -99,6 +99,9 @@ class Kinds:
             return True
         if (made.args and _BY_SUBSYSTEM.fullmatch(ast.unparse(made.func))) or self._by_subsystem(made, source):
             return True
+        owner = self.owner(made, source)
+        if owner is not None and owner.__module__ not in {each.module.__name__ for each in self.sources}:
+            return False  # a library's method, with the name of one of the user's
         return any(self.makes_command(each, where, calls - 1) for each, where in self._returned(name, calls))
 
     def is_endless(self, made: ast.expr, source: Source, calls: int = 3) -> bool:
