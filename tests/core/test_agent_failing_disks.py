@@ -26,6 +26,9 @@ from .agent_disk import AgentDisk, run_quickly
 from .failing_disk import FAILS, failing
 from .test_agent_power_cuts import FIRST, ONE, RENAMED, SECOND, TWO, WHEELS, Program, deploy, packages_of, started
 
+#: Whatever fails, the agent ends what it has started, and closes it.
+pytestmark = pytest.mark.filterwarnings("error::ResourceWarning", "error::pytest.PytestUnraisableExceptionWarning")
+
 #: What is done to a robot; it returns what the agent says.
 Act = Callable[[AgentDisk], list[Message]]
 

@@ -65,6 +65,10 @@ class Program:
         monitor.restarted(time.monotonic())
         return survived
 
+    def close(self) -> None:
+        """Read no more of its output: a watch may have ended by an error, or may never have begun."""
+        self._console.disconnect()
+
     def watch(self, wire: Wire, seconds: float, unheard: float) -> Message:
         """Send the program's output and state to the laptop until there is a verdict.
 

@@ -6,7 +6,7 @@ import errno
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, closing, contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -85,17 +85,18 @@ class Agent:
 
     def serve(self) -> None:
         """Respond to requests until the laptop disconnects."""
-        self._respond(self.facts, self._hello)
-        while True:
-            # Without the lock, the laptop may be waiting for its user, or still run the tests.
-            self._wire.limits_silence = self._lock is not None
-            try:
-                request = self._wire.receive()
-            except EndedError:
-                return
-            done = self._respond(lambda request: self._requests[request["op"]](request), request)
-            if done and request.get("restart"):  # without another round trip
-                self._respond(lambda request: self._restart(prune=True), request)
+        with closing(self._program):
+            self._respond(self.facts, self._hello)
+            while True:
+                # Without the lock, the laptop may be waiting for its user, or still run the tests.
+                self._wire.limits_silence = self._lock is not None
+                try:
+                    request = self._wire.receive()
+                except EndedError:
+                    return
+                done = self._respond(lambda request: self._requests[request["op"]](request), request)
+                if done and request.get("restart"):  # without another round trip
+                    self._respond(lambda request: self._restart(prune=True), request)
 
     def _respond(self, handle: Callable[[Message], Message], request: Message) -> bool:
         """Send the result of a request, or its error. Return whether it was carried out."""
