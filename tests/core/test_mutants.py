@@ -12,6 +12,7 @@ import mutants
 import pytest
 import touched_lines
 from mutant_places import mutants_of
+from skips import missing_programs, require
 
 PROGRAM = dedent("""
     def first(values):
@@ -93,6 +94,7 @@ def test_each_mutant_is_a_program() -> None:
 @pytest.fixture
 def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A repository with the program and its tests, which is the tool's."""
+    require("make mutants", missing_programs("git"))
     root = tmp_path / "repository"
     for name, text in {"pyfrc_core/program.py": PROGRAM, "tests/test_program.py": TESTS}.items():
         (root / name).parent.mkdir(parents=True)
