@@ -40,6 +40,8 @@ _ELSEWHERE = {"true": "True", "false": "False", "null": "None", "nil": "None", "
 
 #: The parameters of tests.
 _FIXTURES = frozenset({"control", "fake_time", "hal_data", "physics_controller", "robot", "robot_file", "robot_path"})
+#: The longest expression of the robot's code that a message repeats, in characters.
+_LONGEST_WRITTEN = 60
 #: How many names are listed.
 _SHOWN = 8
 #: The methods that create what a robot has.
@@ -173,7 +175,9 @@ def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanati
         inner = (each for each in vars(owner).values() if isinstance(each, type) and hasattr(each, name))
         if isinstance(obj, type) and (holder := next(inner, None)) is not None:
             return Explanation(f"{written} has no {name}", f"Write {written}.{holder.__name__}.{name}")
-        text = f"{written}, {'the class' if isinstance(obj, type) else 'an object of'} {owner.__name__}, has no {name}"
+        what = f"{'the class' if isinstance(obj, type) else 'an object of'} {owner.__name__}"
+        # A long chain of calls says less than its class.
+        text = f"{written}, {what}, has no {name}" if len(written) <= _LONGEST_WRITTEN else f"{what} has no {name}"
         spelt_alike = len(name) > 1 and any(each.lower() == name.lower() for each in known)
         if not isinstance(obj, type) and not spelt_alike and (instead := _elsewhere(owner, name, written, files)):
             return Explanation(text, instead)

@@ -389,6 +389,12 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "It has: get, getDirection, getDistance",
         ),
         ("wpilib.Timer().elapsed_has(1)", "an object of Timer, has no elapsed_has", "Did you mean hasElapsed?"),
+        (
+            "import phoenix6\nconfigs = phoenix6.configs.MotorOutputConfigs()\n"
+            f"configs{'.with_duty_cycle_neutral_deadband(0.001)' * 2}.with_inverts(1)",
+            "robot.py:4: an object of MotorOutputConfigs has no with_inverts",
+            "Did you mean with_inverted?",
+        ),
         ("wpilib.Pose2d()", "has no attribute 'Pose2d'", "from wpimath.geometry import Pose2d"),
         ("Pose2d()", "name 'Pose2d' is not defined", "from wpimath.geometry import Pose2d"),
         ("(0.5).get()", "0.5 is a number (0.5) and has no get", ""),
