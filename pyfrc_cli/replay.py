@@ -12,7 +12,7 @@ from pyfrc_core.processes.loading import loading
 
 from .file_options import ReadPath, WrittenFile
 from .project_options import chosen_project, project_options
-from .shared_options import TRACE, page_option, picture_option
+from .shared_options import TRACE, page_option
 from .verbosity import hint, verbosity
 
 
@@ -25,7 +25,6 @@ from .verbosity import hint, verbosity
     type=WrittenFile(),
     help=f"Write a trace of the robot: {TRACE}",
 )
-@picture_option
 @page_option("the run", "run.html")
 @click.argument("file", type=ReadPath())
 def command(
@@ -34,7 +33,6 @@ def command(
     robot_class: str | None,
     until: float | None,
     trace: Path | None,
-    picture: Path | None,
     page: Path | None,
     file: Path,
 ) -> None:
@@ -48,11 +46,6 @@ def command(
     with loading(verbosity().quiet):
         from pyfrc_core.compat.unrepeatable import explain_unrepeatable
         from pyfrc_core.replay import replay
-    if picture is not None:
-        from pyfrc_core.sim.simulate import draw_script
-
-        draw_script(project, file, picture, until)
-        hint(f"wrote {picture}")
     result = replay(project, file, until=until, trace=trace, say=click.echo)
     if page is not None:
         from pyfrc_core.sim.page_file import write_replay_page

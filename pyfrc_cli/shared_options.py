@@ -30,12 +30,6 @@ fail_under_option = click.option(
     type=click.FloatRange(0, 100),
     help="Fail when less of the project is covered.",
 )
-picture_option = click.option(
-    "--picture",
-    type=WrittenFile(),
-    metavar="FILE",
-    help="Draw the driven path on the field, such as path.png.",
-)
 port_option = click.option(
     "--port",
     type=click.IntRange(1, 65535),

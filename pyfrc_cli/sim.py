@@ -13,7 +13,7 @@ from pyfrc_core.processes.loading import loading
 
 from .file_options import ReadPath, WrittenFile
 from .project_options import chosen_project, project_options
-from .shared_options import allow_host_option, page_option, picture_option, port_option
+from .shared_options import allow_host_option, page_option, port_option
 from .verbosity import verbosity
 
 
@@ -105,7 +105,6 @@ from .verbosity import verbosity
     help="Write an input script, for pyfrc replay and tests.",
 )
 @click.option("--wpilog", type=WrittenFile(), metavar="FILE", help="Write a WPILib data log, for AdvantageScope.")
-@picture_option
 @page_option("the whole run", "run.html")
 @click.option(
     "--nt-port",

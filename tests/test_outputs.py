@@ -24,11 +24,9 @@ FILES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "profile --html": (("profile", "{}", "fuzz", "--from", "in.jsonl"), ("in.jsonl",)),
     "profile --json": (("profile", "{}", *LOG), ("in.jsonl", "in.trace.jsonl")),
     "replay --trace": (("replay", "{}", "in.jsonl"), ("in.jsonl", "in.trace.jsonl")),
-    "replay --picture": (("replay", "{}", "in.jsonl"), ("in.jsonl", "in.trace.jsonl")),
     "replay --page": (("replay", "{}", "in.jsonl"), ("in.jsonl", "in.trace.jsonl")),
     "sim --record": ((*SIM, "--script", "in.jsonl", "{}"), ("in.jsonl", "in.trace.jsonl")),
     "sim --wpilog": ((*LOG, "{}"), ("in.jsonl", "in.trace.jsonl")),
-    "sim --picture": ((*SIM, "--script", "in.jsonl", "{}"), ("in.jsonl",)),
     "sim --page": ((*SIM, "--log", "in.trace.jsonl", "{}"), ("in.jsonl", "in.trace.jsonl")),
     "test --coverage-xml": (("test", "{}"), ()),
     "view --page": (("view", "in.jsonl", "match.dslog", "{}"), ("in.jsonl", "in.trace.jsonl", "match.dsevents")),
@@ -164,7 +162,7 @@ def test_earlier_recordings_are_outputs_too(project: RobotProject) -> None:
 @pytest.mark.parametrize(
     ("arguments", "error"),
     [
-        (("--page", "a.png", "--picture", "./a.png"), "--page a.png cannot be written: --picture writes it, too"),
+        (("--page", "a.png", "--wpilog", "./a.png"), "--page a.png cannot be written: --wpilog writes it, too"),
         (("--record", "a.jsonl", "--wpilog", "a.trace.jsonl"), "a.trace.jsonl cannot be written: --"),
     ],
 )

@@ -82,14 +82,12 @@ def test_not_one_robot_class(classes: int, make_project) -> None:
     assert not (made.path / "run.jsonl").exists()
 
 
-@pytest.mark.parametrize("option", ["--record", "--wpilog", "--picture"])
+@pytest.mark.parametrize("option", ["--record", "--wpilog"])
 def test_what_cannot_be_written_is_said_before_anything_runs(option: str, make_project) -> None:
-    if option == "--picture":
-        pytest.importorskip("PIL")
     made = make_project({"robot.py": "raise Exception('this has run')", "taken": "no directory"})
-    result = made.run_here("sim", "--ui", "none", "--seconds", "1", option, "taken/run.png")
+    result = made.run_here("sim", "--ui", "none", "--seconds", "1", option, "taken/run.file")
     assert result.code == 2, result.output
-    assert result.first_error.startswith(f"{option} {Path('taken/run.png')} cannot be written: ")
+    assert result.first_error.startswith(f"{option} {Path('taken/run.file')} cannot be written: ")
     assert "this has run" not in result.output
     assert "wrote" not in result.output
 

@@ -6,7 +6,6 @@ import json
 import re
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from loops import for_each
@@ -15,7 +14,6 @@ from sim_robots import FILES
 from pyfrc_core.errors import UsageError
 from pyfrc_core.season import CURRENT
 from pyfrc_core.sim.engine.extensions import check_installed
-from pyfrc_core.sim.ui.picture import check_pictures
 
 pytestmark = pytest.mark.bare
 
@@ -40,21 +38,19 @@ def test_a_practice_match(project) -> None:
 
 
 @pytest.mark.season_2026
-def test_what_is_recorded_is_replayed_and_drawn(project) -> None:
-    pytest.importorskip("PIL")
+def test_what_is_recorded_is_replayed(project) -> None:
     project.write({"drive.jsonl": SCRIPT})
     result = project.run(
         *("sim", "--ui", "none", "--script", "drive.jsonl"),
-        *("--record", "again.jsonl", "--wpilog", "log.wpilog", "--picture", "path.png"),
+        *("--record", "again.jsonl", "--wpilog", "log.wpilog"),
     )
     assert result.code == 0, result.output
     assert "simulated 3.00 s" in result.stdout
     assert "distance driven: 9.9 ft (3.0 m)" in result.stdout
-    for file in ("again.jsonl", "log.wpilog", "path.png"):
+    for file in ("again.jsonl", "log.wpilog"):
         assert f"wrote {file}" in result.stdout
         assert (project.path / file).is_file()
-    result = project.run("replay", "again.jsonl", "--picture", "again.png")
-    assert (project.path / "again.png").read_bytes() == (project.path / "path.png").read_bytes()
+    result = project.run("replay", "again.jsonl")
     assert "The trace equals the recorded one." in result.stdout, result.output
     # The steps are the script's own.
     lines = (project.path / "again.jsonl").read_text().splitlines()
@@ -115,7 +111,6 @@ def test_a_part_of_a_script(project) -> None:
         (["--seconds", "1", "--speed", "-2"], "the speed cannot be -2"),
         (["--seconds", "1", "--ext", "nonsense"], "there is no extension 'nonsense'"),
         (["--seconds", "1", "--start", "lft"], "there is no start position 'lft': did you mean 'left'?"),
-        (["--seconds", "1", "--picture", "path.doc"], "no kind of picture"),
     ],
 )
 def test_wrong_usage(arguments: list[str], told: str, project) -> None:
@@ -141,8 +136,6 @@ def test_what_is_not_installed_is_said(name: str, package: str, monkeypatch: pyt
     monkeypatch.setattr("importlib.util.find_spec", lambda module: None)
     with pytest.raises(UsageError, match=f"pip install {package}"):
         check_installed([name])
-    with pytest.raises(UsageError, match=r"pip install .pyfrc\[picture\]"):
-        check_pictures(Path("path.png"))
 
 
 def test_an_extension_that_does_nothing_in_a_season_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

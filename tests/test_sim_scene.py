@@ -17,8 +17,7 @@ from pyfrc_core.errors import PyfrcError, UsageError
 from pyfrc_core.project import Project
 from pyfrc_core.sim.engine.field import field_of
 from pyfrc_core.sim.engine.robot_side.robot_process import tags_of
-from pyfrc_core.sim.engine.scene import Field, Line, LineStyle, Pose, Scene, Shape, Tag, Target, Text, TextStyle
-from pyfrc_core.sim.ui.picture import draw_picture
+from pyfrc_core.sim.engine.scene import Field, Line, LineStyle, Pose, Shape, Text, TextStyle
 
 DOWN = Pose(10.0, 5.0, math.pi / 2)
 
@@ -250,67 +249,6 @@ def test_the_seasons_tags(tmp_path: Path) -> None:
     assert all(-1 < tag.x < 55 and -1 < tag.y < 27 for tag in tags)
     field(tmp_path, '{"pyfrc": {"field": {"season": 2019}}}')
     assert tags_of(Project(tmp_path / "robot.py").sim_config) == ()
-
-
-# -- pictures --------------------------------------------------------------------------------------------------------
-
-SCENE = Scene(
-    Field(
-        20.0,
-        10.0,
-        15.0,
-        2.0,
-        3.0,
-        {"start": Pose(0, 0, 0)},
-        objects=(Shape("lime", ((15, 1), (19, 1), (19, 5), (15, 5))),),
-    ),
-    robot=Pose(12.0, 5.0, 0.0),
-    trail=((2.0, 5.0), (12.0, 5.0)),
-    drawings=(Line(((1, 1), (1, 9)), "#ff00ff"), Text("a text", 10, 8), Line(((3, 1), (3, 2)), "no colour")),
-    targets=(Target(5, 1, True), Target(6, 1, False)),
-)
-
-
-def test_a_picture_shows_what_is_on_the_field(tmp_path: Path) -> None:
-    pillow = pytest.importorskip("PIL.Image")
-    file = tmp_path / "new/path.png"
-    draw_picture(SCENE, file, former_trail=[(2, 9), (8, 9)])
-    with pillow.open(file) as picture:
-        width, height = picture.size
-        assert (width, height) == (1200, 628)
-
-        def at(x: float, y: float) -> tuple[int, int, int]:
-            return picture.getpixel((round(28 + x * 57.2), round(28 + y * 57.2)))
-
-        assert at(17, 3) == (0, 255, 0)
-        assert at(1, 5) == (255, 0, 255)
-        assert at(6, 5) == (0x00, 0x57, 0xB8)
-        assert at(5, 9) == (0xF0, 0xA0, 0x30)
-        assert at(13.5, 5.5) == (0xD0, 0, 0)
-        assert at(5, 1) == (0, 0xA0, 0x40)
-        assert at(6, 1) == at(18, 8) == (0xE8, 0xE8, 0xE8)
-        # The start is marked, every five feet have a line, and every ten feet their number under the field.
-        assert at(2, 5.07) == (0x00, 0x57, 0xB8) != at(4, 5.07)
-        assert at(5, 3) == at(15, 7) == at(14, 5) == (0xD0, 0xD0, 0xD0)
-
-        def is_written_at(x: float) -> bool:
-            left = round(28 + x * 57.2) - 20
-            return len(picture.crop((left, height - 24, left + 40, height - 4)).getcolors()) > 1
-
-        assert [is_written_at(x) for x in (0, 5, 10, 15, 19.5)] == [True, False, True, False, True]
-
-
-def test_a_picture_of_tags_and_on_an_image(tmp_path: Path) -> None:
-    pillow = pytest.importorskip("PIL.Image")
-    image = tmp_path / "field.png"
-    pillow.new("RGB", (4, 2), "#123456").save(image)
-    scene = Scene(Field(20, 10, 15, 2, 3, {}, image, tags=(Tag(7, 10, 5, 0.0),)))
-    draw_picture(scene, tmp_path / "path.jpg")
-    with pillow.open(tmp_path / "path.jpg") as picture:
-        assert picture.getpixel((100, 100)) == pytest.approx((0x12, 0x34, 0x56), abs=3)
-    image.write_text("no picture")
-    with pytest.raises(UsageError, match=r"field.png is no picture"):
-        draw_picture(scene, tmp_path / "path.png")
 
 
 def test_what_is_wrong_with_a_drawing_is_in_the_console_once(make_project) -> None:

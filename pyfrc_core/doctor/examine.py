@@ -30,7 +30,6 @@ from .steps import first_missing
 EXTRAS = {
     "cluster": ("distributed", "pyfrc fuzz --scheduler"),
     "gamepads": ("pygame", "gamepads in pyfrc sim"),
-    "picture": ("PIL", "--picture of pyfrc sim and pyfrc replay"),
     "profile": ("pyinstrument", "--html of pyfrc profile"),
     "wpilib-window": ("halsim_gui", "pyfrc sim --ui wpilib"),
 }

@@ -21,9 +21,8 @@ from .log_report import LogReport
 from .log_run import LogRun, log_run
 from .page_file import PageFile, place_in
 from .ui.choose import FRONT_ENDS, FrontEndKind, SimRequest, default_name, make_front_end
-from .ui.headless import Headless
 
-__all__ = ["OutputFiles", "SimRequest", "draw_script", "simulate"]
+__all__ = ["OutputFiles", "SimRequest", "simulate"]
 
 
 def simulate(project: Project, request: SimRequest, say: Callable[[str], object]) -> int:
@@ -44,7 +43,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         say(f"{remark}\n")
     simulation = Simulation(project, options, None if log is None else log.run)
     page = None if request.page is None else PageFile(request.page, _what(project, request))
-    files = OutputFiles(request.record, request.wpilog, request.picture, page)
+    files = OutputFiles(request.record, request.wpilog, page)
     with ExitStack() as closing:
         if not kind.prints:
             simulation.echo = partial(_echo, say)
@@ -167,36 +166,11 @@ def _echo(say: Callable[[str], object], text: str) -> None:
         say(text)
 
 
-def draw_script(project: Project, script: Path, picture: Path, until: float | None = None) -> None:
-    """Draw the path that the robot drives under an input script.
-
-    :param until: an earlier end, in seconds of robot time
-    """
-    from .ui.picture import check_pictures, draw_picture
-
-    check_pictures(picture)
-    options = SimOptions(speed=0, paused=True, script=load_inputs(script), recording=False)
-    simulation = Simulation(project, options)
-    headless = Headless(lambda text: None, seconds=until)
-    headless.run(simulation)
-    if simulation.snapshot is not None:
-        draw_picture(simulation.snapshot.scene, picture)
-
-
 class OutputFiles:
-    """The files to write.
+    """The files to write."""
 
-    :raises UsageError: when there can be no picture
-    """
-
-    def __init__(
-        self, record: Path | None, wpilog: Path | None, picture: Path | None, page: PageFile | None = None
-    ) -> None:
-        self._record, self._wpilog, self._picture, self._page = record, wpilog, picture, page
-        if picture is not None:
-            from .ui.picture import check_pictures
-
-            check_pictures(picture)
+    def __init__(self, record: Path | None, wpilog: Path | None, page: PageFile | None = None) -> None:
+        self._record, self._wpilog, self._page = record, wpilog, page
         self._former_log = _stamp(wpilog)
 
     def write(self, simulation: Simulation) -> list[Path]:
@@ -206,8 +180,7 @@ class OutputFiles:
         :raises UsageError: when the disk was full
         """
         paged = [self._page.file] if self._page is not None and self._page.write(simulation) else []
-        snapshot = simulation.snapshot
-        if snapshot is None:
+        if simulation.snapshot is None:
             return paged
         scripts = [] if self._record is None else simulation.save_all(self._record)
         traces = [trace for trace in map(trace_beside, scripts) if trace.is_file()]
@@ -216,11 +189,6 @@ class OutputFiles:
             if why := check_disk_space(self._wpilog):
                 raise UsageError(f"{self._wpilog} is not complete: {why}", remedy="Make room on the disk.")
             written.append(self._wpilog)
-        if self._picture is not None:
-            from .ui.picture import draw_picture
-
-            draw_picture(snapshot.scene, self._picture, simulation.status.former_trail)
-            written.append(self._picture)
         return written + paged
 
 

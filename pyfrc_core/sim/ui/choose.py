@@ -67,7 +67,6 @@ class SimRequest:
     watch: bool = False
     record: Path | None = None
     wpilog: Path | None = None
-    picture: Path | None = None
     page: Path | None = None
     nt_port: int | None = None
     extensions: tuple[str, ...] = ()
