@@ -9,6 +9,7 @@ import select
 import selectors
 import socket
 import stat
+import struct
 import termios
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -47,8 +48,8 @@ def _module(name: str, **content: Any) -> ModuleType:
 
 
 def _locking(descriptor: int, mode: int, size: int) -> None:
-    """Lock a range of bytes, as `msvcrt.locking` does from the current position."""
-    fcntl.lockf(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB, size, 0, os.SEEK_CUR)
+    """Lock a range of bytes, as `msvcrt.locking` does from the current position, against any other open file."""
+    fcntl.fcntl(descriptor, fcntl.F_OFD_SETLK, struct.pack("hhqqi", fcntl.F_WRLCK, os.SEEK_CUR, 0, size, 0))
 
 
 def _peek_named_pipe(pipe: int, buffer: Any, size: int, read: Any, available: Any, left: Any) -> int:
