@@ -83,7 +83,7 @@ class Photographer:
 
 
 def take_pictures(project: Path, display: str, suffix: str) -> None:
-    """Drive, go back in time, let the robot crash."""
+    """Drive, and let the robot crash."""
     with ExitStack() as closing:
         photographer = Photographer(project, display)
         closing.callback(photographer.close)
@@ -98,13 +98,6 @@ def take_pictures(project: Path, display: str, suffix: str) -> None:
         photographer.picture(f"window{suffix}")
         if suffix:
             return
-        simulation.rewind(round(photographer.time() / 2, 2))
-        photographer.until(lambda: bool(simulation.status.former_trail) and simulation.status.state == "paused")
-        simulation.resume()
-        photographer.drive(0.62, 0.5, 1.6)
-        simulation.pause()
-        photographer.until(lambda: simulation.status.state == "paused")
-        photographer.picture("rewind")
         simulation.resume()
         simulation.set_button(0, 4, True)
         photographer.until(lambda: simulation.status.state == "failed")

@@ -1,4 +1,4 @@
-"""What the simulator's window shows and does, without a window: rows, keys, zoom, words, gamepads."""
+"""What the simulator's window shows and does, without a window: rows, keys, zoom, words."""
 
 from __future__ import annotations
 
@@ -25,10 +25,8 @@ from pyfrc_core.sim import Field, Scene, Snapshot, Status
 from pyfrc_core.sim.engine.snapshot import Failure
 from pyfrc_core.sim.ui.models.devices import SETTABLE, Row, panels_of
 from pyfrc_core.sim.ui.models.driver_station_keys import DriverStationKeys
-from pyfrc_core.sim.ui.models.gamepads import HINT, GamepadRouter, Reading
 from pyfrc_core.sim.ui.models.joysticks import RELEASED, Sticks, axis_labels, button_labels
 from pyfrc_core.sim.ui.models.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical, layout_for
-from pyfrc_core.sim.ui.models.time_controls import FASTEST, SLOWEST, slider_of_speed, speed_of_slider
 from pyfrc_core.sim.ui.models.viewport import Viewport
 from pyfrc_core.sim.ui.models.wording import (
     mode_text,
@@ -331,75 +329,6 @@ def test_what_the_robot_has_is_shown() -> None:
     assert (first.axes[1], first.pov) == (-0.5, RELEASED)
 
 
-# -- gamepads ---------------------------------------------------------------------------------------------------------
-
-
-class Pad:
-    def __init__(self, name: str) -> None:
-        self.name, self.reading = name, Reading((0.0, 0.0), (False, False))
-
-    def read(self) -> Reading:
-        return self.reading
-
-
-class Room:
-    def __init__(self, *pads: Pad) -> None:
-        self.pads = list(pads)
-
-    def look(self) -> list[Pad]:
-        return self.pads
-
-
-def test_a_gamepad_moves_a_joystick() -> None:
-    made, told = sticks()
-    pad = Pad("Stick")
-    router = GamepadRouter(Room(pad), made)
-    router.poll()
-    assert (router.names, told.calls) == (("Stick",), [])
-    pad.reading = Reading((0.5, -1.0), (False, True), 90)
-    router.poll()
-    router.poll()
-    assert told.calls == [
-        ("set_axis", 0, 0, 0.5),
-        ("set_axis", 0, 1, -1.0),
-        ("set_button", 0, 2, True),
-        ("set_pov", 0, 0, 90),
-    ]
-    told.calls.clear()
-    pad.reading = replace(pad.reading, axes=(0.504, -1.0))  # a tremble
-    router.poll()
-    assert told.calls == []
-    router.forget()
-    router.poll()
-    assert ("set_axis", 0, 1, -1.0) in told.calls
-
-
-def test_a_gamepad_that_is_pulled_out_lets_go() -> None:
-    made, told = sticks()
-    pad = Pad("Stick")
-    pad.reading = Reading((0.5,), (True,), 0)
-    room = Room(pad)
-    router = GamepadRouter(room, made)
-    router.poll()
-    room.pads = []
-    told.calls.clear()
-    router.poll()
-    router.poll()
-    assert told.calls == [("set_axis", 0, 0, 0.0), ("set_button", 0, 1, False), ("set_pov", 0, 0, RELEASED)]
-
-
-def test_gamepads_go_where_the_user_says() -> None:
-    made, told = sticks()
-    first, second = Pad("A"), Pad("B")
-    router = GamepadRouter(Room(first, second), made)
-    router.assigned = {0: 1, 1: None}
-    first.reading = Reading((0.9, 0.0))
-    second.reading = Reading((0.3, 0.0))
-    router.poll()
-    assert told.calls == [("set_axis", 0, 0, 0.3)]
-    assert "pyfrc[gamepads]>=2026.1" in HINT
-
-
 def test_keys_that_are_held_are_passed_on_again() -> None:
     """To a robot that was restarted."""
     made, told = sticks()
@@ -419,11 +348,6 @@ def test_keys_that_are_held_are_passed_on_again() -> None:
 
 
 # -- words ------------------------------------------------------------------------------------------------------------
-
-
-@given(st.floats(SLOWEST, FASTEST))
-def test_the_speed_slider_stands_where_the_speed_is(speed: float) -> None:
-    assert speed_of_slider(slider_of_speed(speed)) == pytest.approx(speed, rel=0.08)
 
 
 @for_each(

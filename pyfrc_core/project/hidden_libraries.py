@@ -20,7 +20,7 @@ LIBRARIES = frozenset(
         *("phoenix5", "phoenix6", "photonlibpy", "pint", "pyfrc", "pyfrc_cli", "pyfrc_core", "rev", "robotpy"),
         *("robotpy_apriltag", "robotpy_ext", "urcl", "wpilib", "wpimath", "wpinet", "wpiutil"),
         *("_pytest", "attr", "attrs", "click", "coverage", "cryptography", "hypothesis", "iniconfig"),
-        *("packaging", "paramiko", "pluggy", "pydantic", "pydantic_core", "pygame", "pygments", "pytest"),
+        *("packaging", "paramiko", "pluggy", "pydantic", "pydantic_core", "pygments", "pytest"),
         *("rich", "scipy", "sortedcontainers", "tomli", "typing_extensions", "PIL", "pyinstrument", "exceptiongroup"),
     }
 )

@@ -7,10 +7,8 @@ import tkinter as tk
 from tkinter import ttk
 from typing import TYPE_CHECKING
 
-from ..models.gamepads import HINT, GamepadRouter
 from ..models.joysticks import BUTTONS, FIRST_BUTTON, JOYSTICKS, RELEASED, Sticks, axis_labels, button_labels, direction
 from . import theme as colors
-from .boxes import tame
 from .theme import Theme, fitting
 from .tooltip import Tooltip
 
@@ -39,9 +37,8 @@ class JoystickView:
         tooltip: Tooltip,
         config: SimConfig,
         sticks: Sticks,
-        gamepads: GamepadRouter | None,
     ) -> None:
-        self._theme, self._config, self._sticks, self._gamepads = theme, config, sticks, gamepads
+        self._theme, self._config, self._sticks = theme, config, sticks
         self._held: tuple[_Part, bool] | None = None
         self._shown: tuple[float, ...] = ()
         self._parts: list[tuple[_Part, tuple[float, float, float, float]]] = []
@@ -72,16 +69,7 @@ class JoystickView:
             takefocus=False,
         )
         self._plug.pack(side="left")
-        self._source = ttk.Combobox(source, state="readonly", width=18, font=theme.small, takefocus=False)
-        self._source.bind("<<ComboboxSelected>>", self._choose_source)
-        tame(self._source, lambda: self.canvas.focus_set())
-        self._names: tuple[str, ...] | None = None
-        if gamepads is not None:
-            self._source.pack(side="right")
-        else:
-            what = ttk.Label(source, text="no gamepads", style="CardMuted.TLabel")
-            what.pack(side="right")
-            tooltip.attach(what, HINT)
+        ttk.Label(source, text="gamepads: --ui web", style="CardMuted.TLabel").pack(side="right")
         self.canvas = tk.Canvas(frame, background=colors.CARD, highlightthickness=0, width=px(WIDTH))
         self.canvas.pack(padx=px(0), pady=(px(4), px(6)))
         for sequence, keeps in (("<Button-1>", False), (f"<Button-{colors.RIGHT_BUTTON}>", True)):
@@ -101,10 +89,6 @@ class JoystickView:
         if state != self._shown:
             self._shown = state
             self._draw()
-        if self._gamepads is not None and self._gamepads.names != self._names:
-            self._names = self._gamepads.names
-            self._source.configure(values=["mouse and keys", *self._names])
-            self._show_source()
 
     def relabel(self, config: SimConfig) -> None:
         """Use other labels."""
@@ -115,21 +99,6 @@ class JoystickView:
         """Return the middle of a control, in the canvas's pixels."""
         x0, y0, x1, y1 = dict(self._parts)[part]
         return round((x0 + x1) / 2), round((y0 + y1) / 2)
-
-    # -- the gamepad ----------------------------------------------------------------------------------------------
-
-    def _show_source(self) -> None:
-        if self._gamepads is None or self._names is None:
-            return
-        stick = self.chosen.get()
-        number = self._gamepads.assigned.get(stick, stick)
-        self._source.current(0 if number is None or number >= len(self._names) else number + 1)
-
-    def _choose_source(self, event: object) -> None:
-        assert self._gamepads is not None
-        index = self._source.current()
-        self._gamepads.assigned[self.chosen.get()] = None if index <= 0 else index - 1
-        self.canvas.focus_set()
 
     # -- drawing --------------------------------------------------------------------------------------------------
 
@@ -202,7 +171,6 @@ class JoystickView:
             self._lamps[button] = lamp, number
         y += rows * px(_BUTTON)
         canvas.configure(height=y + px(2))
-        self._show_source()
 
     def _add(self, part: _Part, x0: float, y0: float, x1: float, y1: float) -> None:
         self._parts.append((part, (x0, y0, x1, y1)))

@@ -16,7 +16,6 @@ from ....errors import UsageError
 from ....interruption import interruption
 from ...engine.snapshot import Snapshot, Status
 from ..models.driver_station_keys import SUMMARY, DriverStationKeys
-from ..models.gamepads import GamepadRouter, open_backend
 from ..models.joysticks import Sticks
 from ..models.wording import status_texts
 from .center_view import CenterView
@@ -61,12 +60,12 @@ class Window:
         self._snapshot: Snapshot | None = None
         self._status: Status | None = None
         self._due, self._alarm = 0.0, ""
-        #: The robot process that the states of keys and gamepads were sent to.
+        #: The robot process that the state of the keys was sent to.
         self._starts = 0
         #: Messages of other threads that are not shown yet.
         self._announced: deque[str] = deque()
-        #: The notes of the devices, the field, the time bar and the simulation; and the one that is shown.
-        self._notes, self._noted = ("",) * 4, ""
+        #: The notes of the devices, the field and the simulation; and the one that is shown.
+        self._notes, self._noted = ("",) * 3, ""
         #: An error in the window itself, or Ctrl+C.
         self.failure: BaseException | None = None
         self.root = root = _open(screen)
@@ -76,7 +75,7 @@ class Window:
         except BaseException:
             root.destroy()
             raise
-        root.protocol("WM_DELETE_WINDOW", self._quit)
+        root.protocol("WM_DELETE_WINDOW", root.quit)
 
     def _build(self) -> None:
         root, simulation = self.root, self._simulation
@@ -99,7 +98,7 @@ class Window:
         self._note.pack(side="right", fill="x", padx=(px(20), 0))
         self._note.bind("<Enter>", lambda event: tooltip.expect(self._noted, event.x_root, event.y_root))
         self._note.bind("<Leave>", lambda event: tooltip.hide())
-        self.time = TimeBar(root, theme, tooltip, simulation)
+        self.time = TimeBar(root, theme, tooltip, simulation, self.focus_field)
         self.time.frame.pack(side="bottom", fill="x", padx=gap, pady=(px(6), px(4)))
 
         middle = ttk.Frame(root)
@@ -114,14 +113,12 @@ class Window:
         self.field, self.console = self.center.field, self.center.console
 
         self.sticks = Sticks(simulation)
-        backend = open_backend()
-        self.gamepads = None if backend is None else GamepadRouter(backend, self.sticks)
         self.match = MatchView(right, theme, tooltip, simulation, self.focus_field)
         self.match.frame.pack(side="top", fill="x")
         config = simulation.project.sim_config
-        self.joystick = JoystickView(right, theme, tooltip, config, self.sticks, self.gamepads)
+        self.joystick = JoystickView(right, theme, tooltip, config, self.sticks)
         self.joystick.frame.pack(side="top", fill="x", pady=(gap, 0))
-        self._driving = keys = DriverStationKeys(simulation, self.sticks, close=self._quit)
+        self._driving = keys = DriverStationKeys(simulation, self.sticks, close=root.quit)
         self._keys = Keys(root, keys)
         self.drive = DriveView(right, theme, keys, self.focus_field)
         self.drive.frame.pack(side="top", fill="x", pady=(gap, 0))
@@ -185,10 +182,6 @@ class Window:
         if status.state != "starting" and status.starts != self._starts:
             self._starts = status.starts
             self._driving.forget()
-            if self.gamepads is not None:
-                self.gamepads.forget()
-        if self.gamepads is not None:
-            self.gamepads.poll()
         while self._announced:
             self.console.mark(self._announced.popleft())
         self.console.show(status.failure)
@@ -223,9 +216,7 @@ class Window:
 
     def _show_status(self, snapshot: Snapshot | None, status: Status) -> None:
         self._line.configure(text="   ·   ".join(status_texts(snapshot, status)))
-        if status.note != self._notes[-1]:
-            self.time.note = ""
-        notes = self.devices.problem, self.field.problem, self.time.note, status.note
+        notes = self.devices.problem, self.field.problem, status.note
         if notes != self._notes:
             newer = [now for now, before in zip(notes, self._notes, strict=True) if now != before]
             self._notes = notes
@@ -237,14 +228,10 @@ class Window:
     def _on_exception(self, kind: type[BaseException], error: BaseException, traceback: TracebackType | None) -> None:
         # `loop` raises it.
         self.failure = error.with_traceback(traceback)
-        self._quit()
+        self.root.quit()
 
     def _interrupt(self) -> None:
         self.failure = KeyboardInterrupt()
-        self._quit()
-
-    def _quit(self) -> None:
-        self.time.give_up_saving()
         self.root.quit()
 
 
