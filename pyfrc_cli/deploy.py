@@ -33,11 +33,6 @@ if TYPE_CHECKING:
 @click.option(
     "--debug", is_flag=True, help="Start the program so that its assert statements run, and with more log messages."
 )
-@click.option(
-    "--in-place",
-    is_flag=True,
-    help="Overwrite files of the running program. Delete nothing, do not restart. Cannot be rolled back.",
-)
 @click.option("--dry-run", is_flag=True, help="Only show what would be added, changed and removed.")
 @click.option(
     "--auto-rollback",
@@ -70,7 +65,6 @@ def command(
     no_version_check: bool,
     nonstandard: bool,
     debug: bool,
-    in_place: bool,
     dry_run: bool,
     auto_rollback: bool,
     reinstall: bool,
@@ -91,12 +85,10 @@ def command(
     """
     if (netconsole or nc_ds) and (as_json or dry_run):
         raise click.UsageError(f"--netconsole and {'--json' if as_json else '--dry-run'} are mutually exclusive.")
-    if in_place and auto_rollback:
-        raise click.UsageError("--in-place and --auto-rollback are mutually exclusive: --in-place restarts nothing.")
-    if rollback is not None and (in_place or dry_run or auto_rollback):
-        raise click.UsageError("--rollback excludes --in-place, --dry-run and --auto-rollback: it deploys nothing.")
-    if reinstall and (in_place or dry_run or rollback is not None):
-        raise click.UsageError("--reinstall excludes --in-place, --dry-run and --rollback.")
+    if rollback is not None and (dry_run or auto_rollback):
+        raise click.UsageError("--rollback excludes --dry-run and --auto-rollback: it deploys nothing.")
+    if reinstall and (dry_run or rollback is not None):
+        raise click.UsageError("--reinstall excludes --dry-run and --rollback.")
     if rollback and not rollback.isdecimal():
         raise click.UsageError(f"--rollback {rollback!r}: a release is a number; pyfrc deploy-info lists them.")
     with errors_shown(choice, as_json):
@@ -118,7 +110,6 @@ def command(
                 check_versions=not no_version_check,
                 nonstandard=nonstandard,
                 debug=debug,
-                in_place=in_place,
                 dry_run=dry_run,
                 auto_rollback=auto_rollback,
                 reinstall=reinstall,

@@ -18,21 +18,15 @@ if TYPE_CHECKING:
 @click.command("undeploy")
 @project_option
 @robot_options
-@click.option(
-    "--java-cpp",
-    is_flag=True,
-    help="Remove programs in Java and C++ and their libraries, but not a program in Python.",
-)
 @yes_option
 @json_option
-def command(directory: Path | None, choice: RobotChoice, java_cpp: bool, yes: bool, as_json: bool) -> None:
+def command(directory: Path | None, choice: RobotChoice, yes: bool, as_json: bool) -> None:
     """Stop the robot program, and remove it from the robot with all earlier releases.
 
     \b
     Exit codes: 0 removed, 1 not removed, 2 wrong usage or no project, 4 possibly removed in part: see the message.
     """
     with errors_shown(choice, as_json):
-        from pyfrc_core.deploy import session
+        from pyfrc_core.deploy.session import undeploy
 
-        remove = session.undeploy_other_languages if java_cpp else session.undeploy
-        remove(project_if_any(directory, choice), choice, user_interface(choice, as_json), confirmed=yes)
+        undeploy(project_if_any(directory, choice), choice, user_interface(choice, as_json), confirmed=yes)

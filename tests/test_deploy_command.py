@@ -251,7 +251,6 @@ def test_without_a_robot_the_failed_attempts_are_listed(make_project) -> None:
 
 #: Options that cannot be together, or not have such values.
 WRONG = """
---in-place --auto-rollback
 --rollback --dry-run
 --rollback x
 --json --nc

@@ -152,12 +152,11 @@ def test_an_end_before_the_robots_list_arrives_may_come_after_the_switch(
     "do",
     [
         lambda agent, project: agent.plan(project),
-        lambda agent, project: agent.deploy(project, DeployRequest("robot.py", {}, in_place=True)),
         lambda agent, project: (agent.deploy(project, REQUEST), agent.restart(), agent.watch(0.0)),
         lambda agent, project: agent.undeploy(),
         refuse,
     ],
-    ids=["plan", "in place", "watched", "undeployed", "refused"],
+    ids=["plan", "watched", "undeployed", "refused"],
 )
 def test_where_nothing_is_half_done_ctrl_c_is_just_that(
     do: Callable[[AgentClient, Manifest], object], robot: LocalRobot, agents: Agents, project: Manifest
@@ -187,8 +186,6 @@ def test_the_lock_is_held_until_the_program_was_started_and_watched(
         assert is_held(robot)
         agent.restart()
         agent.watch(0.0)
-        assert not is_held(robot)
-        agent.deploy(project, DeployRequest("robot.py", {}, in_place=True))
         assert not is_held(robot)
         agent.deploy(project, REQUEST)
         with pytest.raises(RefusedError):

@@ -25,8 +25,6 @@ from pyfrc_core.doctor.steps import Step, first_missing
 from pyfrc_core.project import find_project
 
 OURS = version("wpilib")
-JAVA_COMMAND = "/usr/local/frc/JRE/bin/java -jar /home/lvuser/Robot.jar\n"
-REMOVE = "To remove it: pyfrc undeploy --java-cpp"
 READY = RobotFacts(
     controller="roboRIO",
     not_controller=None,
@@ -47,7 +45,6 @@ READY = RobotFacts(
     missing_modules=(),
     extension_suffixes=(".so",),
     machine="armv7l",
-    other_languages=(),
 )
 
 
@@ -65,31 +62,6 @@ def doctor(project, robot: Roborio) -> list[CheckResult]:
     return others
 
 
-# --- Java and C++
-
-
-def test_programs_in_java_and_cpp_are_noticed(robot: LocalRobot) -> None:
-    java = robot.root / "usr/local/frc/JRE/bin/java"
-    libraries = robot.root / "usr/local/frc/third-party/lib"
-    for each in (java, libraries / "libctre.so", robot.home / "Robot.jar", robot.home / "frcUserProgram"):
-        each.parent.mkdir(parents=True, exist_ok=True)
-        each.touch()
-    (robot.home / "robotCommand").write_text(JAVA_COMMAND)
-    assert look_at(robot).other_languages == (
-        "/home/lvuser/robotCommand",
-        "/home/lvuser/Robot.jar",
-        "/home/lvuser/frcUserProgram",
-        "/usr/local/frc/JRE/bin/java",
-        "/usr/local/frc/third-party/lib",
-    )
-
-
-def test_a_robot_with_python_alone_has_nothing_of_other_languages(robot: LocalRobot) -> None:
-    (robot.root / "usr/local/frc/third-party/lib").mkdir(parents=True)
-    (robot.home / "robotCommand").write_text("python3 -m robotpy --main /home/lvuser/py/robot.py run\n")
-    assert look_at(robot).other_languages == ()
-
-
 # --- without Python
 
 
@@ -102,19 +74,14 @@ def test_a_robot_without_python(image: str, first: str, make_project) -> None:
     require_roborio()
     project = make_project({"robot.py": ROBOT_PY})
     with Roborio(python=None, image=f"FRC_roboRIO_{image}") as robot:
-        robot.put("home/lvuser/robotCommand", JAVA_COMMAND)
-        robot.put("home/lvuser/Robot.jar", "content")
         found = doctor(project, robot)
         assert not (project.path / ".pyfrc/known_hosts").exists(), "the doctor changes nothing, here either"
         refused = project.run("deploy", "--skip-tests", "--robot", robot.where)
         assert refused.code == 1
         assert found[0].text.startswith(first)
         assert found[0].remedy in refused.stderr.replace(f" --robot {robot.where}", "")
-        assert [each.status for each in found] == ["problem"] * (len(found) - 1) + ["hint"]
+        assert [each.status for each in found] == ["problem"] * len(found)
         assert all(each.text in refused.stderr for each in found)
-        assert "(/home/lvuser/robotCommand, /home/lvuser/Robot.jar)" in found[-1].text
-        assert found[-1].remedy == REMOVE
-        assert f"To remove it: pyfrc undeploy --robot {robot.where} --java-cpp" in refused.stderr
         # The key of a robot that the project knows is compared.
         robot.power_off()
         robot.new_host_key()

@@ -57,7 +57,6 @@ FACTS: dict[str, Any] = {
     "missing_modules": [],
     "extension_suffixes": [".so"],
     "machine": "armv7l",
-    "other_languages": [],
     "program_age": 12.5,
     "remains": False,
 }

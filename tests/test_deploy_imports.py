@@ -218,14 +218,13 @@ def test_it_is_refused_before_anything_changes(robot: LocalRobot, agents: Agents
     robot.deploy(agents, project_of(tmp_path / "old", {"robot.py": ROBOT_PY}))
     project = project_of(tmp_path / "new", {"robot.py": "import arm\n", "arm.py": INVALID})
     before = robot.startable()
-    for in_place in (False, True):
-        session = robot.start(agents)
-        with pytest.raises(RefusedError, match=r"arm\.py:3: the robot's Python 3\.\d+ cannot compile this: ."):
-            session.deploy(project, DeployRequest("robot.py", {}, in_place=in_place, program=["robot.py", "arm.py"]))
-        assert session.info().current == 1
-        session.close()
-        assert robot.startable() == before
-        assert not (robot.home / ".pyfrc/incoming").exists()
+    session = robot.start(agents)
+    with pytest.raises(RefusedError, match=r"arm\.py:3: the robot's Python 3\.\d+ cannot compile this: ."):
+        session.deploy(project, DeployRequest("robot.py", {}, program=["robot.py", "arm.py"]))
+    assert session.info().current == 1
+    session.close()
+    assert robot.startable() == before
+    assert not (robot.home / ".pyfrc/incoming").exists()
 
 
 def test_a_file_that_the_program_does_not_use_may_be_anything(

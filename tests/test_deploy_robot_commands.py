@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from pyfrc_cli.robot_options import errors_shown, json_option, robot_options, user_interface
-from pyfrc_core.deploy import recovery_hints, robot_checks, starting
+from pyfrc_core.deploy import recovery_hints, starting
 from pyfrc_core.deploy.facts import StartState
 from pyfrc_core.deploy.progress import with_robot_option
 from pyfrc_core.deploy.team import RobotChoice
@@ -63,7 +63,6 @@ def test_remedies_name_the_robot_as_it_was_typed(typed: list[str], robot: str) -
         recovery_hints.rolled_back(1).remedy,
         recovery_hints.started(2, 1, StartState(seconds=1.0, seen=True)).remedy,
         starting._GO_BACK,
-        robot_checks.other_languages_notice(["/home/lvuser/robot.jar"])[1],
     ],
 )
 def test_each_command_of_a_deploy_s_own_remedies_is_found(remedy: str) -> None:

@@ -280,11 +280,9 @@ def test_what_an_upload_says() -> None:
     assert "written, which is kept as 'logs.release-1'\n" in said
     assert "  not carried over (pipes, sockets, devices): 'pipe'\n" in said
     assert "nothing has changed; release 2 " in upload(replace(deployed, unchanged=True), reinstall=True)
-    assert "release" not in upload(Deployed(None, None, None, None, False, 1, 1), in_place=True).partition("\n")[0]
-    first, again, in_place = requests
-    assert first == DeployRequest("robot.py", {}, True, False, ["robot.py"], True, "a" * 16)
+    first, again = requests
+    assert first == DeployRequest("robot.py", {}, True, ["robot.py"], True, "a" * 16)
     assert (again.reinstall, again.debug, again.restart) == (True, False, True)
-    assert (in_place.in_place, in_place.restart) == (True, False)
 
 
 @pytest.mark.parametrize("environment", ["a" * 16, None])
@@ -315,12 +313,7 @@ def test_a_program_that_ends_is_sent_again_with_its_packages(
     _replace_program(robot, connection, None, wanted, options, UserInterface(JsonProgress(shown)))  # type: ignore[arg-type]
     assert sent == ["program, ", *(["packages"] if environment else []), "program, reinstall"]
     result = json.loads(shown.getvalue().splitlines()[-1])
-    assert (result["release"], result["fallback"], result["program"], result["in_place"]) == (
-        2,
-        len(sent),
-        "running",
-        False,
-    )
+    assert (result["release"], result["fallback"], result["program"]) == (2, len(sent), "running")
 
 
 def test_private_files_are_uploaded_only_if_they_are_meant(make_project: MakeProject) -> None:

@@ -317,14 +317,6 @@ def test_whatever_is_lost_with_a_link_a_changed_robot_is_not_called_unchanged(
     assert {(1, False), (4, True)} <= codes
 
 
-def test_in_place_some_files_may_have_been_overwritten(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
-    robot.deploy(agents, project)
-    (robot.home / "py/deploy.json").unlink()
-    (robot.home / "py/deploy.json/in the way").mkdir(parents=True)
-    with contextlib.closing(robot.start(agents)) as agent, failing(agent, 4, "may have been overwritten"):
-        agent.deploy(changed(project), DeployRequest("robot.py", {}, in_place=True))
-
-
 # -- the agent ---------------------------------------------------------------------------------------------------------
 
 

@@ -42,8 +42,6 @@ ONE_USER = Layout(
     stopper="service",
     profiles=(),
     texts={},
-    other_start="[.]jar",
-    other_files=("/srv/pilot/*.jar",),
     python="/srv/pilot/venv/bin/python3",
 )
 LAYOUTS = [*(each.layout for each in CONTROLLERS), ONE_USER]
@@ -101,14 +99,6 @@ def test_another_tools_directory_is_kept_as_a_release(robot: AgentDisk) -> None:
     assert (done["done"]["release"], done["done"]["taken"]) == (2, 1)
     robot.ask({"op": "rollback", "release": 1})
     assert robot.startable().endswith("robot.py: # old")
-
-
-def test_programs_of_other_languages_are_found(robot: AgentDisk) -> None:
-    layout = robot.places.layout
-    (robot.home / "Robot.jar").write_text("")
-    (robot.home / layout.command).write_text(f"java -jar {layout.home}/Robot.jar")
-    (facts,) = robot.ask({"op": "info"})
-    assert facts["done"]["other_languages"] == [f"{layout.home}/{layout.command}", f"{layout.home}/Robot.jar"]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="it asks /proc which processes run")

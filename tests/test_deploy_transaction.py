@@ -278,44 +278,6 @@ def test_files_of_the_same_content_do_not_become_one(robot: LocalRobot, project:
     assert (py / "package/__init__.py").read_text() == ""
 
 
-def test_in_place(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    robot.deploy(agents, project.manifest)
-    robot.deploy(agents, project.write("robot.py", "# 2\n").manifest)
-    (robot.home / "py/__pycache__/robot.cpython-300.pyc").touch()
-    project.write("arm.py", "LENGTH = 2\n").remove("deploy/path.json")
-    deployed = robot.deploy(agents, project.manifest, in_place=True)
-    assert (deployed.release, deployed.files_sent) == (2, 1)
-    assert robot.startable() == {"robot.py": b"# 2\n", "arm.py": b"LENGTH = 2\n", "deploy/path.json": b"[1, 2]"}
-    assert (robot.home / ".pyfrc/releases/1/arm.py").read_text() == "LENGTH = 1\n"
-    assert robot.deploy(agents, project.manifest, in_place=True).unchanged
-    session = robot.start(agents)
-    assert session.rollback().changed == ()
-    session.close()
-
-
-@pytest.mark.parametrize(("there", "new", "kind"), [("arm/x.py", "arm", "directory"), ("arm", "arm/x.py", "file")])
-def test_in_place_refuses_what_needs_something_deleted(
-    robot: LocalRobot, tmp_path: Path, agents: Agents, there: str, new: str, kind: str
-) -> None:
-    robot.deploy(agents, project_of(tmp_path / "old", {"robot.py": ROBOT_PY, there: "1"}))
-    before = robot.startable()
-    project = project_of(tmp_path / "new", {"robot.py": "# 2\n", new: "2"})
-    with pytest.raises(RefusedError, match=f"'arm' is a {kind} on the robot"):
-        robot.deploy(agents, project, in_place=True)
-    assert robot.startable() == before
-    robot.deploy(agents, project)
-    assert robot.startable() == {"robot.py": b"# 2\n", new: b"2"}
-
-
-def test_in_place_into_another_tools_directory(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    other_tools_program(robot)
-    deployed = robot.deploy(agents, project.manifest, in_place=True)
-    assert deployed.release is None
-    assert not (robot.home / "py").is_symlink()
-    assert (robot.home / "py/arm.py").exists()
-    assert (robot.home / "py/sub/helper.py").exists()
-
-
 def test_plan_writes_nothing(robot: LocalRobot, project: Project, agents: Agents) -> None:
     session = robot.start(agents)
     before = contents(robot.root)

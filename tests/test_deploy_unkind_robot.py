@@ -1,4 +1,4 @@
-"""Deploys to a look-alike whose kill script fails, whose console is silent, or that has programs in Java and C++."""
+"""Deploys to a look-alike whose kill script fails, or whose console is silent."""
 
 from __future__ import annotations
 
@@ -91,26 +91,3 @@ def test_a_program_that_survives_the_kill_script_is_ended_and_the_script_replace
         assert "frcKillRobot.sh" not in result.output
         robot.said("this is the third")
         assert len(programs_on(robot)) == 1
-
-
-def test_programs_in_java_and_cpp_are_removed_on_request(make_project) -> None:
-    require_roborio()
-    with Roborio(python=None) as robot:
-        robot.put("home/lvuser/robotCommand", "/usr/local/frc/JRE/bin/java -jar /home/lvuser/Robot.jar\n")
-        for name in ("home/lvuser/Robot.jar", "home/lvuser/deploy/paths.json", "usr/local/frc/third-party/lib/a.so"):
-            robot.put(name, "content")
-        project = make_project({})
-        command = ["undeploy", "--java-cpp", "--robot", robot.where]
-        asked = project.run(*command)
-        assert asked.code == 2
-        assert "Confirm with --yes" in asked.stderr
-        assert (robot.home / "Robot.jar").exists()
-        result = project.run(*command, "--yes")
-        assert result.code == 0, result.output
-        assert "/home/lvuser/Robot.jar" in result.stdout
-        assert robot.host in (project.home / ".pyfrc/known_hosts").read_text()  # outside of a project, the user's
-        assert list(robot.home.iterdir()) == []
-        assert not (robot.disk / "usr/local/frc/third-party/lib").exists()
-        robot.put("home/lvuser/robotCommand", "python3 -m robotpy --main /home/lvuser/py/robot.py run\n")
-        assert "There was nothing to remove" in project.run(*command, "--yes").stdout
-        assert (robot.home / "robotCommand").exists()

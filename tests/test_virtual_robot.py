@@ -170,9 +170,6 @@ def test_a_program_is_deployed_changed_rolled_back_and_removed(project: RobotPro
         assert [each.status for each in search.findings()] == ["ok", "ok"]
         assert search.missing_step() == (Step.DRIVE, "")
         assert not (project.path / ".pyfrc/known_hosts").exists(), "the doctor pins no key"
-        refused = project.run("undeploy", "--java-cpp", "--yes", "--robot", robot.address)
-        assert refused.code == 1
-        assert "a virtual robot runs only programs in Python: there is nothing to remove" in refused.first_error
         on(robot, project, "undeploy", "--yes")
         assert ended(second)
         about = info(robot, project)

@@ -167,14 +167,14 @@ class AgentClient:
         before, has_begun = self.recovery_hint, False
         # The robot switches as soon as it has all contents, and its report of this may be lost or not read. Without the
         # list of the contents that it needs, it may have all of them.
-        unknown = recovery_hints.OVERWRITING if request.in_place else recovery_hints.MAYBE_SWITCHED
+        unknown = recovery_hints.MAYBE_SWITCHED
 
         def on_message(message: object) -> None:
             nonlocal has_begun
             phase = value_of(message, "phase", str)
             if phase == "switch":
                 has_begun = True
-                self.recovery_hint = recovery_hints.OVERWRITING if request.in_place else recovery_hints.SWITCHING
+                self.recovery_hint = recovery_hints.SWITCHING
             if on_progress is not None:
                 on_progress(phase, 0, 0)
 
@@ -186,7 +186,7 @@ class AgentClient:
                 if needed:
                     self.recovery_hint = before  # it waits for the last of them
                     self._send_contents(needed, on_progress, unknown)
-                deployed = self._stream.read_response(lambda done: _deployed(done, request), on_message)
+                deployed = self._stream.read_response(partial(parse, Deployed), on_message)
             except ConnectionFailedError:
                 raise
             except DeployError:
@@ -195,10 +195,7 @@ class AgentClient:
                 raise
         self._is_restarting = request.restart
         self._current, self._previous, self._command = deployed.release, deployed.previous, _ANY
-        if request.in_place or deployed.release is None:
-            self.recovery_hint = None
-        else:
-            self.recovery_hint = recovery_hints.deployed(deployed.release, deployed.previous)
+        self.recovery_hint = recovery_hints.deployed(deployed.release, deployed.previous)
         return deployed
 
     def restart(self) -> bool:
@@ -292,7 +289,7 @@ class AgentClient:
         except ConnectionFailedError:
             raise
         except DeployError:
-            if self.recovery_hint not in (None, recovery_hints.OVERWRITING):
+            if self.recovery_hint is not None:
                 with suppress(DeployError):
                     now = self.info()
                     command = _ANY if now.command and self._command == _ANY else now.command
@@ -348,13 +345,6 @@ class AgentClient:
             yield
         finally:
             self._stream.on_keep_alive = None
-
-
-def _deployed(done: object, request: DeployRequest) -> Deployed:
-    deployed = parse(Deployed, done)
-    if deployed.release is None and not request.in_place:
-        raise ResponseError("'release' is null")
-    return deployed
 
 
 def _watched(done: object) -> Watched:

@@ -74,7 +74,6 @@ class RobotFacts:
     :param missing_modules: requested modules that its Python cannot find
     :param extension_suffixes: file name suffixes of its Python's extension modules
     :param machine:      its processor architecture
-    :param other_languages: files and directories of programs in Java and C++
     :param environment:  the environment in which the agent runs, if pyfrc has made it
     :param program_age:  seconds since the program's start; None if unknown or no program runs
     :param remains:      whether there is something that an interrupted installation may have left
@@ -99,7 +98,6 @@ class RobotFacts:
     missing_modules: tuple[str, ...]
     extension_suffixes: tuple[str, ...]
     machine: str
-    other_languages: tuple[str, ...]
     program_age: float | None = None
     remains: bool = False
     environment: str | None = None
@@ -147,7 +145,6 @@ class DeployRequest:
     :param main:        the main file, relative to the project
     :param deploy_json: the content of ``deploy.json``
     :param debug:       start the program for debugging
-    :param in_place:    overwrite files of the current program, delete none
     :param program:     files that the program imports at its start, which the robot's Python must be able to compile
     :param restart:     restart the program after the deploy
     :param environment: the environment on the robot that it runs in; None: the current one
@@ -157,7 +154,6 @@ class DeployRequest:
     main: str
     deploy_json: Mapping[str, str]
     debug: bool = False
-    in_place: bool = False
     program: Sequence[str] = ()
     restart: bool = False
     environment: str | None = None
@@ -168,7 +164,7 @@ class DeployRequest:
 class Deployed:
     """The result of a deploy.
 
-    :param release:    the current release; None after an in-place deploy to another tool's directory
+    :param release:    the current release
     :param previous:   the release before it
     :param fallback:   the release that a rollback selects: the previous one, or the newest confirmed to run
     :param taken:      the new release number of another tool's directory
@@ -179,7 +175,7 @@ class Deployed:
     :param renamed:    the new names of those whose names the new program has taken
     """
 
-    release: int | None
+    release: int
     previous: int | None
     fallback: int | None
     taken: int | None

@@ -43,7 +43,6 @@ class DeployOptions:
     :param check_versions: refuse robots with another wpilib, without required packages, or with an old image
     :param nonstandard: allow a main file with another name than robot.py
     :param debug: start the program with debugging enabled
-    :param in_place: overwrite the running program's files, delete nothing, do not restart
     :param dry_run: only show what would be done
     :param auto_rollback: roll back if the new program ends during the watch
     :param reinstall: compare what is installed with its hashes, send again what differs, and make a new release
@@ -56,7 +55,6 @@ class DeployOptions:
     check_versions: bool = True
     nonstandard: bool = False
     debug: bool = False
-    in_place: bool = False
     dry_run: bool = False
     auto_rollback: bool = False
     reinstall: bool = False

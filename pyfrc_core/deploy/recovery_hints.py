@@ -42,12 +42,6 @@ UNDEPLOYING = RecoveryHint(
 )
 
 
-OVERWRITING = RecoveryHint(
-    "some of the program's files may have been overwritten, and others not",
-    "Run the command again, or deploy without --in-place.",
-)
-
-
 def deployed(release: int | None, previous: int | None) -> RecoveryHint:
     """Return the hint for a release that is current and not started yet."""
     back = "" if previous is None else " Or go back to the previous release: pyfrc deploy --rollback."

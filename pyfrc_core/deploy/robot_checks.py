@@ -10,7 +10,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
-from shlex import quote
 from typing import TYPE_CHECKING
 
 from .._version import requirement
@@ -112,7 +111,6 @@ _SECTION = "docs/how_to/prepare_a_robot.md has every step."
 INSTALL_PACKAGES = "with internet: pyfrc sync; then at the robot: pyfrc deploy"
 PREPARE = f"Prepare the robot: {INSTALL_PACKAGES}. {_SECTION}"
 
-_REMOVE_OTHER_LANGUAGES = "To remove it: pyfrc undeploy --java-cpp"
 _MAX_NAMED = 2  # files
 
 #: How to install a package for a virtual robot, without the package's name.
@@ -133,14 +131,6 @@ class Obstacle:
     remedy: str
     certain: bool = True
     installable: bool = False
-
-
-def other_languages_notice(found: Sequence[str]) -> tuple[str, str]:
-    """Return a notice about programs in Java and C++ on a robot, and how to remove them.
-
-    :param found: their files and directories
-    """
-    return f"Java or C++ takes disk space and memory on the robot ({named(found)})", _REMOVE_OTHER_LANGUAGES
 
 
 def named(files: Sequence[str]) -> str:
@@ -194,31 +184,22 @@ def python_problem(python: str, wpilib: str) -> str | None:
     return f"the robot has Python {python}, but wpilib {wpilib} is for Python {'.'.join(map(str, wanted))} there"
 
 
-#: Printed between the contents of files, and before the files of other languages.
+#: Printed between the contents of files.
 _MARK = "-- pyfrc --"
 
 
 def _look(layout: Layout) -> str:
-    """Return a shell script that prints the layout's texts, and the files of programs in other languages.
-
-    A failing command is ignored: missing files print nothing.
-    """
+    """Return a shell script that prints the layout's texts. Missing files print nothing."""
     lines = ["exec 2> /dev/null"]
     for file in layout.texts.values():
         lines += [f"cat {file}", f"echo; echo '{_MARK}'"]
-    commands = " ".join(f"{layout.home}/{name}" for name in layout.command_files)
-    lines.append(f"grep -lE {quote(layout.other_start)} {commands}")
-    for pattern in layout.other_files:
-        directory = pattern.removesuffix("/")
-        lines.append(f"ls -d {pattern}" if directory == pattern else f'[ -z "$(ls -A {pattern})" ] || echo {directory}')
     return "\n".join(lines)
 
 
 class RobotWithoutPython:
     """A robot without Python.
 
-    `image` is its image's version, or None if unknown. `other_languages` has the files and directories of programs in
-    Java and C++.
+    `image` is its image's version, or None if unknown.
     """
 
     def __init__(self, connection: Connection) -> None:
@@ -226,10 +207,9 @@ class RobotWithoutPython:
         layout, printed = self._controller.layout, ""
         with suppress(ConnectionFailedError):  # it is still certain that there is no Python
             printed = connection.run(_look(layout))[1]
-        *texts, files = printed.split(f"\n{_MARK}\n")
+        *texts, _ = printed.split(f"\n{_MARK}\n")
         image = self._controller.image_in(dict(zip(layout.texts, texts, strict=False)))
         self.image = None if image is None else one_line(image)
-        self.other_languages = tuple(one_line(line) for line in files.splitlines() if line.startswith("/"))
 
     def obstacles(self) -> Iterator[Obstacle]:
         """Yield the reasons why the robot is not ready, in the order in which to resolve them."""
@@ -244,9 +224,5 @@ class RobotWithoutPython:
     def refusal(self, error: NoPythonError) -> RefusedError:
         """Return the error for a command that needs the agent."""
         obstacles = list(self.obstacles())
-        what, remedy = [each.text for each in reversed(obstacles)], obstacles[0].remedy
-        if self.other_languages:
-            text, removal = other_languages_notice(self.other_languages)
-            what.append(text)
-            remedy = f"{remedy} {removal}"
-        return RefusedError("; ".join(what), where=error.where, remedy=remedy)
+        what = "; ".join(each.text for each in reversed(obstacles))
+        return RefusedError(what, where=error.where, remedy=obstacles[0].remedy)

@@ -12,13 +12,13 @@ from ..wording import counted, size_text
 from .connection import Connection, load_in_background
 from .console import follow_console, follow_output
 from .discovery import Address
-from .errors import DeployError, RefusedError
+from .errors import RefusedError
 from .facts import Release, RobotFacts
 from .installing import Environment, install_packages, wanted_environment
 from .local_checks import CheckedProgram, DeployOptions, prepare
 from .manifest import ascii_path
 from .progress import DeployProgress, UserInterface
-from .robot_checks import carry_out, other_languages_notice, refuse_unfit_robot
+from .robot_checks import carry_out, refuse_unfit_robot
 from .robot_packages import check_packages
 from .target_connection import connected, connected_agent, console_address, find, reconnected
 from .team import RobotChoice, choose_target
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .agent_client import AgentClient
     from .facts import Deployed, Plan
 
-__all__ = ["DeployOptions", "deploy", "rollback", "show_console", "undeploy", "undeploy_other_languages"]
+__all__ = ["DeployOptions", "deploy", "rollback", "show_console", "undeploy"]
 
 
 def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Address:
@@ -40,12 +40,10 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
     target = choose_target(project, options.choice, talk.ask)
     program = prepare(project, options, talk)
     progress = talk.progress
-    installs = options.check_versions and not (options.dry_run or options.in_place)
+    installs = options.check_versions and not options.dry_run
     wanted = wanted_environment(project, target.controller) if installs else None
     modules, reinstall = program.imports.modules, options.reinstall
     with connected_agent(target, options.choice, progress, modules, wanted, reinstall) as (connection, robot):
-        if robot.facts.other_languages:
-            progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))
         _note_unfit_releases(robot.facts, progress)
         refuse_unfit_robot(robot.facts, connection.controller, str(connection.address), options.check_versions)
         check_packages(
@@ -89,18 +87,14 @@ def _replace_program(
         deployed = _upload(robot, program, replace(options, reinstall=True), talk)
         return deployed.fallback
 
-    verdict = None
     try:
-        if not options.in_place:
-            verdict = start(robot, talk, deployed.fallback, options.auto_rollback, reinstall)
+        verdict = start(robot, talk, deployed.fallback, options.auto_rollback, reinstall)
     finally:
         _repair_stop(robot, connection, talk.progress)
         # Last, since a failing login as administrator may take half a minute.
         carry_out(controller.save_memory if robot.facts.wastes_memory else None, connection, talk.progress)
         carry_out(controller.remove_remains if robot.facts.remains else None, connection, talk.progress)
-    result = {"host": connection.host, **asdict(deployed), "in_place": options.in_place, "program": verdict}
-    text = "Its files were overwritten; the program was not restarted." if options.in_place else "Deployed."
-    talk.progress.result(result, text)
+    talk.progress.result({"host": connection.host, **asdict(deployed), "program": verdict}, "Deployed.")
 
 
 def rollback(project: Project | None, choice: RobotChoice, release: int | None, talk: UserInterface) -> Address:
@@ -134,51 +128,6 @@ def _repair_stop(robot: AgentClient, connection: Connection, progress: DeployPro
     """Replace the robot's stop command if it has not ended the program."""
     if robot.program_survived:
         carry_out(connection.controller.repair_stop(), connection, progress)
-
-
-def undeploy_other_languages(
-    project: Project | None, choice: RobotChoice, talk: UserInterface, confirmed: bool
-) -> None:
-    """Remove programs in Java and C++ from the robot. A program in Python stays.
-
-    :param confirmed: whether the user has already confirmed this
-    """
-    target = choose_target(project, choice, talk.ask)
-    _confirm(f"{target.controller.leftovers} will be removed", talk, confirmed)
-    found = find(target, choice, talk.progress)
-    with connected(target, found, choice, talk.progress) as connection:
-        with talk.progress.phase("remove"):
-            removed = _remove_other_languages(connection)
-        text = (
-            "\n".join(["Removed:", *(f"  {each}" for each in removed)]) if removed else "There was nothing to remove."
-        )
-        talk.progress.result({"host": connection.host, "removed": removed}, text)
-
-
-def _remove_other_languages(connection: Connection) -> list[str]:
-    """Remove the programs, by shell commands: a robot that had such a program may not have Python.
-
-    :return: the removed paths and packages
-
-    :raises RefusedError: if the robot is a virtual robot
-    :raises DeployError: if the removal fails
-    """
-    if connection.is_virtual_robot:
-        raise RefusedError(
-            "a virtual robot runs only programs in Python: there is nothing to remove",
-            where=str(connection.address),
-            remedy="To remove its program in Python: pyfrc undeploy",
-        )
-    controller = connection.controller
-    with connection.as_user(controller.layout.administrator) as administrator:
-        status, printed = administrator.run(controller.remove_leftovers)
-    if status != 0:
-        raise DeployError(
-            f"not everything could be removed: {printed.strip() or f'exit code {status}'}",
-            where=str(connection.address),
-            remedy="Run the command again, or image the robot.",
-        )
-    return printed.splitlines()
 
 
 def undeploy(project: Project | None, choice: RobotChoice, talk: UserInterface, confirmed: bool) -> None:
@@ -243,9 +192,8 @@ def _upload(robot: AgentClient, program: CheckedProgram, options: DeployOptions,
         main=program.main,
         deploy_json=program.deploy_json,
         debug=options.debug,
-        in_place=options.in_place,
         program=program.imports.program(),
-        restart=not options.in_place,
+        restart=True,
         environment=robot.facts.environment,
         reinstall=options.reinstall,
     )
@@ -255,8 +203,7 @@ def _upload(robot: AgentClient, program: CheckedProgram, options: DeployOptions,
             phase.detail = "nothing has changed"
         else:
             phase.detail = f"{counted(deployed.files_sent, 'file')}, {size_text(deployed.bytes_sent)}"
-        if deployed.release is not None:
-            phase.detail += f"; release {deployed.release}"
+        phase.detail += f"; release {deployed.release}"
     if deployed.taken is not None:
         talk.progress.note(f"  the program of another tool is kept as release {deployed.taken}")
     if deployed.renamed:

@@ -12,7 +12,7 @@ from ..deploy.connection import Connection, connect
 from ..deploy.discovery import RobotNotFoundError, parse_address
 from ..deploy.errors import HostKeyError, NoPythonError, OnTheFieldError
 from ..deploy.facts import RobotFacts
-from ..deploy.robot_checks import RobotWithoutPython, image_it, image_problem, named, obstacles, other_languages_notice
+from ..deploy.robot_checks import RobotWithoutPython, image_it, image_problem, named, obstacles
 from ..deploy.robot_packages import unfit_packages
 from ..deploy.target_connection import load_robot_keys, search
 from ..deploy.targets import ControllerKind, controller_of
@@ -120,11 +120,9 @@ class RobotSearch:
         try:
             robot = AgentClient.start(connection, python=connection.python())
         except NoPythonError:
-            there = RobotWithoutPython(connection)
-            obstacles = list(there.obstacles())
+            obstacles = list(RobotWithoutPython(connection).obstacles())
             self._next = (Step.PACKAGES if len(obstacles) == 1 else Step.CONTROLLER), obstacles[0].remedy
             yield from (problem(_TOPIC, each.text, each.remedy) for each in obstacles)
-            yield from _check_other_languages(there.other_languages)
         else:
             with closing(robot):
                 found = list(check_robot_facts(robot.facts, connection.controller, project))
@@ -147,7 +145,6 @@ def check_robot_facts(facts: RobotFacts, controller: ControllerKind, project: Pr
         problems += [problem(_TOPIC, str(each), each.remedy) for each in unfit_packages(packages, facts)]
     ready = f"Python {facts.python}, wpilib {facts.wpilib}, image {facts.image}"
     yield from problems or [ok(_TOPIC, ready)]
-    yield from _check_other_languages(facts.other_languages)
 
 
 def missing_on_robot(facts: RobotFacts, controller: ControllerKind, found: Sequence[CheckResult]) -> tuple[Step, str]:
@@ -168,9 +165,3 @@ def missing_on_robot(facts: RobotFacts, controller: ControllerKind, found: Seque
             "It is there, but does not run. To see why: pyfrc deploy-info. After a correction: pyfrc deploy",
         )
     return Step.DRIVE, ""
-
-
-def _check_other_languages(found: Sequence[str]) -> Iterator[CheckResult]:
-    if found:
-        text, remedy = other_languages_notice(found)
-        yield hint(_TOPIC, text, remedy)

@@ -87,8 +87,3 @@ def test_a_new_installation_of_what_is_not_damaged_compiles_everything_again(rob
     assert done["done"]["release"] == 3
     assert not compiled(robot, 3, "arm").samefile(compiled(robot, 2, "arm"))
     assert robot.startable() == "py/robot.py: # two"
-
-
-def test_files_that_were_overwritten_in_place_are_not_damaged(robot: AgentDisk) -> None:
-    robot.deploy({**TWO, "arm.py": "A = 2\n"}, "A = 2\n", in_place=True)
-    assert different(robot) == []

@@ -7,9 +7,8 @@ from click.testing import CliRunner
 
 from pyfrc_cli.deploy import command
 
-_IN_PLACE = "--in-place and --auto-rollback are mutually exclusive: --in-place restarts nothing."
-_ROLLBACK = "--rollback excludes --in-place, --dry-run and --auto-rollback: it deploys nothing."
-_REINSTALL = "--reinstall excludes --in-place, --dry-run and --rollback."
+_ROLLBACK = "--rollback excludes --dry-run and --auto-rollback: it deploys nothing."
+_REINSTALL = "--reinstall excludes --dry-run and --rollback."
 
 
 @pytest.mark.parametrize(
@@ -19,11 +18,8 @@ _REINSTALL = "--reinstall excludes --in-place, --dry-run and --rollback."
         ("--netconsole-ds --json", "--netconsole and --json are mutually exclusive."),
         ("--netconsole --dry-run", "--netconsole and --dry-run are mutually exclusive."),
         ("--netconsole-ds --dry-run", "--netconsole and --dry-run are mutually exclusive."),
-        ("--in-place --auto-rollback", _IN_PLACE),
-        ("--rollback --in-place", _ROLLBACK),
         ("--rollback=1 --dry-run", _ROLLBACK),
         ("--rollback=1 --auto-rollback", _ROLLBACK),
-        ("--reinstall --in-place", _REINSTALL),
         ("--reinstall --dry-run", _REINSTALL),
         ("--reinstall --rollback", _REINSTALL),
         ("--rollback=last", "--rollback 'last': a release is a number; pyfrc deploy-info lists them."),

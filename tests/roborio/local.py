@@ -203,13 +203,12 @@ class LocalRobot:
         *,
         main: str = "robot.py",
         debug: bool = False,
-        in_place: bool = False,
         **options: int | bool | None,
     ) -> Deployed:
         """Deploy and hang up."""
         robot = self.start(agents, **options)
         try:
-            return robot.deploy(project, DeployRequest(main, {"deploy-user": "somebody"}, debug, in_place))
+            return robot.deploy(project, DeployRequest(main, {"deploy-user": "somebody"}, debug))
         finally:
             robot.close()
 

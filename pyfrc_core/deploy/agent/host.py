@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -54,10 +53,6 @@ class RealRobot:
     def can_restart(self) -> bool:
         """Return whether the program can be stopped and started."""
         return self.paths.of(self.paths.layout.restart[0]).exists()
-
-    def other_languages(self) -> list[str]:
-        """Return the files and directories of programs in Java and C++ that can be removed."""
-        return find_other_languages(self.paths)
 
     def processes(self) -> set[int]:
         """Return the process ids of the robot program, which may be written in another language."""
@@ -211,17 +206,3 @@ def cpu_seconds(process: int) -> float:
     """
     fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / ticks_per_second()
-
-
-def find_other_languages(paths: RobotPaths) -> list[str]:
-    """Return the files and directories of programs in Java and C++ that can be removed."""
-    layout = paths.layout
-    commands = [f"{layout.home}/{name}" for name in layout.command_files]
-    found = [file for file in commands if re.search(layout.other_start, text_of(paths.of(file)) or "")]
-    for pattern in layout.other_files:
-        parent, _, name = pattern.rpartition("/")
-        if name:
-            found += sorted(f"{parent}/{each.name}" for each in paths.of(parent).glob(name))
-        elif paths.of(parent).is_dir() and any(paths.of(parent).iterdir()):
-            found.append(parent)
-    return found

@@ -25,9 +25,6 @@ class Layout(NamedTuple):
     :param stopper:       what messages call these commands
     :param profiles:      files that a shell sources before these commands
     :param texts:         files whose content the laptop needs, by names
-    :param other_start:   a regular expression that finds start commands of programs in other languages, for Python and
-        ``grep -E``
-    :param other_files:   patterns of their files; one that ends with a slash is a directory, if it has files
     :param command_mode:  the permissions of the files with start commands
     :param can_fail:      whether the exit code of `stop` and `restart` says that they have failed
     :param python:        the Python in the start commands, of the system or another tool; a program with an environment
@@ -53,8 +50,6 @@ class Layout(NamedTuple):
     stopper: str
     profiles: Sequence[str]
     texts: Mapping[str, str]
-    other_start: str
-    other_files: Sequence[str]
     python: str
     command_mode: int = 0o644
     can_fail: bool = False

@@ -18,8 +18,6 @@ Record = dict[str, Any]
 LONG = 60.0
 #: Seconds after its boot within which a robot has started its program.
 _BOOT = 180.0
-#: The fields of a release that no watch has seen yet.
-NEVER_RUN: Record = {"ran": False, "ended": False, "lasted": 0.0, "process": None}
 
 
 class Boot(NamedTuple):

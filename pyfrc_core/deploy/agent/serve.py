@@ -158,7 +158,6 @@ class Agent:
             "environment": releases.environments.of_this_process(),
             "program_age": age_of(program),
             "remains": bool(layout.installing and list(self._paths.of(layout.installing).glob("[0-9]*.*"))),
-            "other_languages": self._host.other_languages(),
         }
 
     def _review(self, processes: set[int]) -> None:
@@ -213,7 +212,7 @@ class Agent:
         return {}
 
     def _deploy(self, request: Message) -> Message:
-        with self._transaction(keep=not request.get("in_place")):
+        with self._transaction(keep=True):
             self._recover()
             try:
                 done = Deploy(self._releases, self._wire, request).run()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import zlib
 from collections.abc import Iterable
 from contextlib import suppress
@@ -15,9 +14,9 @@ from .activity import Activity
 from .carrying import Carried
 from .compiling import CompiledForms, Compiler, compile_below, compiled_hashes
 from .content_index import DEPLOY_JSON, ContentIndex, WantedFile, parse_manifest
-from .disk import BLOCK, files_below, free_bytes, link_or_copy, remove, sha256_of, sync, write_whole
+from .disk import BLOCK, files_below, free_bytes, link_or_copy, sha256_of, sync, write_whole
 from .integrity import compiled_files, mend_releases
-from .release_record import NEVER_RUN, Record
+from .release_record import Record
 from .releases import Releases
 from .robot_paths import Refusal, start_commands
 from .wire import Message, Wire
@@ -88,7 +87,6 @@ class Deploy:
         self._about = request.get("deploy_json") or {}
         self._main = str(request["main"])
         self._debug = bool(request.get("debug"))
-        self._in_place = bool(request.get("in_place"))
         #: Whether a restart follows, which removes old releases.
         self._restarts = bool(request.get("restart"))
         self._environment = request.get("environment")
@@ -104,23 +102,14 @@ class Deploy:
         if self._main not in {each.path for each in self._wanted}:
             raise Refusal("main", f"there is no {self._main} among the files")
         at_hand = ContentIndex(self._releases, self._wanted, self._activity)
-        code = self._releases.code()
-        if self._in_place and code is not None:
-            wanted = [each for each in self._wanted if not at_hand.has(each, code)]
-            _refuse_clashes(wanted, code)
-        else:
-            wanted = self._wanted
-        at_hand = self._check_disk_space(wanted, at_hand)
-        missing = at_hand.missing(wanted)
+        at_hand = self._check_disk_space(at_hand)
+        missing = at_hand.missing(self._wanted)
         self._wire.send(need=[each.path for each in missing], bytes=sum(each.size for each in missing))
         current = self._releases.current()
-        if not (self._in_place and code is not None) and current is not None and self._is_current(current, at_hand):
+        if current is not None and self._is_current(current, at_hand):
             return self._redeploy(current)
-        self._fill_incoming(wanted, missing, at_hand)
-        amount = {"files": len(missing), "bytes": sum(each.size for each in missing)}
-        if self._in_place and code is not None:
-            return {**self._overwrite(code, wanted), **amount}
-        return {**self._release(), **amount}
+        self._fill_incoming(missing, at_hand)
+        return {**self._release(), "files": len(missing), "bytes": sum(each.size for each in missing)}
 
     def _is_current(self, current: int, at_hand: ContentIndex) -> bool:
         files = self._releases.record(current).get("files")
@@ -142,7 +131,7 @@ class Deploy:
         self._switch(current, None)
         return {"release": current, "previous": current, "files": 0, "bytes": 0, "taken": None, "unchanged": True}
 
-    def _check_disk_space(self, wanted: list[WantedFile], at_hand: ContentIndex) -> ContentIndex:
+    def _check_disk_space(self, at_hand: ContentIndex) -> ContentIndex:
         """Check that there is enough disk space, and remove old releases if there is not.
 
         Contents and compiled files are counted; a compiled file may have twice the size of its source.
@@ -151,7 +140,7 @@ class Deploy:
         :raises Refusal: if there is not enough disk space
         """
         needed = RESERVE
-        for each in wanted:
+        for each in self._wanted:
             needed += 512
             if at_hand.same_file(each) is None:
                 needed += (each.size + 4095) // 4096 * 4096 * (3 if each.path.endswith(".py") else 1)
@@ -169,18 +158,18 @@ class Deploy:
             )
         return at_hand
 
-    def _fill_incoming(self, wanted: list[WantedFile], missing: list[WantedFile], at_hand: ContentIndex) -> None:
+    def _fill_incoming(self, missing: list[WantedFile], at_hand: ContentIndex) -> None:
         """Write and compile the wanted files in the incoming directory.
 
         :param missing: files whose contents were requested
         """
         incoming, activity = self._paths.incoming, self._activity
         incoming.mkdir(parents=True)
-        for directory in sorted({each.path.rpartition("/")[0] for each in wanted}):
+        for directory in sorted({each.path.rpartition("/")[0] for each in self._wanted}):
             (incoming / directory).mkdir(parents=True, exist_ok=True)
-        linked = self._link(wanted, at_hand)
+        linked = self._link(at_hand)
         first = {each.sha256: each for each in missing}
-        copied = [each for each in wanted if each.path not in linked and first.get(each.sha256) != each]
+        copied = [each for each in self._wanted if each.path not in linked and first.get(each.sha256) != each]
         at_once = [name for name, is_compiled in linked.items() if not is_compiled and name.endswith(".py")]
         sources = at_once + [each.path for each in (*missing, *copied) if each.path.endswith(".py")]
         with Compiler(incoming, sources, self._debug, self._program, self._paths.layout.code) as compiler:
@@ -208,7 +197,7 @@ class Deploy:
                 activity.step()
             compiler.finish(activity)
 
-    def _link(self, wanted: list[WantedFile], at_hand: ContentIndex) -> dict[str, bool]:
+    def _link(self, at_hand: ContentIndex) -> dict[str, bool]:
         """Link the files that another release already has.
 
         :return: for each linked path, whether it has a compiled file
@@ -224,8 +213,8 @@ class Deploy:
                     return True
             return False
 
-        self._activity.begin("link", len(wanted))
-        for each in wanted:
+        self._activity.begin("link", len(self._wanted))
+        for each in self._wanted:
             same = at_hand.same_file(each)
             if same is not None:
                 file = f"{incoming}/{each.path}"
@@ -289,54 +278,6 @@ class Deploy:
     def _switch(self, number: int, taken: int | None) -> None:
         self._releases.switch(number, self._commands, taken)
         self._releases.set_debug(self._debug)
-
-    def _overwrite(self, code: Path, wanted: list[WantedFile]) -> Message:
-        """Replace files of the current release one by one, each atomically. Delete nothing."""
-        self._wire.send(phase="switch")
-        current = self._releases.current()
-        if current is not None and wanted:
-            self._releases.update_record(current, lambda record: {**record, **NEVER_RUN})  # another program now
-        sync(self._paths.own, self._activity)
-        compiled = CompiledForms()
-        for each in wanted:
-            target = code / each.path
-            target.parent.mkdir(parents=True, exist_ok=True)
-            for form in compiled.of(str(target)):
-                remove(Path(form))
-            (self._paths.incoming / each.path).replace(target)
-            compiled.link(str(self._paths.incoming / each.path), str(target))
-        self._releases.remove(self._paths.incoming)
-        compile_below(code, self._debug, self._activity, self._paths.layout.code)
-        self._write_about(code)
-        if current is not None:
-            record = self._releases.record(current)
-            record["files"] = {**record.get("files", {}), **{each.path: each.sha256 for each in self._wanted}}
-            record["compiled"] = compiled_hashes(code, record["files"], self._activity)
-            record.update(deploy=self._about, main=self._main, debug=self._debug, commands=self._commands)
-            self._releases.write_record(current, record)
-        for name in self._paths.layout.command_files:
-            self._releases.write_command(name, self._commands[name] or "")
-        sync(self._paths.home, self._activity)
-        self._releases.set_debug(self._debug)
-        return {"release": current, "previous": current, "taken": None, "unchanged": not wanted}
-
-
-def _refuse_clashes(wanted: list[WantedFile], code: Path) -> None:
-    """Check that each file can be written to the directory `code` without deleting anything.
-
-    :raises Refusal: if a file would replace a directory, or the other way round
-    """
-    for each in wanted:
-        *above, _ = each.path.split("/")
-        paths = [code.joinpath(*above[: depth + 1]) for depth in range(len(above))]
-        clash = next((place for place in paths if os.path.lexists(place) and not place.is_dir()), None)
-        if clash is not None or (code / each.path).is_dir():
-            kind = "directory" if clash is None else "file"
-            raise Refusal(
-                "path",
-                f"{(clash or code / each.path).relative_to(code).as_posix()!r} is a {kind} on the robot",
-                "Deploy without --in-place, which deletes nothing.",
-            )
 
 
 def plan(releases: Releases, files: Iterable[Any]) -> Message:

@@ -56,10 +56,6 @@ class VirtualRobotClient:
         """Return whether the program can be stopped and started."""
         return True
 
-    def other_languages(self) -> list[str]:
-        """Return nothing: a virtual robot runs only programs in Python."""
-        return []
-
     def processes(self) -> set[int]:
         """Return the process ids of the robot program."""
         return set(self._request("processes"))

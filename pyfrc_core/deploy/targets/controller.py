@@ -6,7 +6,6 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from shlex import join, quote
 from typing import Any
 
 from ..agent.layout import Layout
@@ -73,9 +72,6 @@ class ControllerKind:
     :param shared_hosts:     hosts that all teams' robots have, as on a USB cable
     :param machine:          the beginning of its processor architecture, as `platform.machine` returns it
     :param image_it:         how to install its image
-    :param leftovers:        what `remove_leftovers` removes
-    :param remove_leftovers: a shell script for the administrator, which removes programs in other languages and prints
-        a line for each removed path or package
     :param stations:         the Driver Stations for it
     :param addresses:        returns the hosts of a team's robot, each with a description
     :param team_of_host:     returns the team to which a host belongs, or None
@@ -95,8 +91,6 @@ class ControllerKind:
     shared_hosts: tuple[str, ...]
     machine: str
     image_it: str
-    leftovers: str
-    remove_leftovers: str
     stations: tuple[DriverStation, ...]
     addresses: Callable[[int], list[tuple[str, str]]]
     team_of_host: Callable[[str], int | None]
@@ -158,32 +152,3 @@ def remove_remains(directory: str) -> str:
     process=$(basename "$each" | cut -d. -f1)
     grep -q {directory} /proc/$process/cmdline 2> /dev/null || rm -rf "$each"
 done"""
-
-
-def removal_script(layout: Layout, paths: str) -> str:
-    """Return a shell script that removes programs in other languages, and prints a line for each removed path.
-
-    A program in Python keeps running, with its start command.
-
-    :param paths: patterns of paths for the shell
-    """
-    commands = " ".join(f"{layout.home}/{name}" for name in layout.command_files)
-    return f"""
-for profile in {" ".join(layout.profiles)}; do
-    [ ! -r $profile ] || . $profile
-done
-for command in {commands}; do
-    if grep -qE {quote(layout.other_start)} $command 2> /dev/null; then
-        rm -f $command || exit 1
-        echo "$command"
-        stop=yes
-    fi
-done
-[ -z "$stop" ] || {join(layout.stop)} > /dev/null 2>&1
-for path in {paths}; do
-    if [ -e "$path" ]; then
-        rm -rf "$path" || exit 1
-        echo "$path"
-    fi
-done
-"""

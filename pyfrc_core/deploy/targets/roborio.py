@@ -18,7 +18,6 @@ from .controller import (
     PythonInstaller,
     Texts,
     address_of_team,
-    removal_script,
     remove_remains,
     team_of_address,
 )
@@ -31,11 +30,8 @@ _KILL_SCRIPT = "/usr/local/frc/bin/frcKillRobot.sh"
 _PROFILES = ("/etc/profile.d/frc-path.sh", "/etc/profile.d/natinst-path.sh")
 _USB_CABLE = "172.22.11.2"
 _MEMORY_SETTINGS = "/etc/natinst/share/ni-rt.ini"
-#: Libraries of programs in Java and C++. The directory is empty in the image.
-_LIBRARIES = "/usr/local/frc/third-party/lib"
 #: The directory of files that the administrator writes for pyfrc.
 _OWN = "/usr/local/pyfrc"
-_PROGRAMS = (f"{_HOME}/*.jar", f"{_HOME}/frcUserProgram")
 
 _LAYOUT = Layout(
     name="roboRIO",
@@ -54,8 +50,6 @@ _LAYOUT = Layout(
     stopper="frcKillRobot.sh",
     profiles=_PROFILES,
     texts={"image": "/etc/natinst/share/scs_imagemetadata.ini", "memory": _MEMORY_SETTINGS},
-    other_start="[.]jar|frcUserProgram",
-    other_files=(*_PROGRAMS, "/usr/local/frc/JRE/bin/java", f"{_LIBRARIES}/"),
     python=_PYTHON,
     installing=_OWN,
 )
@@ -149,18 +143,6 @@ def _repair_stop() -> AdministratorTask:
     )
 
 
-_REMOVE_LEFTOVERS = (
-    removal_script(_LAYOUT, f"{' '.join(_PROGRAMS)} {_HOME}/deploy {_LIBRARIES}")
-    + """
-packages=$(opkg list-installed 'frc*-openjdk-*')
-if [ -n "$packages" ]; then
-    opkg remove 'frc*-openjdk*' > /dev/null || exit 1
-    echo "$packages"
-fi
-sync
-"""
-)
-
 # Files are in /usr/local/pyfrc, named by the number of the process that writes them: on the disk of what they replace.
 # While the file `installing` is there, Python is not complete: opkg was interrupted, and runs again. Then it finds
 # files that no package has, so it must overwrite. Its messages go to a file: it must not end with the connection. Its
@@ -201,8 +183,6 @@ ROBORIO = ControllerKind(
     shared_hosts=(_USB_CABLE,),
     machine="arm",
     image_it="Image it with the roboRIO Imaging Tool of this season",
-    leftovers=f"Java's and C++'s robot programs, their libraries, Java itself, and {_HOME}/deploy",
-    remove_leftovers=_REMOVE_LEFTOVERS,
     save_memory=AdministratorTask(
         f"sed -i -e 's/^StartupDLLs/;StartupDLLs/' {_MEMORY_SETTINGS}",
         "StartupDLLs was switched off: 24 MB more memory after the robot's next start",

@@ -17,7 +17,6 @@ from .controller import (
     DriverStation,
     PythonInstaller,
     address_of_team,
-    removal_script,
     remove_remains,
     team_of_address,
 )
@@ -27,7 +26,6 @@ _USER = "systemcore"
 _HOME = f"/home/{_USER}"
 _PYTHON = f"{_HOME}/venv/bin/python3"
 _PYTHONS = f"{_HOME}/.pyfrc/pythons"
-_PROGRAMS = (f"{_HOME}/*.jar", f"{_HOME}/frcUserProgram")
 _SUDO = ("/usr/bin/sudo", "-n")
 # systemd refuses to start a service that has crashed too often within a few seconds, until its failures are forgotten.
 _RESTART = "systemctl stop robot; systemctl reset-failed robot; systemctl -q enable robot; exec systemctl start robot"
@@ -53,8 +51,6 @@ _LAYOUT = Layout(
     stopper="systemctl",
     profiles=(),
     texts={},
-    other_start="[.]jar|frcUserProgram",
-    other_files=_PROGRAMS,
     command_mode=0o755,
     python=_PYTHON,
     installing=_PYTHONS,
@@ -121,8 +117,6 @@ SYSTEMCORE = ControllerKind(
     shared_hosts=(_NAME, _WIFI, *_USB_CABLE),
     machine="aarch64",
     image_it=f'On its web page (http://{_NAME}), set your team number, and update its image in settings, "OS Update"',
-    leftovers=f"Java's and C++'s robot programs in {_HOME}",
-    remove_leftovers=removal_script(_LAYOUT, " ".join(_PROGRAMS)) + "sync\n",
     stations=(DriverStation(6770, _station_robot), NI_STATION),
     addresses=_addresses,
     team_of_host=team_of_address,
