@@ -215,48 +215,8 @@ def test_links_to_what_is_not_uploaded_are_private(tmp_path: Path) -> None:
     assert private_files(tmp_path, ["notes", "settings.txt", "plan.txt"], ["config/**"]) == {}
 
 
-IGNORED = """\
-*.log
-simgui*.json
-/data/*.bin
-
-# Our secrets
-tba.txt
-!/deploy/tba.txt
-
-*.pem
-tokens/
-/wifi.json
-"""
-
-
-def test_files_that_gitignore_names_as_secrets_are_private(tmp_path: Path) -> None:
-    root = tmp_path / "repository/robot"
-    secrets = ["deep/er/cert.pem", "tba.txt", "tokens/a/github.txt", "wifi_password.log"]
-    others = ["robot.py", "run.log", "simgui.json", "data/x.bin", "deploy/tba.txt", "deep/wifi.json", "token.txt"]
-    make(root, *secrets, *others, "nested/api_key.txt")
-    (root / ".gitignore").write_text(IGNORED)
-    (tmp_path / "repository/.git").mkdir()
-    (tmp_path / "repository/.gitignore").write_text("# passwords\nrobot/above.txt\n")
-    make(root, "above.txt")
-    (root / "nested/.gitignore").write_text("*.txt\n")
-    private = private_files(root)
-    assert sorted(private) == sorted([*secrets, "above.txt", "nested/api_key.txt"])
-    assert set(private.values()) == {".gitignore names it as a secret"}
-    assert private_files(tmp_path / "repository/robot/nested", (), ["api_key.txt"]) == {}
-
-
 def test_keys_are_private_by_their_names(tmp_path: Path) -> None:
     keys = ["id_rsa", "keys/id_ed25519", "deploy.pem", "server.KEY", "a.p12", "passwords.kdbx", "config/prod.env"]
     make(tmp_path, *keys, "robot.py", "id_rsa.pub", "known_hosts", "environment.py", "keys.json", ".env", ".netrc")
     assert private_files(tmp_path) == dict.fromkeys(sorted(keys), "files of this name hold keys or passwords")
     assert private_files(tmp_path, (), ["id_*", "*.*"]) == {}
-
-
-def test_without_gitignore_nothing_else_is_a_secret(tmp_path: Path) -> None:
-    make(tmp_path, "robot.py", "secret.txt")
-    (tmp_path.parent / ".gitignore").write_text("secret.txt\n")
-    try:
-        assert private_files(tmp_path) == {}, "that of another project above"
-    finally:
-        (tmp_path.parent / ".gitignore").unlink()
