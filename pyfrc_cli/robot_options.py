@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from .file_options import ReadPath
 from .shared_options import can_ask, team_option
 from .verbosity import verbosity
 
@@ -44,8 +43,6 @@ def robot_options(command: Function) -> Function:
         choice: RobotChoice,
         accept_host_key: str | None,
         robot_name: str | None,
-        identity: Path | None,
-        ssh_agent: bool,
         **others: object,
     ) -> Any:
         from pyfrc_core.deploy.login import Credentials
@@ -54,7 +51,7 @@ def robot_options(command: Function) -> Function:
             choice,
             accepted_key=accept_host_key,
             robot_name=robot_name,
-            credentials=Credentials(identity, ssh_agent, _password_prompt(bool(others.get("as_json")))),
+            credentials=Credentials(_password_prompt(bool(others.get("as_json")))),
         )
         return command(choice=choice, **others)
 
@@ -88,14 +85,6 @@ def address_options(command: Function) -> Function:
 
 
 _KEY_OPTIONS = (
-    click.option("--ssh-agent", is_flag=True, help="Log in with the keys of your SSH agent."),
-    click.option(
-        "--identity",
-        type=ReadPath(),
-        metavar="FILE",
-        callback=refuse_option_as_value,
-        help="Log in with the private SSH key in this file.",
-    ),
     click.option(
         "--robot-name",
         metavar="NAME",

@@ -9,11 +9,9 @@ import re
 import signal
 import socket
 import struct
-import subprocess
 import threading
 from collections.abc import Callable, Iterator
 from importlib.metadata import version
-from pathlib import Path
 
 import pytest
 from at_terminal import run_at_terminal
@@ -151,42 +149,6 @@ def test_a_program_that_dies_is_shown_with_its_traceback_and_the_way_back(robot:
 # -- what can be wrong with a robot ------------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def user_keys(tmp_path: Path) -> Path:
-    """A directory with two of the user's keys: the one that the robot wants, and another."""
-    for name in ("right", "wrong"):
-        subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", str(tmp_path / name)], check=True)
-    return tmp_path
-
-
-@pytest.mark.slow
-def test_the_ssh_agents_keys_are_offered_with_the_option(new_robot, make_project, user_keys: Path) -> None:
-    robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
-    project = make_project(program())
-    agent_socket = user_keys / "agent"
-    agent = subprocess.Popen(["ssh-agent", "-D", "-a", str(agent_socket)], stdout=subprocess.PIPE, text=True)
-    try:
-        assert agent.stdout is not None
-        agent.stdout.readline()
-        environment = {"SSH_AUTH_SOCK": str(agent_socket)}
-        args = ["deploy", "--skip-tests", "--robot", robot.where, "--ssh-agent"]
-        for name, refusal in (
-            ("", "only with a key, and there is none in your SSH agent"),
-            ("wrong", "refuses lvuser with 1 of your SSH agent's keys"),
-            ("right", ""),
-        ):
-            if name:
-                subprocess.run(["ssh-add", "-q", str(user_keys / name)], env=os.environ | environment, check=True)
-            result = project.run(*args, env=environment)
-            assert result.code == (1 if refusal else 0), result.output
-            assert refusal in result.stderr
-            assert ("ssh-add FILE" in result.stderr) is bool(refusal)
-    finally:
-        agent.terminate()
-        agent.wait()
-        agent.stdout.close()
-
-
 def test_a_lost_connection_is_reported_and_the_next_deploy_works(robot: Roborio, make_project) -> None:
     project = make_project(program())
     # More than is sent before the robot has read any of it: with all of it sent, the robot may have switched.
@@ -260,7 +222,6 @@ WRONG = """
 --robot lvuser@127.0.0.1
 --robot --skip-tests
 --skip-tests --robot-name --dry-run
---skip-tests --identity --dry-run
 --skip-tests --accept-host-key --dry-run
 --robot robot.local --no-resolve
 --team 0

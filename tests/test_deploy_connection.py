@@ -13,9 +13,8 @@ import pytest
 
 from pyfrc_core.deploy.connection import connect, load_in_background
 from pyfrc_core.deploy.discovery import Address
-from pyfrc_core.deploy.errors import ConnectionFailedError, HostKeyError, RefusedError
+from pyfrc_core.deploy.errors import ConnectionFailedError, HostKeyError
 from pyfrc_core.deploy.host_keys import KNOWN_HOSTS, HostKey, HostKeys
-from pyfrc_core.deploy.login import Credentials
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 
@@ -55,19 +54,6 @@ def test_another_server_than_an_ssh_server_is_reported(says: bytes, tmp_path: Pa
     assert str(caught.value).startswith(f"{address}: could not log in to the robot: ")
     assert "Check the link" in str(caught.value)
     assert not (tmp_path / KNOWN_HOSTS).exists()
-
-
-def test_a_key_that_paramiko_cannot_read_is_none_that_is_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As some of ECDSA, in paramiko 5.1."""
-
-    def from_path(file: Path) -> paramiko.PKey:
-        raise paramiko.SSHException("Invalid key curve identifier")
-
-    monkeypatch.setattr(paramiko.PKey, "from_path", from_path)
-    with pytest.raises(RefusedError) as caught:
-        list(Credentials(tmp_path / "id_ecdsa").load())
-    assert "paramiko cannot read this key: Invalid key curve identifier" in str(caught.value)
-    assert "use --ssh-agent" in str(caught.value)
 
 
 # -- when a key is pinned ----------------------------------------------------------------------------------------------

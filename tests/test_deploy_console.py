@@ -219,7 +219,7 @@ def test_a_quiet_console_shows_only_what_the_program_prints(follow: Follow, caps
 def test_options_about_keys_are_not_taken(make_project) -> None:
     listed = make_project({}).run("console", "--help").stdout
     assert "--robot HOST" in listed
-    assert not [each for each in ("--accept-host-key", "--robot-name", "--identity", "--ssh-agent") if each in listed]
+    assert not [each for each in ("--accept-host-key", "--robot-name") if each in listed]
 
 
 def test_the_imitated_driver_station_stays_disabled_and_survives_a_closed_connection() -> None:

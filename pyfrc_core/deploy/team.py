@@ -50,7 +50,7 @@ class RobotChoice:
     :param resolve: whether host names may be resolved
     :param accepted_key: the fingerprint of a changed host key that the user accepts
     :param robot_name: a name to store with the robot's key
-    :param credentials: the user's own keys, for a robot that requires one
+    :param credentials: the user's password, for a robot that requires one
     """
 
     robot: str | None = None

@@ -33,9 +33,8 @@ UsePAM no
 PermitRootLogin yes
 StrictModes no
 PermitEmptyPasswords yes
-PasswordAuthentication {passwords}
+PasswordAuthentication yes
 KbdInteractiveAuthentication no
-AuthorizedKeysFile /etc/ssh/authorized_keys
 MaxSessions 20
 Subsystem sftp internal-sftp
 """
@@ -68,7 +67,6 @@ class Computer:
     :param port:           of its SSH server; none: 22, or 2222 where an SSH server of this machine has 22 everywhere
     :param python:         a Python (3.9 or newer) of this machine, which serves as its own; none: it has no Python
     :param disk_size:      as tmpfs takes it: ``"4m"``
-    :param authorized_key: a public key, in OpenSSH's form; only this key is let in then, no password
     """
 
     controller: ClassVar[ControllerKind]
@@ -82,7 +80,6 @@ class Computer:
         port: int | None,
         python: str | Path | None,
         disk_size: str,
-        authorized_key: str | None,
     ) -> None:
         self._base = Path(tempfile.mkdtemp(prefix="look-alike-"))
         self._root = self._base / "root"
@@ -99,8 +96,7 @@ class Computer:
             self._holder = self._mount(disk_size, hidden)
             #: Its root directory, as it can be looked at from outside, also while it has no power.
             self.disk = Path(f"/proc/{self._holder.pid}/root{self._root}")
-            self.put("etc/ssh/sshd_config", _SSHD.format(passwords="no" if authorized_key else "yes"), owner=0)
-            self.put("etc/ssh/authorized_keys", f"{authorized_key or ''}\n", owner=0)
+            self.put("etc/ssh/sshd_config", _SSHD, owner=0)
             self._install()
             self.new_host_key()
             self.power_on()

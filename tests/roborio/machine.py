@@ -105,7 +105,6 @@ class Roborio(Computer):
         python: str | Path | None = sys.executable,
         disk_size: str = "64m",
         password: str = "",
-        authorized_key: str | None = None,
         kill_script: Path | None = None,
         driver_station: bool = True,
     ) -> None:
@@ -113,7 +112,7 @@ class Roborio(Computer):
             require_roborio()  # here, so that no test can go without it
         self._driver_station, self._blank = driver_station, blank
         self._wpilib, self._image, self._password, self._kill_script = wpilib, image, password, kill_script
-        super().__init__(host=host, port=port, python=python, disk_size=disk_size, authorized_key=authorized_key)
+        super().__init__(host=host, port=port, python=python, disk_size=disk_size)
 
     def _listeners(self) -> list[socket.socket]:
         packets = socket.socket(type=socket.SOCK_DGRAM)

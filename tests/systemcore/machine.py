@@ -57,14 +57,13 @@ class Systemcore(Computer):
         python: str | Path | None = sys.executable,
         disk_size: str = "64m",
         password: str = "systemcore",
-        authorized_key: str | None = None,
         sudo: bool = True,
         restart_after: float = 0.2,
     ) -> None:
         if missing_here(_SUDO):
             require_systemcore()  # here, so that no test can go without it
         self._wpilib, self._password, self._sudo, self._restart_after = wpilib, password, sudo, restart_after
-        super().__init__(host=host, port=port, python=python, disk_size=disk_size, authorized_key=authorized_key)
+        super().__init__(host=host, port=port, python=python, disk_size=disk_size)
 
     def _listeners(self) -> list[socket.socket]:
         return []
