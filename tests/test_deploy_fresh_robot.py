@@ -43,7 +43,6 @@ READY = RobotFacts(
     running=False,
     packages={"wpilib": OURS},
     missing_modules=(),
-    extension_suffixes=(".so",),
     machine="armv7l",
 )
 

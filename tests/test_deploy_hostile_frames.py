@@ -55,7 +55,6 @@ FACTS: dict[str, Any] = {
     "running": True,
     "packages": {"wpilib": "2026.2.2"},
     "missing_modules": [],
-    "extension_suffixes": [".so"],
     "machine": "armv7l",
     "program_age": 12.5,
     "remains": False,

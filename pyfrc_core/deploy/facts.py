@@ -71,8 +71,7 @@ class RobotFacts:
     :param debug:        whether the program is started for debugging
     :param running:      whether a program runs
     :param packages:     versions of the installed Python packages by normalized name
-    :param missing_modules: requested modules that its Python cannot find
-    :param extension_suffixes: file name suffixes of its Python's extension modules
+    :param missing_modules: requested top-level modules that its Python cannot find
     :param machine:      its processor architecture
     :param environment:  the environment in which the agent runs, if pyfrc has made it
     :param program_age:  seconds since the program's start; None if unknown or no program runs
@@ -96,7 +95,6 @@ class RobotFacts:
     running: bool
     packages: Mapping[str, str]
     missing_modules: tuple[str, ...]
-    extension_suffixes: tuple[str, ...]
     machine: str
     program_age: float | None = None
     remains: bool = False

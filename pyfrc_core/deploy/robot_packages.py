@@ -1,4 +1,4 @@
-"""Checks that the robot's Python has the modules and packages that a program needs.
+"""Checks that the robot's Python has the modules and packages that a program needs when it starts.
 
 The laptop reads the program's source, which would take a robot seconds. The robot only reports which modules its Python
 cannot find. This needs no additional round trip, since the first message contains the modules.
@@ -22,7 +22,6 @@ from ..config.robotpy import COMPONENTS, RobotPackages, unknown_components
 from ..season import CURRENT
 from ..sync.wanted import robot_environment
 from ..wording import counted
-from .agent.imports import is_there
 from .facts import VIRTUAL_IMAGE
 from .program_imports import ProgramImports
 from .progress import UserInterface, ask_to_continue
@@ -44,14 +43,12 @@ _RUNNER = "robotpy"
 class PackageProblem:
     """A missing or wrong package on the robot.
 
-    :param where:   file and line of the import or the requirement
-    :param certain: whether the program fails at its start; otherwise it fails if it reaches that line
+    :param where: file and line of the import or the requirement
     """
 
     where: str
     text: str
     remedy: str
-    certain: bool = True
 
     def __str__(self) -> str:
         return f"{self.where}: {self.text}"
@@ -87,84 +84,42 @@ class ImportSearch:
 
     def program(self) -> list[str]:
         """Return the files that are imported when the program starts."""
-        return sorted(path for path in self._found().certain if path.endswith(".py"))
+        return sorted(path for path in self._found().read if path.endswith(".py"))
 
     def modules(self) -> list[str]:
         """Return the modules to look for in the robot's Python."""
-        imported = {module for each in self._found().outside for module in (each.wanted.module, *each.wanted.instead)}
-        return sorted({_RUNNER, *(asked for module in imported for asked in _asked_for(module))})
+        return sorted({_RUNNER, *(each.module.partition(".")[0] for each in self._found().outside)})
 
     def problems(self, facts: RobotFacts, packages: RobotPackages) -> list[PackageProblem]:
-        """Return the imports that fail on the robot, sorted by certainty and file.
+        """Return the imports that fail on the robot, sorted by file: one problem for all of a package.
 
         :param facts: the robot's facts, with its missing modules
         """
-        missing = facts.missing_modules
-        found = [*self._outside(facts, packages), *self._lost(facts)]
-        if _RUNNER in missing:
-            remedy = f"Install it: {_install('robotpy-cli', facts)}."
-            found.append(
-                PackageProblem(self._main, "the robot has no package robotpy-cli, which starts programs", remedy)
-            )
-        return sorted(set(found), key=lambda each: (not each.certain, each.where))
-
-    def _outside(self, facts: RobotFacts, packages: RobotPackages) -> Iterator[PackageProblem]:
-        """Yield one problem for all imports that fail for the same reason, such as those of one package."""
-        failing: dict[tuple[str, str, str, bool], set[tuple[str, int, str]]] = {}
+        failing: dict[tuple[str, str, str], set[tuple[str, int]]] = {}
         for found in self._found().outside:
-            module = self._missing(found.wanted.module, facts)
-            if module is None or (
-                found.wanted.instead and not any(self._missing(each, facts) for each in found.wanted.instead)
-            ):
-                continue
-            if self._found().changes_path and self._found().named_alike(module):
-                continue  # probably in a directory that the program adds to sys.path
-            top = module.partition(".")[0]
-            reason = (top, *self._explanation(module, facts, packages), found.wanted.certain)
-            failing.setdefault(reason, set()).add((found.file, found.wanted.line, module))
-        for (_, text, remedy, certain), imports in failing.items():
-            file, line, module = min(imports)
+            module = found.module.partition(".")[0]
+            if module in facts.missing_modules:
+                reason = module, *self._explanation(module, facts, packages)
+                failing.setdefault(reason, set()).add((found.file, found.line))
+        problems = []
+        for (module, text, remedy), imports in failing.items():
+            file, line = min(imports)
             more = f", and {counted(len(imports) - 1, 'more import')}" if len(imports) > 1 else ""
-            yield PackageProblem(f"{file}:{line}", f"import {module}{more}: {text}", remedy, certain)
-
-    def _missing(self, module: str, facts: RobotFacts) -> str | None:
-        """Return the part of a dotted module name that neither the program nor the robot has, or None."""
-        imports = self._found()
-        top = module.partition(".")[0]
-        if imports.file_of(top) is not None or imports.is_own_directory(top):
-            return None
-        if any(path[len(top) :] in facts.extension_suffixes for path in imports.extensions_of(top)):
-            return None
-        return next((each for each in _asked_for(module) if each in facts.missing_modules), None)
-
-    def _lost(self, facts: RobotFacts) -> Iterator[PackageProblem]:
-        imports = self._found()
-        for found in imports.lost:
-            module = found.wanted.module
-            top = module.partition(".")[0]
-            if top and imports.file_of(top) is None and top not in facts.missing_modules:
-                continue  # the robot has a package of this name, which takes precedence over the program's directory
-            if not top:
-                text = f"from {module} import: there is no package above {found.file}"
-                remedy = "Leave out the dots."
-            else:
-                text, remedy = self._not_ours(module, facts)
-                text = f"import {module}: {text}"
-            yield PackageProblem(found.where, text, remedy, found.wanted.certain)
+            problems.append(PackageProblem(f"{file}:{line}", f"import {module}{more}: {text}", remedy))
+        if _RUNNER in facts.missing_modules:
+            remedy = f"Install it: {_install('robotpy-cli', facts)}."
+            text = "the robot has no package robotpy-cli, which starts programs"
+            problems.append(PackageProblem(self._main, text, remedy))
+        return sorted(problems, key=lambda each: each.where)
 
     def _explanation(self, module: str, facts: RobotFacts, packages: RobotPackages) -> tuple[str, str]:
         """Return why the robot does not have a module, and what to do."""
         from packaging.utils import canonicalize_name
 
-        top = module.partition(".")[0]
-        others = self._found().extensions_of(top)
-        if others:
-            text = f"{others[0]} is not for the robot's Python ({facts.extension_suffixes[0]})"
-            return text, f"Take the library built for the {facts.controller}."
-        if top in sys.stdlib_module_names:
+        if module in sys.stdlib_module_names:
             text = f"Python {facts.python} on the robot has no such module"
             return text, "That Python's library does not have it: use another module."
-        distribution = next(iter(packages_by_module().get(top, ())), PACKAGES.get(top))
+        distribution = next(iter(packages_by_module().get(module, ())), PACKAGES.get(module))
         if distribution is None:
             return self._not_ours(module, facts)
         if canonicalize_name(distribution) in facts.packages:
@@ -175,30 +130,13 @@ class ImportSearch:
 
     def _not_ours(self, module: str, facts: RobotFacts) -> tuple[str, str]:
         """Return the same for a module that is neither in the program nor in a known package."""
-        from difflib import get_close_matches
-
-        base = self._root.joinpath(*module.split("."))
-        if base.with_name(f"{base.name}.py").is_file() or base.is_dir():
+        base = self._root / module
+        if base.with_name(f"{module}.py").is_file() or base.is_dir():
             exclude = "Check exclude = [...] under [tool.pyfrc.deploy] in pyproject.toml."
             return "the project has it, but it is not uploaded", exclude
-        text = "neither the project nor the robot has such a module"
-        if alike := get_close_matches(module, self._own_modules(module.rpartition(".")[0]), 1):
-            return text, f"Did you mean {alike[0]}?"
         requires = "" if _is_virtual(facts) else "add it to requires under [tool.robotpy] in pyproject.toml; "
+        text = "neither the project nor the robot has such a module"
         return text, f"Check the name. If it is a package: {requires}{_install('PACKAGE', facts)}."
-
-    def _own_modules(self, parent: str) -> list[str]:
-        names = (path.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for path in self._files)
-        return [name for name in names if name.rpartition(".")[0] == parent]
-
-
-@cache
-def _asked_for(module: str) -> Sequence[str]:
-    """Return the names to look for. A submodule is included only if it exists here: some are created at import."""
-    top = module.partition(".")[0]
-    if not top:
-        return ()
-    return (top, module) if module != top and is_there(module) else (top,)
 
 
 @cache
@@ -258,20 +196,17 @@ def check_packages(
     """
     found = search.problems(facts, packages)
     unfit = [*_misspelled_components(packages), *unfit_packages(packages, facts)] if refuse else []
-    certain = [*(each for each in found if each.certain), *unfit]
-    for each in found if dry_run or not refuse else (each for each in found if not each.certain):
-        if not each.certain:
-            talk.progress.warning(f"{each}; the program fails if it reaches this line. {each.remedy}")
-        else:
+    problems = [*found, *unfit]
+    if dry_run or not refuse:
+        for each in found:
             talk.progress.warning(f"{each}; the program would end immediately. {each.remedy}")
-    if dry_run:
         for each in unfit:
             talk.progress.warning(f"{each}. {each.remedy}")
-    elif certain and refuse:
-        failure = "; ".join(str(each) for each in certain[:_MAX_NAMED])
-        if len(certain) > _MAX_NAMED:
-            failure += f"; and {len(certain) - _MAX_NAMED} more"
-        ask_to_continue(failure, talk.ask, f"{certain[0].remedy} {NO_CHECK}")
+    elif problems:
+        failure = "; ".join(str(each) for each in problems[:_MAX_NAMED])
+        if len(problems) > _MAX_NAMED:
+            failure += f"; and {len(problems) - _MAX_NAMED} more"
+        ask_to_continue(failure, talk.ask, f"{problems[0].remedy} {NO_CHECK}")
 
 
 def _misspelled_components(packages: RobotPackages) -> Iterator[PackageProblem]:
