@@ -9,6 +9,3 @@ fixed hash seed and for robot time, so a new interpreter runs the same command.
 
 PYTEST_DONT_REWRITE
 """
-
-#: The environment variable in which a shell asks for completions of a command line; click chooses the name.
-COMPLETE_VARIABLE = "_PYFRC_COMPLETE"

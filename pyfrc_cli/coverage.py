@@ -38,7 +38,7 @@ def command(
     Exit codes: the other command's, if it failed; else
     1 too little is covered, 2 wrong usage.
     """
-    wrapped = wrapped_command(context, command_line, ("test", "sim", "fuzz", "replay"))
+    wrapped = wrapped_command(context, command_line)
     from pyfrc_core.measure.coverage import CoverageOptions, measuring
 
     options = CoverageOptions(

@@ -16,7 +16,6 @@ import click
 from pyfrc_core._version import __version__
 from pyfrc_core.errors import PyfrcError
 
-from . import COMPLETE_VARIABLE
 from .verbosity import HELP, QUIET, VERBOSE, Verbosity, add_options
 
 if TYPE_CHECKING:
@@ -43,10 +42,9 @@ COMMANDS = {
     "config": ("pyfrc_cli.config", "Check and show sim/config.json, and print its JSON Schema."),
     "migrate": ("pyfrc_cli.migrate", "Rewrite a robot project of 2026 for WPILib 2027."),
     "doctor": ("pyfrc_cli.doctor", "Find missing packages, wrong settings and connection problems."),
-    "completion": ("pyfrc_cli.completion", "Print the completion script for your shell."),
 }
 
-#: Names that commands have had before. They work, and neither the help nor the completion lists them.
+#: Names that commands have had before. They work, and neither the help nor a shell's completion lists them.
 OLDER_NAMES = {"profiler": "profile", "create-tests": "add-tests"}
 
 #: Names that other tools have for what pyfrc, or another tool, does; ``{robotpy}`` is how to install the season's.
@@ -160,8 +158,6 @@ def run() -> None:
     chosen = Verbosity()
     # None: colors only on a terminal.
     color = False if os.environ.get("NO_COLOR") else None
-    if COMPLETE_VARIABLE in os.environ:
-        from . import completion  # noqa: F401 - it registers PowerShell
     try:
         sys.exit(cli.main(prog_name="pyfrc", standalone_mode=False, color=color, obj=chosen))
     except (click.exceptions.Abort, ImportError) as error:

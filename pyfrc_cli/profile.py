@@ -60,7 +60,7 @@ def command(
     \b
     Exit codes: the other command's; 2 wrong usage.
     """
-    wrapped = wrapped_command(context, command_line, ("test", "sim", "fuzz", "replay"))
+    wrapped = wrapped_command(context, command_line)
     from pyfrc_core.measure.profile import ProfileOptions, profiling
 
     options = ProfileOptions(outfile, html, as_json, top, verbosity().quiet)

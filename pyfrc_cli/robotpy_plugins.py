@@ -85,17 +85,10 @@ def command_line(name: str, main_file: Path, arguments: Sequence[str]) -> list[s
 
 
 def _place_of_options(name: str, arguments: Sequence[str]) -> int:
-    """Return the index for the project's options.
+    """Return the index for the project's options. Those of a command that wraps another belong to the wrapped one."""
+    from .wrapping import WRAPPABLE
 
-    For a command that wraps another, they belong to the wrapped command.
-    """
     if name not in ("coverage", "profiler"):
         return 0
-    from .main import cli
-
-    context = cli.make_context("pyfrc", [name], resilient_parsing=True)
-    command = cli.get_command(context, name)
-    assert command is not None
-    wrapping = command.make_context(name, list(arguments), parent=context, resilient_parsing=True)
-    wrapped = wrapping.params["command_line"] or ()
-    return len(arguments) - len(wrapped) + 1 if wrapped else 0
+    wrapped = (at for at, word in enumerate(arguments) if word in WRAPPABLE)
+    return next(wrapped, -1) + 1

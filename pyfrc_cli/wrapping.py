@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .main import COMMANDS, loaded, refuse_repeated_options
+from .main import loaded, refuse_repeated_options
 from .project_options import chosen_project
 
 if TYPE_CHECKING:
     from pyfrc_core.project import Project
 
+#: The commands that can be measured.
+WRAPPABLE = ("test", "sim", "fuzz", "replay")
 #: Settings of the wrapping command: arguments after the wrapped command's name belong to that one.
 WRAPPING: dict[str, Any] = {"allow_interspersed_args": False}
 
@@ -45,19 +47,17 @@ class Wrapped:
         return 0
 
 
-def wrapped_command(context: click.Context, words: Sequence[str], wrappable: Sequence[str]) -> Wrapped:
+def wrapped_command(context: click.Context, words: Sequence[str]) -> Wrapped:
     """Parse the words as a command.
 
     :param context: the context of the wrapping command
     :param words: the wrapped command's name and arguments
-    :param wrappable: the names of the commands that can be wrapped
     :raises click.UsageError: when it is not one of them, or its options are wrong
     """
     name, *arguments = words
-    known = [each for each in wrappable if each in COMMANDS]
-    if name not in known:
+    if name not in WRAPPABLE:
         raise click.UsageError(
-            f"{name!r} is not a command that can be measured. These can: {', '.join(known)}.", context
+            f"{name!r} is not a command that can be measured. These can: {', '.join(WRAPPABLE)}.", context
         )
     command = loaded(name)
     refuse_repeated_options(command, name, arguments, context)

@@ -27,7 +27,6 @@ add-tests
 create-physics
 config check
 doctor --no-robot
-completion bash
 sync --help
 migrate --help
 console --help

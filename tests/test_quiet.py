@@ -85,9 +85,7 @@ def test_where_only_something_was_to_be_done_nothing_is_printed(args: list[str],
     assert (result.code, result.output) == (0, "")
 
 
-@pytest.mark.parametrize(
-    "args", [["init", "--list"], ["config", "show"], ["config", "schema"], ["completion", "zsh"]], ids=" ".join
-)
+@pytest.mark.parametrize("args", [["init", "--list"], ["config", "show"], ["config", "schema"]], ids=" ".join)
 def test_what_was_asked_for_is_printed_all_the_same(args: list[str], project: RobotProject) -> None:
     quiet = project.run(*args[:-1], "-q", args[-1])
     assert quiet.code == 0, quiet.output

@@ -58,10 +58,10 @@ def test_a_plugin_hands_on_all_that_stands_behind_its_name(name: str, become: li
 
 @pytest.mark.parametrize("name", ["coverage", "profiler"])
 def test_the_project_is_told_to_the_command_that_is_measured(name: str) -> None:
-    words = ["--json", "test", "sim", "--mode", "auto"]  # the report's name is that of a command
+    words = ["--json", "report", "sim", "--mode", "auto"]
     here = Path("somewhere", "robot.py")
     assert command_line(name, here, words) == [
-        *(name, "--json", "test", "sim", "--project", "somewhere", "--mode", "auto")
+        *(name, "--json", "report", "sim", "--project", "somewhere", "--mode", "auto")
     ]
     assert command_line(name, here, []) == [name, "--project", "somewhere"]
 

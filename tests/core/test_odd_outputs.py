@@ -17,7 +17,7 @@ from pyfrc_core.test_support.isolation.reruns import reruns_notice
 def test_output_that_is_no_longer_read_is_no_failed_test() -> None:
     reader, writer = os.pipe()
     os.close(reader)
-    command = [sys.executable, "-m", "pyfrc", "completion", "bash"]
+    command = [sys.executable, "-m", "pyfrc", "config", "schema"]
     environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
     done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, env=environment, text=True, check=False)
     assert done.returncode == 141
