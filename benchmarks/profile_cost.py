@@ -46,7 +46,6 @@ def measure(way: str) -> float:
                 "root": str(project.root),
                 "directory": directory,
                 "calls": way == "cProfile",
-                "samples": False,
             }
             closing.enter_context(announced("profile", settings))
         patches.install(project.files)

@@ -7,8 +7,6 @@ from pathlib import Path
 
 import click
 
-from pyfrc_core._version import requirement
-
 from .file_options import WrittenFile
 from .verbosity import verbosity
 from .wrapping import WRAPPING, wrapped_command
@@ -20,15 +18,7 @@ from .wrapping import WRAPPING, wrapped_command
     "--outfile",
     metavar="FILE",
     type=WrittenFile(),
-    help="Also time every call, much more slowly, with Python's cProfile, and write its file, which pstats reads. Not "
-    "with --html.",
-)
-@click.option(
-    "--html",
-    metavar="FILE",
-    type=WrittenFile(),
-    help="Draw which function called which, and for how long (a flame graph), as a web page. Needs: pip install "
-    f'"{requirement("profile")}"',
+    help="Also time every call, much more slowly, with Python's cProfile, and write its file, which pstats reads.",
 )
 @click.option(
     "--json", "as_json", metavar="FILE", type=WrittenFile(), help="Write all measurements as JSON, for other programs."
@@ -46,7 +36,6 @@ from .wrapping import WRAPPING, wrapped_command
 def command(
     context: click.Context,
     outfile: Path | None,
-    html: Path | None,
     as_json: Path | None,
     top: int,
     command_line: tuple[str, ...],
@@ -63,7 +52,7 @@ def command(
     wrapped = wrapped_command(context, command_line)
     from pyfrc_core.measure.profile import ProfileOptions, profiling
 
-    options = ProfileOptions(outfile, html, as_json, top, verbosity().quiet)
+    options = ProfileOptions(outfile, as_json, top, verbosity().quiet)
     with profiling(wrapped.project, options, f"pyfrc {' '.join(command_line)}"):
         status = wrapped.run()
     sys.exit(status)

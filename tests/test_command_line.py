@@ -84,7 +84,7 @@ def test_a_file_and_a_class_are_chosen_where_the_robots_code_is_loaded(option: s
 #: Options that mean something else in each command.
 OF_EACH_COMMAND = {
     *("--verbose", "--seed", "--jobs", "--isolation", "--from", "--trace", "--page", "--record", "--share", "--port"),
-    *("--robot", "--html", "--json", "--check"),
+    *("--robot", "--json", "--check"),
 }
 
 

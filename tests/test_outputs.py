@@ -21,7 +21,6 @@ FILES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "coverage --xml": (("coverage", "{}", "replay", "in.jsonl"), ("in.jsonl", "in.trace.jsonl")),
     "coverage --json": (("coverage", "{}", *SIM, "--script", "in.jsonl"), ("in.jsonl",)),
     "profile --outfile": (("profile", "{}", "replay", "in.jsonl"), ("in.jsonl",)),
-    "profile --html": (("profile", "{}", "fuzz", "--from", "in.jsonl"), ("in.jsonl",)),
     "profile --json": (("profile", "{}", *LOG), ("in.jsonl", "in.trace.jsonl")),
     "replay --trace": (("replay", "{}", "in.jsonl"), ("in.jsonl", "in.trace.jsonl")),
     "replay --page": (("replay", "{}", "in.jsonl"), ("in.jsonl", "in.trace.jsonl")),

@@ -73,11 +73,6 @@ def profile(project: RobotProject, *command: str, options: tuple[str, ...] = ())
     return result, json.loads((project.path / "profile.json").read_text("utf-8"))
 
 
-def sampled_methods(page: str) -> set[str]:
-    """Return the methods of `MyRobot` on pyinstrument's page: its data has function, file and line, and the class."""
-    return set(re.findall(r'"identifier": "(\w+)\\u0000[^"]*robot\.py[^{}]*"attributes": \{"cMyRobot"', page))
-
-
 def by_name(report: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     return {function["name"]: function for function in report["functions"]}
 
@@ -301,45 +296,6 @@ def test_pstats_have_each_call_of_all_processes(make_project: MakeProject) -> No
     count = by_name(report)["MyRobot.teleopPeriodic"]["count"]
     assert calls == {"teleopPeriodic": count, "helper": count}
     assert count > 10  # both tests'
-
-
-def test_the_flame_view_shows_the_robots_functions(make_project: MakeProject) -> None:
-    pytest.importorskip("pyinstrument")
-    project = make_project({"robot.py": SLOW_ROBOT.replace("PLANTED", "0.03"), "tests/test_a.py": TELEOP})
-    profile(project, "test", options=("--html", "pages/profile.html"))
-    page = (project.path / "pages/profile.html").read_text("utf-8")
-    methods = sampled_methods(page)
-    assert "teleopPeriodic" in methods
-    assert "work" in methods
-    assert "stopwatch.py" not in page
-
-
-def test_the_two_profilers_are_mutually_exclusive(make_project: MakeProject) -> None:
-    pytest.importorskip("pyinstrument")
-    project = make_project({"robot.py": SMALL_ROBOT, "tests/test_a.py": TELEOP})
-    result = project.run_here("profile", "-o", "a.pstats", "--html", "a.html", "test")
-    assert result.code == 2, result.output
-    assert result.first_error == "-o and --html are mutually exclusive"
-    assert "passed" not in result.stdout
-
-
-def test_without_pyinstrument_it_says_what_to_install(make_project: MakeProject) -> None:
-    project = make_project(
-        {
-            "robot.py": SMALL_ROBOT,
-            "tests/test_a.py": TELEOP,
-            "hidden/sitecustomize.py": """
-        import sys
-
-        sys.modules["pyinstrument"] = None
-    """,
-        }
-    )
-    environment = {"PYTHONPATH": str(project.path / "hidden")}
-    result = project.run("profile", "--html", "profile.html", "test", env=environment)
-    assert result.code == 2, result.output
-    assert 'pip install "pyfrc[profile]>=2026.1"' in result.stderr
-    assert "passed" not in result.stdout
 
 
 def test_a_failing_command_is_reported_with_its_exit_code(make_project: MakeProject) -> None:

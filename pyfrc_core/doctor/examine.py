@@ -29,7 +29,6 @@ from .steps import first_missing
 #: Each of pyfrc's extras with its module and its purpose.
 EXTRAS = {
     "cluster": ("distributed", "pyfrc fuzz --scheduler"),
-    "profile": ("pyinstrument", "--html of pyfrc profile"),
     "wpilib-window": ("halsim_gui", "pyfrc sim --ui wpilib"),
 }
 

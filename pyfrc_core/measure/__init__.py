@@ -8,5 +8,5 @@ only while it measures.
   every line, and the robot would be another one.
 - Times are processor time, with each wait replaced by its robot time: a busy computer changes neither. Overruns are
   found by wall time, since code that waits for a file uses no processor time.
-- Where the time goes within a function is pyinstrument's work, and its page's (`--html`); `-o` is cProfile's.
+- Where the time goes within a function is cProfile's work (`-o`).
 """

@@ -7,7 +7,7 @@ import json
 import os
 import pstats
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import wraps
 from itertools import count
@@ -20,7 +20,6 @@ from ..project.robot_files import RobotFiles
 from ..temporary import temporary_directory
 from ..text_files import write_whole
 from .figures import Figures, added_up
-from .flame_graph import Samples, require_pyinstrument, write_flame_graph
 from .processes import announced, is_announced
 from .profile_report import as_json, as_text
 
@@ -30,14 +29,12 @@ class ProfileOptions:
     """The reports to write besides the printed one.
 
     :param pstats: a file in the format of Python's `pstats`
-    :param html: a web page with a flame graph
     :param json: all measurements
     :param top: how many functions to print
     :param quiet: print the report, but not the paths of the others
     """
 
     pstats: Path | None = None
-    html: Path | None = None
     json: Path | None = None
     top: int = 20
     quiet: bool = False
@@ -83,45 +80,31 @@ def begin(settings: dict[str, Any]) -> Callable[[], None]:
     """Start measuring in this process; return a function that saves the result. A fork continues to measure."""
     from ..patch_table import PatchTable
     from ..runtime.robot import RobotRun
-    from ..runtime.threads.robot_threads import RobotThread, RobotThreads
     from .stopwatch import Stopwatch
     from .user_functions import UserFunctions
 
-    figures, calls, samples, files = Figures(), _CallProfile(), Samples(), RobotFiles(Path(settings["root"]))
+    figures, calls, files = Figures(), _CallProfile(), RobotFiles(Path(settings["root"]))
     wrap = calls.wrap if settings["calls"] else lambda function: function
     functions = UserFunctions(Stopwatch(figures), files, wrap)
-    table, numbers, real_open, real_run_body = PatchTable(), count(), RobotRun.open, RobotThreads.run_body
-    driver = ExitStack()
+    table, numbers, real_open = PatchTable(), count(), RobotRun.open
 
     def open_run(run: RobotRun) -> None:
         functions.time_callbacks(table)
         real_open(run)
-        if settings["samples"]:
-            driver.enter_context(samples.sampling())
-            run.at_close(driver.close)
-
-    def run_body(threads: RobotThreads, record: RobotThread, body: Callable[[], object]) -> None:
-        with samples.sampling():
-            real_run_body(threads, record, body)
 
     def clear() -> None:
         figures.clear()
         calls.clear()
-        samples.sessions.clear()
 
     functions.install(table)
     table.patch(RobotRun, "open", open_run)
-    if settings["samples"]:
-        table.patch(RobotThreads, "run_body", run_body)
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(after_in_child=clear)
 
     def save() -> None:
-        driver.close()
         name = Path(settings["directory"], f"{os.getpid()}-{next(numbers)}")
         figures.save(name.with_suffix(".figures"))
         calls.save(name.with_suffix(".pstats"))
-        samples.save(name.with_suffix(".samples"))
         clear()
         table.undo()
 
@@ -136,26 +119,21 @@ def profiling(project: Project, options: ProfileOptions, command: str) -> Iterat
     """
     if is_announced("profile"):
         raise UsageError("a profile is already being measured")
-    if options.html is not None:
-        require_pyinstrument()
-        if options.pstats is not None:  # before Python 3.12, a thread has one profiler at a time
-            raise UsageError("-o and --html are mutually exclusive", remedy="Profile twice, once with each.")
     # The directory for the figures of each process, until they are added up.
     with temporary_directory("profile") as directory:
         settings = {
             "root": str(project.root),
             "directory": directory,
             "calls": options.pstats is not None,
-            "samples": options.html is not None,
         }
         try:
             with announced("profile", settings):
                 yield
         finally:
-            _report(Path(directory), RobotFiles(project.root), options, command)
+            _report(Path(directory), options, command)
 
 
-def _report(directory: Path, files: RobotFiles, options: ProfileOptions, command: str) -> None:
+def _report(directory: Path, options: ProfileOptions, command: str) -> None:
     def print_path(text: str) -> None:
         if not options.quiet:
             print(text)
@@ -168,10 +146,6 @@ def _report(directory: Path, files: RobotFiles, options: ProfileOptions, command
         options.pstats.parent.mkdir(parents=True, exist_ok=True)
         pstats.Stats(*calls).dump_stats(options.pstats)
         print_path(f"profile for pstats: {options.pstats}")
-    samples = sorted(directory.glob("*.samples"))
-    if options.html is not None and samples:
-        write_flame_graph(samples, files, options.html, command)
-        print_path(f"profile as a web page: {options.html}")
     if options.json is not None:
         write_whole(options.json, [json.dumps(as_json(figures, command), indent=1), "\n"])
         print_path(f"profile as JSON: {options.json}")

@@ -21,7 +21,7 @@ LIBRARIES = frozenset(
         *("robotpy_apriltag", "robotpy_ext", "urcl", "wpilib", "wpimath", "wpinet", "wpiutil"),
         *("_pytest", "attr", "attrs", "click", "coverage", "cryptography", "hypothesis", "iniconfig"),
         *("packaging", "paramiko", "pluggy", "pydantic", "pydantic_core", "pygments", "pytest"),
-        *("rich", "scipy", "sortedcontainers", "tomli", "typing_extensions", "PIL", "pyinstrument", "exceptiongroup"),
+        *("rich", "scipy", "sortedcontainers", "tomli", "typing_extensions", "PIL", "exceptiongroup"),
     }
 )
 
