@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 
 @click.group("config")
 def command() -> None:
-    """Check and show sim/config.json, which the physics and the simulator read."""
+    """Check sim/config.json, which the physics and the simulator read."""
 
 
 @command.command("check")
@@ -43,25 +42,6 @@ def check(directory: Path | None, strict: bool) -> None:
         what += f", but {f'more than {MOST_TOLD} warnings' if many else counted(len(warnings), 'warning')}"
     hint(f"{loaded.name}: {what}")
     sys.exit(1 if strict and warnings else 0)
-
-
-@command.command("show")
-@project_option
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, in the format of sim/config.json.")
-def show(directory: Path | None, as_json: bool) -> None:
-    """Show all values, and where each comes from.
-
-    \b
-    Exit codes: 0 shown, 2 the file has mistakes, or there is no project.
-    """
-    loaded = _loaded(directory)
-    if as_json:
-        click.echo(json.dumps(loaded.as_json(), indent=2))
-        return
-    rows = [(path, json.dumps(value), source) for path, value, source in loaded.settings()]
-    path_width, value_width = (min(max(len(row[column]) for row in rows), 40) for column in (0, 1))
-    for path, value, source in rows:
-        click.echo(f"{path:{path_width}}  {value:{value_width}}  {source}")
 
 
 @command.command("schema")

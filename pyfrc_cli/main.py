@@ -39,7 +39,7 @@ COMMANDS = {
     "undeploy": ("pyfrc_cli.undeploy", "Stop the robot program and remove it from the robot."),
     "console": ("pyfrc_cli.console", "Show the robot program's output."),
     "virtual-robot": ("pyfrc_cli.virtual_robot", "Start a virtual robot on this computer, to deploy to."),
-    "config": ("pyfrc_cli.config", "Check and show sim/config.json, and print its JSON Schema."),
+    "config": ("pyfrc_cli.config", "Check sim/config.json, and print its JSON Schema."),
     "migrate": ("pyfrc_cli.migrate", "Rewrite a robot project of 2026 for WPILib 2027."),
     "doctor": ("pyfrc_cli.doctor", "Find missing packages, wrong settings and connection problems."),
 }

@@ -60,7 +60,7 @@ def test_each_command_takes_it_behind_its_name(path: tuple[str, ...]) -> None:
     assert {"-q", "--quiet", "-v", "--verbose"} <= options
 
 
-@pytest.mark.parametrize("args", [["-q", "-v", "init"], ["-q", "config", "show", "-v"], ["test", "-v", "--quiet"]])
+@pytest.mark.parametrize("args", [["-q", "-v", "init"], ["-q", "config", "check", "-v"], ["test", "-v", "--quiet"]])
 def test_quiet_and_verbose_cannot_both_be(args: list[str], project: RobotProject) -> None:
     result = project.run(*args)
     assert (result.code, result.stdout) == (2, "")
@@ -85,7 +85,7 @@ def test_where_only_something_was_to_be_done_nothing_is_printed(args: list[str],
     assert (result.code, result.output) == (0, "")
 
 
-@pytest.mark.parametrize("args", [["init", "--list"], ["config", "show"], ["config", "schema"]], ids=" ".join)
+@pytest.mark.parametrize("args", [["init", "--list"], ["config", "schema"]], ids=" ".join)
 def test_what_was_asked_for_is_printed_all_the_same(args: list[str], project: RobotProject) -> None:
     quiet = project.run(*args[:-1], "-q", args[-1])
     assert quiet.code == 0, quiet.output
@@ -151,7 +151,7 @@ def test_failures_are_told(project: RobotProject) -> None:
         said, failure = words(failed.stdout)
         assert said == "the robot's words"
         assert "ValueError: not that button" in failure
-    wrong = project.run("-q", "config", "show", "--project", "none")
+    wrong = project.run("-q", "config", "check", "--project", "none")
     assert (wrong.code, wrong.first_error) == (2, "there is no directory none")
 
 

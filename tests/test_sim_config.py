@@ -15,7 +15,7 @@ from conftest import MakeProject
 from test_generated_docs import expanded
 
 from pyfrc_core.config.sim import Polygon, Rectangle, SimConfig, sim_config_schema
-from pyfrc_core.config.sim_file import _leaves, load_sim_config
+from pyfrc_core.config.sim_file import load_sim_config
 from pyfrc_core.errors import SettingsError
 
 ROBOT = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
@@ -365,11 +365,3 @@ def test_the_documents_example_is_without_mistakes_and_warnings(make_project: Ma
     for command in commands:
         assert project.run(*command.split()).code == 0, command
     assert SCHEMA.is_valid(json.loads(EXAMPLE))
-
-
-def test_an_empty_object_is_shown_as_a_value_of_its_own() -> None:
-    assert list(_leaves({"CAN": {}, "robot": {"w": 2}, "messages": []}, ("pyfrc",))) == [
-        (("pyfrc", "CAN"), {}),
-        (("pyfrc", "robot", "w"), 2),
-        (("pyfrc", "messages"), []),
-    ]

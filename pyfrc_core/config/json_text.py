@@ -1,8 +1,8 @@
 """A JSON file: its content, and the line of each value in it.
 
-Python's `json` parses the text but does not report the positions of values. When a position is needed (for an error, a
-warning, or ``config show``), the text is scanned a second time with `json`'s `raw_decode`, which returns where the
-value at an offset ends. Both passes use Python's own scanner, so they cannot disagree about what is a string.
+Python's `json` parses the text but does not report the positions of values. When a position is needed (for an error or
+a warning), the text is scanned a second time with `json`'s `raw_decode`, which returns where the value at an offset
+ends. Both passes use Python's own scanner, so they cannot disagree about what is a string.
 
 Only standard JSON is accepted: NaN and Infinity, which Python would read, are errors.
 """

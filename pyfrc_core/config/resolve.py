@@ -9,29 +9,21 @@ from ..season import CURRENT, FIELDS
 from .findings import Path
 from .sim import FieldConfig, Joystick, RobotConfig, SimConfig, SimConfigFile
 
-#: Where each derived value comes from: the path of another key in the file, or a description.
-Origins = dict[Path, Path | str]
-
 _BUTTONS = {CURRENT.first_button: "Trigger", CURRENT.first_button + 1: "Top"}
 #: A known season decides these keys of the field, whatever the file says.
-FROM_SEASON = ("w", "h", "px_per_ft")
+_FROM_SEASON = ("w", "h", "px_per_ft")
 
 
-def resolve(given: SimConfig) -> tuple[SimConfig, Origins]:
-    """Return the values in effect, and the origins of those that `given` does not contain.
-
-    :param given: what the file says
-    """
-    origins: Origins = {}
-    config = given.model_copy(
+def resolve(given: SimConfig) -> SimConfig:
+    """Return the values in effect, where `given` is what the file says."""
+    return given.model_copy(
         update={
-            "robot": _robot(given.robot, origins),
-            "field": _field(given.field, origins),
-            "game_specific_messages": _messages(given, origins),
+            "robot": _robot(given.robot),
+            "field": _field(given.field),
+            "game_specific_messages": _messages(given),
             "joysticks": {port: _joystick(given.joysticks.get(port, Joystick())) for port in range(6)},
         }
     )
-    return config, origins
 
 
 def resolve_document(document: Mapping[str, object]) -> SimConfig:
@@ -39,43 +31,33 @@ def resolve_document(document: Mapping[str, object]) -> SimConfig:
 
     :raises pydantic.ValidationError: when a value is not allowed
     """
-    return resolve(SimConfigFile.model_validate(document).pyfrc)[0]
+    return resolve(SimConfigFile.model_validate(document).pyfrc)
 
 
-def _robot(robot: RobotConfig, origins: Origins) -> RobotConfig:
+def _robot(robot: RobotConfig) -> RobotConfig:
     update: dict[str, Any] = {}
     if "l" not in robot.model_fields_set and "h" in robot.model_fields_set:
         update["l"] = robot.h
-        origins["robot", "l"] = ("robot", "h")
     if len(robot.start_positions) == 1:
         (start,) = robot.start_positions
-        for name in ("x", "y", "angle"):
-            update[f"starting_{name}"] = getattr(start, name)
-            is_given = name in start.model_fields_set
-            origins["robot", f"starting_{name}"] = ("robot", "start_positions", 0, name) if is_given else "default"
+        update |= {f"starting_{name}": getattr(start, name) for name in ("x", "y", "angle")}
     return robot.model_copy(update={"h": update.get("l", robot.l), **update})
 
 
-def _field(field: FieldConfig, origins: Origins) -> FieldConfig:
+def _field(field: FieldConfig) -> FieldConfig:
     season = FIELDS.get(field.season or 0)
     if season is None:
-        for name in FROM_SEASON:
-            if name not in field.model_fields_set:
-                origins["field", name] = f"default: season {CURRENT.year}"
         return field
-    names = list(FROM_SEASON)
+    names = list(_FROM_SEASON)
     if "auto_joysticks" not in field.model_fields_set:
         names.append("auto_joysticks")
-    for name in names:
-        origins["field", name] = f"season {field.season}"
     return field.model_copy(update={name: getattr(season, name) for name in names})
 
 
-def _messages(given: SimConfig, origins: Origins) -> tuple[str, ...]:
+def _messages(given: SimConfig) -> tuple[str, ...]:
     season = FIELDS.get(given.field.season or 0)
     if season is None or "game_specific_messages" in given.model_fields_set:
         return given.game_specific_messages
-    origins["game_specific_messages",] = f"season {given.field.season}"
     return season.messages
 
 
@@ -87,7 +69,7 @@ def ignored_keys(given: SimConfig) -> Iterator[tuple[Path, str]]:
     """Yield the keys of the file that have no effect, each with the reason."""
     field, robot = given.field, given.robot
     if field.season in FIELDS:
-        for name in FROM_SEASON:
+        for name in _FROM_SEASON:
             if name in field.model_fields_set:
                 yield ("field", name), f"ignored, since field.season is {field.season}"
     elif field.season is not None:

@@ -1,4 +1,4 @@
-"""Read ``sim/config.json``: the values in effect, the keys without effect, and the origin of each value.
+"""Read ``sim/config.json``: the values in effect, and the keys without effect.
 
 It also finds values that are allowed but probably a mistake, most often in the wrong unit.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import islice
 from math import pi
 from pathlib import Path as File
@@ -17,12 +17,11 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from ..errors import nearest
-from ..season import FIELDS
 from .colors import color_problem
 from .findings import MOST_TOLD, Finding, Path, dotted, finding_at, in_order, mistakes, settings_error
 from .json_text import MOST_BYTES, JsonText
 from .pictures import field_picture
-from .resolve import FROM_SEASON, Origins, ignored_keys, resolve
+from .resolve import ignored_keys, resolve
 from .sim import AXES, FieldConfig, SimConfig, SimConfigFile
 
 #: Feet. Smaller than the robots of XRP and Romi kits.
@@ -40,8 +39,9 @@ def lint(config: SimConfig) -> Iterator[tuple[Path, str]]:
             yield ("robot", name), "this is very small: is that in metres? Lengths are in feet"
         elif length > min(field.w, field.h):
             yield ("robot", name), f"the robot is larger than the field ({size}); lengths are in feet"
-    at_start = {"x": robot.starting_x, "y": robot.starting_y, "angle": robot.starting_angle}
-    yield from _of_start(("robot",), "starting_", at_start, field, size)
+    if len(robot.start_positions) != 1:  # which would be this one
+        at_start = {"x": robot.starting_x, "y": robot.starting_y, "angle": robot.starting_angle}
+        yield from _of_start(("robot",), "starting_", at_start, field, size)
     for index, start in enumerate(robot.start_positions):
         place = {"x": start.x, "y": start.y, "angle": start.angle}
         yield from _of_start(("robot", "start_positions", index), "", place, field, size)
@@ -79,51 +79,17 @@ class LoadedSimConfig:
     warnings: tuple[Finding, ...] = ()
     #: The file's text; None where there is no file.
     text: JsonText | None = None
-    _origins: Origins = field(default_factory=dict)
-
-    def settings(self) -> Iterator[tuple[str, Any, str]]:
-        """Yield each value in effect: its path (``pyfrc.robot.w``), the value as in JSON, and its origin."""
-        for path, value in _leaves(self.config.model_dump(mode="json"), ()):
-            yield dotted(("pyfrc", *path)), value, self._source(path)
-
-    def as_json(self) -> dict[str, Any]:
-        """Return the values in effect and their sources by path, in a form that ``sim/config.json`` may have.
-
-        The values that the season decides are under ``season``: under ``field`` they would be ignored.
-        """
-        values = self.config.model_dump(mode="json")
-        sources = {path: source for path, _, source in self.settings()}
-        if self.config.field.season not in FIELDS:
-            return {"pyfrc": values, "sources": sources}
-        decided = {name: values["field"].pop(name) for name in FROM_SEASON}
-        return {"pyfrc": values, "season": decided, "sources": sources}
 
     def lint(self) -> tuple[Finding, ...]:
         """Return the values in the file that are probably a mistake, in the file's order."""
         found = {}
         for path, why in lint(self.config):
-            origin = self._origins.get(path, path)
-            if self.text is not None and isinstance(origin, tuple) and self._has(origin):
-                whole = ("pyfrc", *origin)
+            whole = ("pyfrc", *path)
+            if self.text is not None and path == ("robot", "l") and not self.text.has(whole):
+                whole = ("pyfrc", "robot", "h")  # its older name
+            if self.text is not None and self.text.has(whole):
                 found[whole] = finding_at(self.text, whole, f"{dotted(whole)} = {self.text.excerpt(whole)}: {why}")
         return tuple(in_order(found.values()))
-
-    def _source(self, path: Path) -> str:
-        origin = self._origins.get(path, path)
-        if isinstance(origin, str):
-            return origin
-        if len(path) == 4 and path[2] == "axes":
-            # The file may name an axis by its letter.
-            names = [(*path[:3], key) for key, number in AXES.numbers.items() if str(number) == path[3]]
-            origin = next(filter(self._has, names), path)
-        if origin == path and not self._has(path):
-            return "default"
-        assert self.text is not None
-        place = f"{self.name}:{self.text.line_of(('pyfrc', *origin))}"
-        return place if origin == path else f"{place} ({dotted(origin)})"
-
-    def _has(self, path: Path) -> bool:
-        return self.text is not None and self.text.has(("pyfrc", *path))
 
 
 def load_sim_config(root: File, *, shown_from: File | None = None) -> LoadedSimConfig:
@@ -137,19 +103,17 @@ def load_sim_config(root: File, *, shown_from: File | None = None) -> LoadedSimC
     shown_from = shown_from or root
     name = _shown(file, shown_from)
     if not (file.exists() or file.is_symlink()):
-        config, origins = resolve(SimConfig())
         elsewhere = tuple(
             Finding(_shown(other, shown_from), None, "pyfrc does not read this file", f"Move it to {name}")
             for other in _misplaced(root)
         )
-        return LoadedSimConfig(config, name, elsewhere, _origins=origins)
+        return LoadedSimConfig(resolve(SimConfig()), name, elsewhere)
     text = JsonText(file, name)
     try:
         given = SimConfigFile.model_validate(text.value).pyfrc
     except ValidationError as invalid:
         raise settings_error(mistakes(invalid, text.value, text)) from None
-    config, origins = resolve(given)
-    return LoadedSimConfig(config, name, _warnings(given, text, file.parent), text, origins)
+    return LoadedSimConfig(resolve(given), name, _warnings(given, text, file.parent), text)
 
 
 def _shown(file: File, directory: File) -> str:
@@ -243,12 +207,3 @@ def _same_axis(axes: dict[str, str]) -> Iterator[tuple[str, str]]:
         first = seen.setdefault(AXES.numbers[key], key)
         if first != key:
             yield first, key
-
-
-def _leaves(value: object, path: Path) -> Iterator[tuple[Path, Any]]:
-    """Yield the leaf values of nested objects; an array is a leaf."""
-    if isinstance(value, dict) and value:
-        for key, item in value.items():
-            yield from _leaves(item, (*path, key))
-    else:
-        yield path, value
