@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .file_options import ReadPath, WrittenDirectory
-from .project_options import chosen_project, from_here, project_option
+from .project_options import chosen_project, project_option
 from .verbosity import hint, verbosity
 
 if TYPE_CHECKING:
@@ -24,10 +23,6 @@ if TYPE_CHECKING:
 @click.option("--check", is_flag=True, help="Change nothing: only report what is missing or different.")
 @click.option("--upgrade", is_flag=True, help="Find new versions, and write pyfrc-lock.toml anew.")
 @click.option("--install/--no-install", help="Install the same versions on this computer, too.  [default: no-install]")
-@click.option(
-    "--to", metavar="DIR", type=WrittenDirectory(), help="Copy everything to this directory, such as a USB stick."
-)
-@click.option("--from", "source", metavar="DIR", type=ReadPath(), help="Take everything from such a directory.")
 @click.option(
     "--find-links",
     metavar="PLACE",
@@ -44,8 +39,6 @@ def command(
     check: bool,
     upgrade: bool,
     install: bool,
-    to: Path | None,
-    source: Path | None,
     find_links: tuple[str, ...],
     use_certifi: bool,
 ) -> None:
@@ -58,10 +51,8 @@ def command(
     \b
     Exit codes: 0 everything is here, 1 something is missing or, with --check, different; 2 wrong usage or settings.
     """
-    if check and (upgrade or install or to or source or find_links):
+    if check and (upgrade or install or find_links):
         raise click.UsageError("--check changes nothing: it takes none of the other options.")
-    if to is not None and source is not None:
-        raise click.UsageError("--to and --from are mutually exclusive.")
     from pyfrc_core.season import CURRENT, installed_wpilib
     from pyfrc_core.sync.synchronize import SyncOptions, differences, synchronize
 
@@ -72,16 +63,10 @@ def command(
             click.echo(each)
         hint("\nTo get it: pyfrc sync" if found else "nothing is missing")
         sys.exit(1 if found else 0)
-    options = SyncOptions(upgrade, source, find_links, use_certifi)
+    options = SyncOptions(upgrade, find_links, use_certifi)
     with _Progress() as progress:
         synced = synchronize(project, CURRENT, installed_wpilib(), options, progress)
     _report(synced)
-    if to is not None:
-        from pyfrc_core.sync.carry import carry
-        from pyfrc_core.wording import counted
-
-        copied = carry(synced.lock, CURRENT, to)
-        hint(f"{counted(copied, 'file')} copied to {from_here(to)}. There: pyfrc sync --from {from_here(to)}")
     if install:
         from pyfrc_core.sync.install import install_here
 

@@ -34,7 +34,6 @@ FILES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 DIRECTORIES: dict[str, tuple[str, ...]] = {
     "coverage --html": ("coverage", "{}", "test"),
     "fuzz --pages": ("fuzz", "{}", "--runs", "1"),
-    "sync --to": ("sync", "{}"),
     "test --coverage-html": ("test", "{}"),
     "test --record": ("test", "{}"),
     "test --trace": ("test", "{}"),

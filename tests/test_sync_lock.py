@@ -178,7 +178,7 @@ RETRYING = (
             LOOKED + RETRYING + MISSING.format("six", "none"),
             "a package index cannot be reached: Connection refused; pip has looked in http://a.invalid/simple, "
             "http://b.invalid:8/robot",
-            "pyfrc sync --from DIRECTORY",
+            "copy the cache and the lock",
         ),
         (
             "Could not fetch URL http://a.invalid/: certificate verify failed",

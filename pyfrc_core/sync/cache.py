@@ -13,7 +13,6 @@ from .lock import PYTHON, LockedFile
 
 #: The file in a cache that a process locks while it changes the cache.
 LOCKED_WHILE_CHANGED = ".pyfrc-sync.lock"
-_REMEDY = "With internet: pyfrc sync. Without: pyfrc sync --from DIRECTORY, with one that pyfrc sync --to has filled."
 
 
 class NotSyncedError(PyfrcError):
@@ -68,4 +67,5 @@ def cached_file(locked: LockedFile, season: Season) -> Path:
     if cache.has(locked):
         return path
     wrong = "has another content than the lock says" if path.exists() else "is not on this computer yet"
-    raise NotSyncedError(f"{locked} for the robot {wrong} ({path})", remedy=_REMEDY)
+    remedy = f"With internet: pyfrc sync. Without: copy {cache.root} from a computer that has run pyfrc sync."
+    raise NotSyncedError(f"{locked} for the robot {wrong} ({path})", remedy=remedy)

@@ -60,10 +60,7 @@ def unreachable_index(printed: str) -> PyfrcError:
         why = "its certificate could not be verified"
     else:
         why = found[1] or found[3]
-    remedy = (
-        "Connect this computer to the internet. Without it: pyfrc sync --from DIRECTORY, with one that pyfrc sync --to "
-        "has filled."
-    )
+    remedy = "Connect this computer to the internet, or copy the cache and the lock from one that has run pyfrc sync."
     if found is not None and found[2]:
         remedy = "A network that inspects connections needs its certificate in pip's settings: docs/reference/sync.md."
     listed = ", ".join(indexes_in(printed))

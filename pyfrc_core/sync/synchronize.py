@@ -15,8 +15,7 @@ from ..season import Season
 from ..wording import size_text
 from .addresses import PYTHON_VARIABLE, file_name_in, link_directories, replaced_python_url
 from .cache import Cache, cache_of
-from .carry import lock_in, take
-from .download import Download, Downloader, DownloadError
+from .download import Download, Downloader, DownloadError, cannot_write
 from .lock import PYTHON, Lock, LockedFile, is_file_name, load_lock, lock_file_of, save_lock
 from .pip_errors import NothingFitsError
 from .resolve import find_packages, source_of
@@ -29,13 +28,11 @@ class SyncOptions:
     """The options of `pyfrc sync`.
 
     :param upgrade:     find new versions, also where the lock has one
-    :param source:      take all files from this directory, and nothing from the internet
     :param find_links:  further places where pip looks for packages: directories and addresses
     :param use_certifi: trust the certificates of the package certifi
     """
 
     upgrade: bool = False
-    source: Path | None = None
     find_links: Sequence[str] = ()
     use_certifi: bool = False
 
@@ -85,14 +82,7 @@ def synchronize(
     with cache.changed_alone(progress.waiting):
         previous = _previous(file, season, options.upgrade)
         work = _Work(season, cache, options, progress)
-        if options.source is not None:
-            usable = previous if not options.upgrade else None
-            lock = usable or lock_in(options.source, season)
-            if lock.requirements != wanted.locked:
-                whose = file.name if usable else f"the lock in {options.source}"
-                raise _other_requirements(whose, lock, wanted)
-            work.take_all(lock, options.source)
-        elif previous is not None and previous.requirements == wanted.locked and not options.upgrade:
+        if previous is not None and previous.requirements == wanted.locked and not options.upgrade:
             lock = previous
             work.get_all(lock)
         else:
@@ -136,16 +126,6 @@ def _previous(file: Path, season: Season, upgrade: bool) -> Lock | None:
         raise
 
 
-def _other_requirements(whose: str, lock: Lock, wanted: Wanted) -> PyfrcError:
-    new = [each for each in wanted.locked if each not in lock.requirements]
-    gone = [each for each in lock.requirements if each not in wanted.locked]
-    what = "; ".join(f"{word} {', '.join(some)}" for word, some in (("it lacks", new), ("it has", gone)) if some)
-    return PyfrcError(
-        f"{whose} is not for what pyproject.toml asks for now: {what}",
-        remedy="With internet, run pyfrc sync --to DIRECTORY in this project, then take that directory.",
-    )
-
-
 def _refuse_other_index(found: LockedFile, old: LockedFile | None) -> None:
     """Refuse another version from another index than the locked one: it may be a stranger's of the same name."""
     if old is None or old.version == found.version:
@@ -177,21 +157,6 @@ class _Work:
         self._progress = progress
         self._directories = link_directories(options.find_links)
         self._downloader = Downloader(options.use_certifi)
-
-    def take_all(self, lock: Lock, source: Path) -> None:
-        """Copy the locked files that the cache lacks from a directory."""
-        missing = self._missing(lock)
-        lacking = [each for each in missing if not each.is_at(source / each.file)]
-        if lacking:
-            named = ", ".join(each.file for each in lacking[:3])
-            more = f" and {len(lacking) - 3} more" if len(lacking) > 3 else ""
-            raise PyfrcError(
-                f"{source} does not have {named}{more}, with the content that the lock names",
-                remedy="With internet, in this project: pyfrc sync --to DIRECTORY. To use the lock in the directory "
-                "instead of the project's: pyfrc sync --upgrade --from DIRECTORY",
-            )
-        for each in missing:
-            self._copy(each, source)
 
     def get_all(self, lock: Lock) -> None:
         """Get the locked files that the cache lacks."""
@@ -269,8 +234,7 @@ class _Work:
         if url is None:
             raise PyfrcError(
                 f"{locked} has no address in the lock: it came from a directory",
-                remedy="Name that directory: pyfrc sync --find-links DIRECTORY; or one that pyfrc sync --to has "
-                "filled: pyfrc sync --from DIRECTORY",
+                remedy="Name that directory: pyfrc sync --find-links DIRECTORY",
             )
         path = self._cache.path_of(locked)
 
@@ -294,7 +258,18 @@ class _Work:
         return next((each for each in self._directories if locked.is_at(each / locked.file)), None)
 
     def _copy(self, locked: LockedFile, source: Path) -> None:
-        take(locked, source, self._cache.path_of(locked))
+        """Copy a file into the cache, so that it appears only when complete."""
+        to = self._cache.path_of(locked)
+        part = to.with_name(f".{to.name}.copy")
+        try:
+            to.parent.mkdir(parents=True, exist_ok=True)
+            if hash_file(source / locked.file, part) != (locked.sha256, locked.size):
+                raise PyfrcError(f"{locked.file} in {source} changes while it is read", remedy="Check the USB stick.")
+            part.replace(to)
+        except OSError as error:
+            raise cannot_write(error, to) from None
+        finally:
+            part.unlink(missing_ok=True)
         self._progress.got(locked, "copied")
 
     def _missing(self, lock: Lock) -> list[LockedFile]:

@@ -21,7 +21,6 @@ from pyfrc_core.season import CURRENT, Season
 from pyfrc_core.sync import Lock, LockedFile, download, install, synchronize
 from pyfrc_core.sync.addresses import PYTHON_VARIABLE
 from pyfrc_core.sync.cache import Cache
-from pyfrc_core.sync.carry import take
 from pyfrc_core.sync.lock import is_file_name
 from pyfrc_core.sync.pip_errors import NothingFitsError
 from pyfrc_core.sync.resolve import _found, find_packages
@@ -308,10 +307,10 @@ def test_what_is_installed_here_has_the_locked_versions(monkeypatch: pytest.Monk
         install.install_here(lock, CURRENT, [])
 
 
-def test_a_copy_appears_only_when_it_is_complete(tmp_path: Path) -> None:
+def test_a_copy_appears_only_when_it_is_complete(work: _Work, tmp_path: Path) -> None:
     (tmp_path / "six.whl").write_bytes(b"six")
     six = LockedFile("six", "1", "six.whl", 3, hashlib.sha256(b"six").hexdigest())
-    take(six, tmp_path, tmp_path / "to/six.whl")
+    work._copy(six, tmp_path)
     with pytest.raises(PyfrcError, match="changes while it is read"):
-        take(replace(six, size=4), tmp_path, tmp_path / "to/other.whl")
-    assert [each.name for each in (tmp_path / "to").iterdir()] == ["six.whl"]
+        work._copy(replace(six, size=4), tmp_path)
+    assert [each.name for each in (tmp_path / "cache/pip_cache").iterdir()] == ["six.whl"]
