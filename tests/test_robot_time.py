@@ -411,6 +411,64 @@ def test_whose_loop_it_is_shows_nowhere_outside(loop: str, make_project) -> None
     passes(make_project, STEPPED_IN_BOTH_STYLES, LOOPS[loop])
 
 
+@pytest.mark.season_2026  # season_2027/test_turns_of_robots.py has the same of 2027, beside WPILib's own loop
+def test_slices_of_a_timeslice_robot_have_their_places_in_its_period(make_project) -> None:
+    robot = """
+        import pytest, wpilib
+
+        class MyRobot(wpilib.TimesliceRobot):
+            def __init__(self):
+                super().__init__(0.002, controllerPeriod=0.01)
+                wpilib.wait(0.015)
+                self.log = []
+                self.schedule(lambda: self.note("first"), 0.003)
+                self.schedule(lambda: self.note("second"), 0.003)
+                with pytest.raises(RuntimeError, match="exceeded controller period"):
+                    self.schedule(lambda: self.note("third"), 0.003)
+
+            def note(self, what):
+                self.log.append((what, round(wpilib.Timer.getFPGATimestamp(), 6)))
+    """
+    test = """
+        def test_slices(control, fake_time, robot):
+            with control.run_robot():
+                fake_time.increment_time_by(0.025)
+            assert robot.log == [("first", 0.022), ("second", 0.025), ("first", 0.032), ("second", 0.035)]
+    """
+    passes(make_project, test, robot)
+
+
+@pytest.mark.season_2026  # as above
+def test_a_loop_by_the_driver_stations_event_has_a_turn_for_each_packet(make_project) -> None:
+    robot = """
+        import hal, wpilib
+        from wpiutil import sync
+
+        class MyRobot(wpilib.RobotBase):
+            def startCompetition(self):
+                self.log, self.event = [], sync.createEvent()
+                hal.provideNewDataEventHandle(self.event)
+                hal.observeUserProgramStarting()
+                self.note(sync.waitForObject(self.event, 0.005))
+                while sync.waitForObject(self.event):
+                    self.note("packet")
+                self.note("ends")
+
+            def endCompetition(self):
+                sync.destroyEvent(self.event)
+
+            def note(self, what):
+                self.log.append((what, round(wpilib.Timer.getFPGATimestamp(), 6)))
+    """
+    test = """
+        def test_loop(control, fake_time, robot):
+            with control.run_robot():
+                fake_time.increment_time_by(0.05)
+            assert robot.log == [((False, True), 0.005), ("packet", 0.02), ("packet", 0.04), ("ends", 0.05)]
+    """
+    passes(make_project, test, robot)
+
+
 def test_practice_match_of_another_season(make_project) -> None:
     passes(
         make_project,

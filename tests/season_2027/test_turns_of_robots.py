@@ -6,18 +6,14 @@ loop runs on a thread and HAL time is stepped, and in `pyfrc test`. The two list
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 from conftest import MakeProject
 
+from .beside_wpilib import PLAN, compare
+
 CALLS = """
-    import hal.simulation
+    import hal
     import wpilib
-    import wpilib_drivers
 
     calls = []
     RAISES = {raises!r}
@@ -93,6 +89,32 @@ OPMODES = """
         '''On a robot, an opmode's constructor takes time.'''
 """
 
+BASE = """
+    class MyRobot(wpilib.OpModeRobotBase):
+        def __init__(self):
+            super().__init__(0.01)
+            self.add_opmode_factory(hal.RobotMode.TELEOPERATED, "Drive", Drive)
+            self.add_opmode_factory(hal.RobotMode.UTILITY, "Check", Check)
+            self.publish_opmodes()
+
+    noting(MyRobot, *OPMODE_ROBOT)
+
+
+    class Drive(wpilib.OpMode):
+        name = "drive"
+
+    noting(Drive, *OPMODE)
+
+
+    class Check(wpilib.PeriodicOpMode):
+        def start(self):
+            note("check start")
+            self.add_periodic(lambda: note("callback that was added late"), 0.02)
+
+        def periodic(self):
+            note("check periodic")
+"""
+
 COMMANDS = """
     import commands2
 
@@ -115,108 +137,99 @@ COMMANDS = """
     noting(MyRobot, *TIMED)
 """
 
-PLAN = """
-    import hal
-    from wpilib.simulation import DriverStationSim as Station
-
-    MODES = {"autonomous": "AUTONOMOUS", "teleop": "TELEOPERATED", "utility": "UTILITY"}
-    PLAN = [
-        ("", "attached", 2),
-        ("teleop", "", 3),
-        ("teleop", "enabled", 4),
-        ("teleop", "", 2),
-        ("autonomous", "enabled", 3),
-        ("teleop", "enabled", 3),
-        ("teleop", "e-stop", 3),
-        ("teleop", "", 2),
-        ("utility", "enabled", 3),
-        ("utility", "lost", 3),
-        ("utility", "", 2),
-        ("autonomous", "enabled", 2),
-        ("", "enabled", 3),
-        ("", "", 2),
-    ]
+OWN_LOOP = """
+    import wpiutil.sync
 
 
-    def play(note, packet):
-        for mode, state, packets in PLAN:
-            note("--", mode, state)
-            opmodes = {int(hal.opmode_get_robot_mode(each.id)): each.id for each in Station.get_opmode_options()}
-            if mode:
-                Station.set_robot_mode(getattr(hal.RobotMode, MODES[mode]))
-            chosen = mode and state != "lost"
-            Station.set_opmode(opmodes.get(int(getattr(hal.RobotMode, MODES[mode])), 0) if chosen else 0)
-            Station.set_enabled("enabled" in state)
-            Station.set_e_stop("e-stop" in state)
-            Station.set_ds_attached("lost" not in state)
-            for _ in range(packets):
-                packet()
+    def state():
+        words = [name[3:] for name in STATES if getattr(wpilib.RobotState, name)()]
+        return " ".join([*words, wpilib.RobotState.get_opmode() or "no opmode"])
+
+
+    STATES = ["is_enabled", "is_e_stopped", "is_ds_attached", "is_autonomous", "is_teleop", "is_utility"]
+
+
+    class MyRobot(wpilib.RobotBase):
+        def __init__(self):
+            super().__init__()
+            self.alarm, _ = hal.create_notifier()
+            note("robot made")
+
+        def start_competition(self):
+            hal.set_notifier_alarm(self.alarm, 20_000_000, 20_000_000, False, True)
+            wpilib.DriverStationBackend.observe_user_program_starting()
+            while wpiutil.sync.wait_for_object(self.alarm):
+                note("turn", state())
+                wpilib.DriverStationBackend.refresh_data()
+                note("refreshed", state())
+                hal.acknowledge_notifier_alarm(self.alarm)
+            note("over")
+
+        def end_competition(self):
+            note("end_competition")
+            hal.destroy_notifier(self.alarm)
 """
 
-BY_WPILIB = """
-    import json
-    import os
-    import sys
-    import threading
-    import time
+#: As `OWN_LOOP`, with a turn for each packet of the driver station.
+BY_PACKETS = OWN_LOOP.replace("self.alarm, _ = hal.create_notifier()", "self.alarm = wpiutil.sync.make_event()")
+BY_PACKETS = BY_PACKETS.replace(
+    "hal.set_notifier_alarm(self.alarm, 20_000_000, 20_000_000, False, True)",
+    "hal.provide_new_data_event_handle(self.alarm)",
+)
+BY_PACKETS = BY_PACKETS.replace("hal.acknowledge_notifier_alarm(self.alarm)", "pass")
+BY_PACKETS = BY_PACKETS.replace("hal.destroy_notifier(self.alarm)", "wpiutil.sync.destroy_event(self.alarm)")
 
-    import hal.simulation
-    from wpilib.simulation import DriverStationSim as Station
+AROUND = (
+    TIMED
+    + """
+    def start_competition(robot):
+        note("before")
+        wpilib.TimedRobot.start_competition(robot)
+        note("over")
 
-    hal.simulation.pause_timing()
-    import plan
-    import robot
+    MyRobot.start_competition = start_competition
+"""
+)
 
-    robot.passes = lambda: hal.simulation.step_timing_async(1_000)
-    made = []
-
-
-    def write_and_exit():
-        with open("wpilib.json", "w") as file:
-            json.dump(robot.calls, file)
-        os._exit(0)
-
-
-    def compete():
-        try:
-            made.append(robot.MyRobot())
-            made[0].start_competition()
-        except ValueError as error:
-            robot.note("raised", str(error))
-            write_and_exit()
+MAGIC = """
+    import magicbot
 
 
-    threading.Thread(target=compete, daemon=True).start()
-    hal.simulation.wait_for_program_start()
-    while hal.simulation.get_next_notifier_timeout() > 2**62:  # reported before the loop waits for its first turn
-        time.sleep(0.001)
+    class Arm:
+        def setup(self):
+            note("arm setup")
+
+        def on_enable(self):
+            note("arm on_enable")
+
+        def on_disable(self):
+            note("arm on_disable")
+
+        def execute(self):
+            note("arm execute")
 
 
-    def packet():
-        hal.simulation.step_timing(19_000_000)
-        Station.notify_new_data()
-        hal.simulation.step_timing(1_000_000)
+    class MyRobot(magicbot.MagicRobot):
+        arm: Arm
 
+        def create_objects(self):
+            note("create_objects")
 
-    plan.play(robot.note, packet)
-    write_and_exit()
+        def end_competition(self):
+            note("end_competition")
+            super().end_competition()
+
+    noting(MyRobot, *[name for name in TIMED if hasattr(magicbot.MagicRobot, name)])
 """
 
-TEST = """
-    import json
+TIMESLICE = """
+    class MyRobot(wpilib.TimesliceRobot):
+        def __init__(self):
+            super().__init__(0.002, 0.02)
+            for number in range(2):
+                self.schedule(lambda number=number: note("slice", str(number)), 0.003)
 
-    import plan
-    import robot as module
-
-
-    def test_calls(control, fake_time, robot):
-        try:
-            with control.run_robot():
-                plan.play(module.note, lambda: fake_time.increment_time_by(0.02))
-        except ValueError as error:
-            module.note("raised", str(error))
-        with open("pyfrc.json", "w") as file:
-            json.dump(module.calls, file)
+    noting(MyRobot, *TIMED)
 """
 
 
@@ -235,26 +248,20 @@ TEST = """
         (OPMODES, "drive callback 0.01"),
         (OPMODES, "drive end"),
         (OPMODES, "robot none_periodic"),
+        (BASE, ""),
         (COMMANDS, ""),
         (COMMANDS, "default command"),
+        (TIMESLICE, ""),
+        (AROUND, ""),
+        (OWN_LOOP, ""),
+        (BY_PACKETS, ""),
+        (OWN_LOOP, "refreshed enabled ds_attached autonomous no opmode"),
+        (MAGIC, ""),
+        (MAGIC, "robot teleop_init"),
+        (MAGIC, "arm execute"),
     ],
 )
 def test_turns_are_those_of_wpilibs_loop(make_project: MakeProject, robot: str, raises: str) -> None:
-    project = make_project(
-        {
-            "robot.py": CALLS.format(raises=raises) + robot,
-            "plan.py": PLAN,
-            "by_wpilib.py": BY_WPILIB,
-            "tests/test_calls.py": TEST,
-        }
-    )
-    script = subprocess.run([sys.executable, "by_wpilib.py"], cwd=project.path, capture_output=True, text=True)
-    assert script.returncode == 0, script.stdout + script.stderr
-    result = project.run("test")
-    assert result.code == 0, result.output
-    assert calls(project.path / "pyfrc.json") == calls(project.path / "wpilib.json")
-
-
-def calls(file: Path) -> list[str]:
-    found: list[str] = json.loads(file.read_text(encoding="utf-8"))
-    return found
+    # A robot that waits for packets gets one at the loss from pyfrc; WPILib's simulation sends nothing.
+    plan = PLAN.replace('("utility", "enabled lost", 3),', "") if robot == BY_PACKETS else PLAN
+    compare(make_project, CALLS.format(raises=raises) + robot, plan)

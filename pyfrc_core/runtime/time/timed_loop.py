@@ -161,7 +161,9 @@ class TimedLoop:
         __tracebackhide__ = True
         callback = self._callbacks[0]
         while not self.stopped:
-            threads.sleep_until(callback.due_us)
+            threads.wait([], lambda: self.stopped, callback.due_us - self._clock.now_us)
+            if self.stopped:
+                break
             self._turns_on_own_thread = True
             callback = self._turn()
             self._turns_on_own_thread = False

@@ -18,7 +18,7 @@ from . import names
 #: A robot whose loop can run in place, a turn at a time.
 Timed = wpilib.TimedRobot
 #: All classes of such robots.
-TIMED: tuple[type[Any], ...] = (wpilib.TimedRobot,)
+TIMED: tuple[type[Any], ...] = (wpilib.TimedRobot, wpilib.TimesliceRobot)
 
 LOOP_FUNCTION = PrivateName(
     "wpilib:IterativeRobotBase._loopFunc", "runtime.time.timed_loop runs one turn of the robot's loop by it"

@@ -20,7 +20,7 @@ from . import names
 #: A robot whose loop can run in place, a turn at a time.
 Timed = wpilib.TimedRobot
 #: All classes of such robots.
-TIMED: tuple[type[Any], ...] = (wpilib.TimedRobot, wpilib.OpModeRobotBase)
+TIMED: tuple[type[Any], ...] = (wpilib.TimedRobot, wpilib.TimesliceRobot, wpilib.OpModeRobotBase)
 
 LOOP_FUNCTION = PrivateName(
     "wpilib:IterativeRobotBase._loop_func", "runtime.time.timed_loop runs one turn of the robot's loop by it"

@@ -8,10 +8,12 @@ from typing import Any
 
 import hal
 import wpilib
+import wpiutil.sync
 
 from ....patch_table import Patch
 from ...clock import to_us
 from ...threads.robot_threads import RobotThread, RobotThreads
+from .. import event_waits
 from ..active_run import active_run
 from ..notifier import PeriodicThread
 
@@ -144,4 +146,5 @@ def patches() -> list[Patch]:
         notifier_call("stopNotifier", "stop"),
         notifier_call("cleanNotifier", "clean"),
         Patch(hal, "setNotifierName", set_notifier_name),
+        Patch(wpiutil.sync, "waitForObject", event_waits.in_robot_time(wpiutil.sync.waitForObject)),
     ]

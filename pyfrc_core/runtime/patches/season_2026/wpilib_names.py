@@ -14,7 +14,7 @@ import wpilib.simulation
 from ....patch_table import Patch
 from ....wpi import encoder_channels, robots
 from ...clock import to_us
-from .. import hal_resets, noise
+from .. import hal_resets, noise, timeslices
 from ..active_run import active_run
 from ..made_devices import noting
 from ..stepping import left_to_the_run, stepping, wait
@@ -38,6 +38,7 @@ def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
         *driver_station.patches(),
         *hal_resets.patches("resetData", "resetDriverStationData", "resetAllSimData", _attach),
         *_timed_robot(),
+        *timeslices.patches(wpilib.TimesliceRobot, _note_slices),
         *_directories(files),
         noting(
             wpilib.Encoder, lambda made, *args, **kwargs: encoder_channels.note(made.getFPGAIndex(), *args, **kwargs)
@@ -112,6 +113,10 @@ def _timed_robot() -> list[Patch]:
         Patch(TimedRobot, "getLoopStartTime", loop_start_time),
         Patch(*robots.LOOP_FUNCTION.place, _loopFunc),
     ]
+
+
+def _note_slices(robot: Any, robotPeriodicAllocation: float, controllerPeriod: float) -> None:
+    timeslices.note(robot, robotPeriodicAllocation, controllerPeriod)
 
 
 def _attach() -> None:

@@ -17,6 +17,7 @@ from ....patch_table import Patch
 from ....wpi.season_2027 import timing
 from ...clock import to_us
 from ...threads.robot_threads import RobotThread, RobotThreads
+from .. import event_waits
 from ..active_run import active_run
 from ..notifier import PeriodicThread
 
@@ -143,7 +144,7 @@ def patches() -> list[Patch]:
         return Patch(hal, name, call)
 
     real_set_name = hal.set_notifier_name
-    real_wait: Callable[..., Any] = wpiutil.sync.wait_for_object
+    wait_for_event = event_waits.in_robot_time(wpiutil.sync.wait_for_object)
 
     def set_notifier_name(notifier_handle: int, name: str) -> Any:
         ours = active_run.run is not None and notifier_handle in active_run.run.alarms
@@ -153,7 +154,7 @@ def patches() -> list[Patch]:
         __tracebackhide__ = True
         run: Any = active_run.run
         if run is None or handle not in run.alarms:
-            return real_wait(handle, *timeout, **named)
+            return wait_for_event(handle, *timeout, **named)
         given = next(iter((*timeout, *named.values())), None)
         went_off, timed_out = run.alarms.wait(handle, given)
         return went_off if given is None else (went_off, timed_out)

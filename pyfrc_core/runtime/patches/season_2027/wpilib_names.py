@@ -17,7 +17,7 @@ from ....patch_table import Patch
 from ....wpi import encoder_channels
 from ....wpi.season_2027 import robots, timing
 from ...clock import to_us
-from .. import hal_resets, noise
+from .. import hal_resets, noise, timeslices
 from ..active_run import active_run
 from ..made_devices import noting
 from ..stepping import left_to_the_run, stepping, wait
@@ -41,6 +41,7 @@ def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
         *driver_station.patches(),
         *hal_resets.patches("reset_data", "reset_driver_station_data", "reset_all_sim_data", _attach),
         *_timed_robots(),
+        *timeslices.patches(wpilib.TimesliceRobot, _note_slices),
         *_directories(files),
         noting(
             wpilib.Encoder, lambda made, *args, **kwargs: encoder_channels.note(made.get_fpga_index(), *args, **kwargs)
@@ -120,6 +121,10 @@ def _timed_robot(base: Any, loop_function: PrivateName) -> list[Patch]:
         Patch(base, "get_loop_start_time", loop_start_time),
         Patch(base, loop_function.name, _loop_func),
     ]
+
+
+def _note_slices(robot: Any, robot_periodic_allocation: float, controller_period: float) -> None:
+    timeslices.note(robot, robot_periodic_allocation, controller_period)
 
 
 def _attach() -> None:
