@@ -78,7 +78,6 @@ class MyRobot(wpilib.TimedRobot):
         self.second_shooter = spark(4, lambda config: config.follow(self.shooter, True), rev.SparkFlex)
         self.arm_encoder = self.arm_motor.getEncoder()
         self.wrist_encoder = self.wrist["motor"].getAbsoluteEncoder()
-        self.arm_absolute = wpilib.DutyCycleEncoder(0)
 
     def autonomousPeriodic(self):
         kind = rev.SparkLowLevel.ControlType
@@ -114,13 +113,11 @@ def test_closed_loops(control, hal_data, robot):
         assert robot.wrist_encoder.getPosition() == approx(5, abs=0.05)
         assert robot.shooter.getEncoder().getVelocity() == approx(3000, rel=0.05)
         assert robot.shooter.getAppliedOutput() == approx(3000 / 6784, rel=0.1)
-        assert robot.arm_absolute.get() == approx(0.25, abs=0.01)
         assert 0 < highest < 45
         # As a real one, the relative encoder goes on from what the robot has set; the arm stays where it is.
         robot.arm_encoder.setPosition(0)
         control.step_timing(seconds=2, autonomous=True, enabled=True)
         assert robot.arm_encoder.getPosition() == approx(90, abs=1)
-        assert robot.arm_absolute.get() == approx(0.5, abs=0.01)
 
 
 def test_voltage_and_power(control, hal_data, robot):

@@ -60,7 +60,7 @@ def test_create_physics_finds_its_drivetrain(make_project: MakeProject, template
     result = project.run("create-physics")
     assert result.code == 0, result.output
     assert "The project's tests pass." in result.stdout
-    assert "No stick moved" not in result.stdout
+    assert "No stick drove" not in result.stdout
 
 
 def test_no_opmode_lets_the_drive_time_out(make_project: MakeProject) -> None:

@@ -118,11 +118,10 @@ def add_swerve(text: ModuleText, modules: list[Module]) -> None:
     text.update += ["speeds = self.drivetrain.update(tm_diff)", "self.physics_controller.drive(speeds, tm_diff)"]
 
 
-def add_mechanism(text: ModuleText, motor: CanMotor, encoder: Encoder | None, channel: int | None) -> None:
+def add_mechanism(text: ModuleText, motor: CanMotor, encoder: Encoder | None) -> None:
     """Add a mechanism that one controller moves.
 
     :param encoder: a quadrature encoder on what it moves
-    :param channel: the digital input of an absolute encoder on it
     """
     words = [word for word in re.split(r"[\W_]+", str(motor.name)) if word not in ("motor", "container", "robot")]
     name = text.name("_".join(words) or "mechanism")
@@ -157,8 +156,3 @@ def add_mechanism(text: ModuleText, motor: CanMotor, encoder: Encoder | None, ch
         text.numbers.append(f"{number}_ENCODER_UNITS = 1.0  # what {encoder} measures in one turn\n")
         shaft = text.encoder(encoder, f"{name}_encoder", f"{number}_ENCODER_UNITS")
         text.update.append(f"self.{shaft}.turn_to(self.{name}.turns, self.{name}.speed)")
-    if channel is not None:
-        text.numbers.append(f"{number}_ZERO = 0.0  # what its absolute encoder measures at the start, in turns\n")
-        absolute = text.name(f"{name}_absolute_encoder")
-        text.simulate(absolute, source.duty_cycle_encoder(channel))
-        text.update.append(f"self.{absolute}.set((self.{name}.turns + {number}_ZERO) % 1)")

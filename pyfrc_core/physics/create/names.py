@@ -31,7 +31,7 @@ _PLAIN = {
     "victor", "sp", "srx", "spx", "max", "flex", "leader", "follower", "followers", "master", "slave", "primary",
     "secondary", "main", "encoder", "encoders", "enc", "robot", "container", "subsystem", "subsystems",
     "component", "components", "hardware", "io", "map", "robotmap", "tank", "mecanum", "ports", "devices", "pwm",
-    "can", "mc",
+    "can", "mc", "cim", "neo", "neos", "falcon", "kraken", "fx", "group", "dt",
 }  # fmt: skip
 
 _SWERVE = {"swerve", "steer", "steering", "azimuth"}

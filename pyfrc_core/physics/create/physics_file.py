@@ -72,11 +72,11 @@ def physics_text(found: Survey, layout: DrivetrainLayout) -> str:
         _gyros(text, found.gyros, "math.degrees(speeds.omega * tm_diff)")
     for motor, encoder in layout.mechanisms:
         if isinstance(motor, CanMotor):
-            can_text.add_mechanism(text, motor, encoder, None)
+            can_text.add_mechanism(text, motor, encoder)
         else:
             _mechanism(text, motor, encoder)
     for motor in layout.can_mechanisms:
-        can_text.add_mechanism(text, motor, None, layout.duty_cycle.get(motor.path))
+        can_text.add_mechanism(text, motor, None)
     return checked(_assembled(text, notes(found, layout)))
 
 

@@ -22,7 +22,8 @@ def _advice_for_driving(layout: DrivetrainLayout) -> list[str]:
     if layout.drivetrain is not None or layout.modules:
         return []
     return [
-        "No drivetrain was recognised, so the robot does not move. To drive it, let update_sim() call "
+        "No drivetrain was recognised, so the robot does not move. Motors of a tank or mecanum drive are recognised by "
+        "names such as left_motor or front_left. Or let update_sim() call "
         "self.physics_controller.drive() or move_robot(): see pyfrc.physics.drivetrains (for a swerve drive, its "
         "four_motor_swerve_drivetrain), pyfrc.physics.tankmodel and docs/how_to/simulate_a_drivetrain.md."
     ]

@@ -34,19 +34,11 @@ _SMALL = 0.04
 def try_sticks(run: RobotRun, outputs: Mapping[str, Output]) -> Responses:
     """Drive the robot in teleop, moving each possible axis to both ends.
 
-    An axis without effect is tried again while the robot drives forward, for robots that steer only then.
-
     :param outputs: the outputs to observe, by name
     """
     trial = _Trial(run, outputs)
     trial.begin()
     responses = {axis: reactions for axis in _axes() if (reactions := trial.response(axis))}
-    forward = next((axis for axis in responses if axis[1] in FORWARD_AXES and len(responses[axis]) > 1), None)
-    if forward is not None and not any(
-        axis != forward and reactions.keys() == responses[forward].keys() for axis, reactions in responses.items()
-    ):
-        without_effect = [axis for axis in _axes() if axis not in responses]
-        responses |= {axis: reactions for axis in without_effect if (reactions := trial.response(axis, held=forward))}
     trial.end()
     return responses
 
@@ -80,23 +72,16 @@ class _Trial:
         station.set_mode(enabled=False)
         self._wait(_STEADY_US)
 
-    def response(self, axis: Axis, held: Axis | None = None) -> dict[str, float]:
-        """Return half the difference of the outputs with the axis at -1 and at 1, for the outputs that change.
-
-        :param held: an axis that is held at -1
-        """
+    def response(self, axis: Axis) -> dict[str, float]:
+        """Return half the difference of the outputs with the axis at -1 and at 1, for the outputs that change."""
         if not self._run.alive:
             return {}
         ends = []
         for value in (-1.0, 1.0):
-            if held is not None:
-                self._push(held, -1.0)
             self._push(axis, value)
             self._wait(_PUSHED_US)
             ends.append(self._read())
             self._push(axis, 0.0)
-            if held is not None:
-                self._push(held, 0.0)
             self._come_to_rest()
         back, forth = ends
         reactions = {name: (back[name] - forth[name]) / 2 for name in self._outputs}

@@ -88,8 +88,6 @@ class Survey:
     gyros: list[Gyro] = field(default_factory=list)
     #: The modules of a swerve drive on vendors' motor controllers.
     swerve: SwerveSurvey = field(default_factory=lambda: SwerveSurvey([], []))
-    #: Absolute encoders at a digital input, by name and channel.
-    duty_cycle: list[tuple[Name, int]] = field(default_factory=list)
     #: From the left wheels to the right ones, in metres; None if the robot's code does not say it.
     track_width: float | None = None
     #: Devices without known physics, as text.
@@ -188,9 +186,6 @@ def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice], can: Can
     found.labels = _labels(found, named)
     for (key, channel), device in named.items():
         wired = devices.wired_kind(device.thing)
-        if wired == "duty cycle encoder":
-            found.duty_cycle.append((device.name, channel))
-            continue
         kind = {"dio": "digital", "analog_in": "analog"}.get(key)
         if kind is not None and wired not in ("encoder", "analog gyro"):
             found.others.append(f"{kind} channel {channel} ({device.name})")

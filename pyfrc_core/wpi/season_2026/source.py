@@ -57,11 +57,6 @@ def encoder(channels: tuple[int, int] | None, index: int) -> Simulation:
     return Simulation(ENCODER, f"{ENCODER}.{how}")
 
 
-def duty_cycle_encoder(channel: int) -> Simulation:
-    """Return the simulation of an absolute encoder; its ``set`` takes turns."""
-    return Simulation("DutyCycleEncoderSim", f"DutyCycleEncoderSim({channel})")
-
-
 def analog_gyro(channel: int) -> Simulation:
     """Return the simulation of an analog gyro."""
     return Simulation("AnalogGyroSim", f"AnalogGyroSim({channel})")
