@@ -22,6 +22,7 @@ from .logs import OpenedLog, open_log
 from .logs.align import Align, offset_of
 from .logs.columns import LogHistory
 from .logs.source import LogSource
+from .logs.station import Alignment, align, join
 from .page_file import PageFile
 from .what_if import WhatIf
 
@@ -29,6 +30,8 @@ from .what_if import WhatIf
 _LARGE = 100 << 20
 #: The most values in one page: about 100 MB in the browser.
 _MOST_ON_PAGE = 5_000_000
+#: The logs that a directory is searched for.
+_SUFFIXES = (".wpilog", ".dslog", ".dsevents")
 #: Prints to the terminal.
 Say = Callable[[str], object]
 
@@ -37,7 +40,8 @@ Say = Callable[[str], object]
 class ViewRequest:
     """The options of the command.
 
-    :param files: the logs; the first one is shown, the others are its branches
+    :param files: the logs, or a directory of one match; the first one is shown, with the driver station's that fit to
+        it; the others are its branches
     :param robot: the robot that is shown instead: a team's number or an address; empty: the project's
     :param align: by what the others are aligned with the first one
     :param offsets: what is added to the times of the others, in seconds; further ones are aligned
@@ -79,14 +83,17 @@ def view(request: ViewRequest, say: Say) -> int:
         )
     project = project_or_none() or _no_project()
     height = field_of(project).height
-    names = _names(request.files)
-    first, *others = [_opened(*each, height, request, say) for each in zip(request.files, names, strict=True)]
-    what_if = WhatIf(project, request.files[0], say)
+    files = _files(request.files)
+    opened = [_opened(*each, height, request, say) for each in zip(files, _names(files), strict=True)]
+    if not request.offsets:  # the robot's log first, and the driver station's on its time line
+        opened.sort(key=lambda each: each.is_station)
+    first, branches = _aligned(request, opened, height, say)
+    what_if = WhatIf(project, first.file, say)
     elsewhere = None if project.main_file.is_file() else _project_elsewhere()
     source = LogSource(
         project,
         first,
-        tuple(_aligned(request, first.run, [each.run for each in others], say)),
+        branches,
         what_if.start if project.main_file.is_file() else None if elsewhere is None else partial(_refuse, elsewhere),
     )
     if request.page is not None:
@@ -172,6 +179,29 @@ def _no_project() -> Project:
     return Project(root / MAIN_FILE)
 
 
+def _files(given: Sequence[Path]) -> list[Path]:
+    """Return the logs that are given, and those in directories.
+
+    :raises UsageError: when a directory has no log, or the logs of several matches
+    """
+    found: list[Path] = []
+    for path in given:
+        if not path.is_dir():
+            found.append(path)
+            continue
+        logs = sorted(file for file in path.iterdir() if file.suffix.lower() in _SUFFIXES and file.is_file())
+        if not logs:
+            raise UsageError(f"{path} has no log", remedy=f"Logs are {', '.join(_SUFFIXES)}.")
+        robots = [file.name for file in logs if not file.suffix.lower().startswith(".ds")]
+        if len(robots) > 1:
+            raise UsageError(
+                f"{path} has {len(robots)} logs of a robot, and a directory is shown as one match",
+                remedy=f"Name what to show, such as {path / robots[0]}",
+            )
+        found += (file for file in logs if file.suffix != ".dsevents" or not file.with_suffix(".dslog").is_file())
+    return found
+
+
 def _names(files: Sequence[Path]) -> list[str]:
     """Return the names of files; of those with the same name, with as much of the path as tells them apart."""
     paths = [Path(os.path.abspath(file)).parts for file in files]  # noqa: PTH100 - links keep their names
@@ -192,14 +222,32 @@ def _opened(file: Path, name: str, height: float, request: ViewRequest, say: Say
     return opened
 
 
-def _aligned(request: ViewRequest, first: PastRun, others: list[PastRun], say: Say) -> list[PastRun]:
-    found = []
-    for number, run in enumerate(others):
-        if number < len(request.offsets):
-            offset: float | None = request.offsets[number]
-        else:
-            offset = offset_of(run.histories["network"], first.histories["network"], request.align)
-            if offset is None:
-                say(f"{run.name} begins together with {first.name}: one of them does not say when it was enabled.\n")
-        found.append(replace(run, offset=offset or 0.0))
-    return found
+def _aligned(
+    request: ViewRequest, opened: list[OpenedLog], height: float, say: Say
+) -> tuple[OpenedLog, tuple[PastRun, ...]]:
+    """Return the log that is shown, with those of the driver station that fit to it, and the others as branches."""
+    first, *others = opened
+    branches = []
+    for number, log in enumerate(others):
+        given = request.offsets[number] if number < len(request.offsets) else None
+        if log.is_station and first.read is not None and not first.is_station and request.align == "enabled":
+            alignment = align(first, log) if given is None else Alignment(given, "you have given --offset")
+            if alignment.offset is not None:
+                first = join(first, log, alignment, height)
+                if not request.quiet:
+                    say(f"{first.run.happened[0].text}\n")
+                continue
+            say(
+                f"{log.run.name} is not put on the time line of {first.run.name}: {alignment.how}. It is a branch that "
+                "begins with it. If you know how many seconds later it began: --offset S\n"
+            )
+            given = 0.0
+        offset = given
+        if offset is None:
+            offset = offset_of(log.run.histories["network"], first.run.histories["network"], request.align)
+        if offset is None:
+            say(
+                f"{log.run.name} begins together with {first.run.name}: one of them does not say when it was enabled.\n"
+            )
+        branches.append(replace(log.run, offset=offset or 0.0))
+    return first, tuple(branches)

@@ -23,10 +23,12 @@ class Column:
 
     :param moments: when it changed, in microseconds of the log's clock, in order
     :param decode: returns the values of the changes from one number until before another; `MISSING` for what is damaged
+    :param has_end: whether the last change is the end of its log
     """
 
     moments: array[int]
     decode: Callable[[int, int], Sequence[Any]]
+    has_end: bool = False
 
     @classmethod
     def of(cls, moments: Iterable[int], values: Sequence[Any]) -> Column:
@@ -40,6 +42,20 @@ class Column:
                 before = value
         return cls(kept, lambda begin, end: found[begin:end])
 
+    def moments_later(self, by: int) -> array[int]:
+        """Return its moments, this many microseconds later."""
+        return array("q", (moment + by for moment in self.moments))
+
+    def until(self, end: int) -> Column:
+        """Return the column, with a value that is gone after a moment, at which its log has ended."""
+        count = len(self.moments)
+
+        def decode(first: int, last: int) -> Sequence[Any]:
+            values = self.decode(first, min(last, count))
+            return values if last <= count else [*values, MISSING]
+
+        return Column(self.moments + array("q", [end + 1]), decode, has_end=True)
+
     def values(self) -> Sequence[Any]:
         """Return all values."""
         return self.decode(0, len(self.moments))
@@ -47,6 +63,11 @@ class Column:
     def at(self, moment: int) -> Any:
         """Return the value at a moment; `MISSING` if there was none."""
         after = bisect_right(self.moments, moment)
+        return self.decode(after - 1, after)[0] if after else MISSING
+
+    def last(self) -> Any:
+        """Return the value when its log has ended; `MISSING` if there was none."""
+        after = len(self.moments) - self.has_end
         return self.decode(after - 1, after)[0] if after else MISSING
 
 
@@ -59,6 +80,7 @@ class ReadLog:
     :param happened: in seconds of the log's clock
     :param problem: what is wrong with the file, as a sentence; empty: nothing
     :param when: when the log's clock was 0, if that is known
+    :param begin: the moment that is shown as 0, if it is not that of the first value
     """
 
     columns: dict[str, Column] = field(default_factory=dict)
@@ -66,6 +88,7 @@ class ReadLog:
     happened: list[Happened] = field(default_factory=list)
     problem: str = ""
     when: datetime | None = None
+    begin: int | None = None
 
 
 class LogHistory(ValueHistory):
@@ -82,8 +105,9 @@ class LogHistory(ValueHistory):
 
     @cached_property
     def now(self) -> MappingProxyType[str, Any]:
-        """All values at the end."""
-        return MappingProxyType(self.values_at(self.end))
+        """All values at the end; of two logs on one line, of which one ends first, at the end of each."""
+        found = ((path, column.last()) for path, column in self._columns.items())
+        return MappingProxyType({path: value for path, value in found if value is not MISSING})
 
     @property
     def count(self) -> int:

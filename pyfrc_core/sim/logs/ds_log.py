@@ -28,6 +28,8 @@ _REV, _CTRE = 33, 25
 _SIZES, _KIND_BYTES = {_REV: 33, _CTRE: 25}, 4
 #: More volts than a battery can have: there is no data, which is 0xFFFF, or a record is wrong, as the last one may be.
 _MOST_VOLTS = 20.0
+#: Whether the robot has said its mode, in the packet of each record.
+CONNECTED = "/DSLog/Connected"
 _STATUS = {
     "Brownout": 7,
     "Watchdog": 6,
@@ -55,9 +57,11 @@ def read_ds_log(file: Path) -> ReadLog:
     records = list(_records(data, found, version))
     moments = array("q", range(0, _PERIOD_US * len(records), _PERIOD_US))
     rows = [_numbers(record) for record in records]
-    columns: dict[str, list[Any]] = {name: [row[name] for row in rows] for name in (rows[0] if rows else ())}
+    if not rows:
+        return found
+    columns: dict[str, list[Any]] = {name: [row[name] for row in rows] for name in rows[0]}
     _hold_modes(columns)
-    channels = max((len(record.currents) for record in records), default=0)
+    channels = max(len(record.currents) for record in records)
     for channel in range(channels):
         columns[f"Currents/{channel}"] = [
             record.currents[channel] if channel < len(record.currents) else MISSING for record in records
@@ -171,8 +175,10 @@ def _numbers(record: _Record) -> dict[str, Any]:
 
 def _hold_modes(columns: dict[str, list[Any]]) -> None:
     """Keep the mode in records in which the robot has said none, since its packet was lost."""
-    said = zip(*(columns.get(name, []) for name in ("RobotDisabled", "RobotTeleop", "RobotAuto")), strict=True)
-    for number, modes in enumerate(said):
-        if number and not any(modes):
+    said = zip(*(columns[name] for name in ("RobotDisabled", "RobotTeleop", "RobotAuto")), strict=True)
+    connected = list(map(any, said))
+    columns[CONNECTED.rpartition("/")[2]] = connected
+    for number, is_connected in enumerate(connected):
+        if number and not is_connected:
             for name in ("Enabled", "Autonomous"):
                 columns[name][number] = columns[name][number - 1]

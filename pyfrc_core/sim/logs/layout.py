@@ -34,8 +34,9 @@ _EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
 _MODES = (
     ("DS:enabled", "DS:autonomous", "DS:test", "DS:estop"),
     ("/hal_data/control.enabled", "/hal_data/control.autonomous", "/hal_data/control.test", "/hal_data/control.eStop"),
-    ("/DSLog/Enabled", "/DSLog/Autonomous", "", ""),
 )
+#: Those of the driver station's log.
+_STATION_MODE = ("/DSLog/Enabled", "/DSLog/Autonomous")
 _CONTROL = "NT:/FMSInfo/FMSControlData"
 #: The words of 2027's driver station.
 _WORDS = ("DS:controlWord", "NT:/DriverStation/ControlWord")
@@ -65,7 +66,7 @@ def run_of(log: ReadLog, name: str, height: float) -> PastRun:
     :param name: for people
     :param height: that of the field, in feet
     """
-    begin = _begin(log)
+    begin = first_moment(log)
     columns = log.columns
     end = max([begin, *(column.moments[-1] for column in columns.values() if column.moments)])
     known = dict(_fitted({**dict(_of_kit(columns)), **columns}))
@@ -78,7 +79,7 @@ def run_of(log: ReadLog, name: str, height: float) -> PastRun:
     network = {path: columns[each] for each, path in paths.items() if each in columns}
     for each, type_name in log.types.items():
         if each in paths:
-            network[TYPE + paths[each].removeprefix(VALUE)] = Column.of([0], [type_name])
+            network[TYPE + paths[each].removeprefix(VALUE)] = Column.of([min(begin, 0)], [type_name])
     if (mode := _mode(known)) is not None:
         network[MODE] = mode
     if (place := _place(columns, height)) is not None:
@@ -97,11 +98,13 @@ def run_of(log: ReadLog, name: str, height: float) -> PastRun:
     return PastRun(name, seconds, histories, tuple(happened))
 
 
-def _begin(log: ReadLog) -> int:
+def first_moment(log: ReadLog) -> int:
     """Return the moment that is shown as 0: that of the first value of those that change, as a packet.
 
     Up to a twentieth of the values may have begun before: those of dashboards have the time when they were published.
     """
+    if log.begin is not None:
+        return log.begin
     columns = log.columns.values()
     firsts = [column.moments[0] for column in columns if len(column.moments) > 1]
     firsts = sorted(firsts or [column.moments[0] for column in columns if column.moments])
@@ -145,11 +148,11 @@ def _fitted(columns: Mapping[str, Column]) -> Iterator[tuple[str, Column]]:
 def together(columns: Sequence[Column | None], make: Callable[..., Any]) -> Column:
     """Return a column that is made of the values of others whenever one of them changes.
 
-    :param make: is passed one value of each column, None where there is none
+    :param make: is passed one value of each column, None where there is none; where all are none, there is no value
     """
     moments = sorted(set().union(*(column.moments for column in columns if column is not None)))
-    values = [list(_held(column, moments)) for column in columns]
-    return Column.of(moments, [make(*each) for each in zip(*values, strict=True)])
+    values = zip(*(_held(column, moments) for column in columns), strict=True)
+    return Column.of(moments, [make(*each) if any(one is not None for one in each) else MISSING for each in values])
 
 
 def _held(column: Column | None, moments: Iterable[int]) -> Iterator[Any]:
@@ -169,6 +172,16 @@ def _held(column: Column | None, moments: Iterable[int]) -> Iterator[Any]:
 
 
 def _mode(columns: Mapping[str, Column]) -> Column | None:
+    """Return the mode in the robot's log; where there is none, that in the driver station's log."""
+    own = _robots_mode(columns)
+    if _STATION_MODE[0] not in columns:
+        return own
+    parts = [columns.get(name) for name in _STATION_MODE]
+    station = together(parts, lambda enabled, autonomous: _mode_of(enabled, autonomous, False, False))
+    return station if own is None else together([own, station], lambda mode, other: other if mode is None else mode)
+
+
+def _robots_mode(columns: Mapping[str, Column]) -> Column | None:
     for names in _MODES:
         if names[0] in columns:
             return together([columns.get(name) for name in names], _mode_of)
@@ -178,7 +191,7 @@ def _mode(columns: Mapping[str, Column]) -> Column | None:
             return together(parts, _word_mode)
     if (control := columns.get(_CONTROL)) is not None:
         flags = ENABLED, AUTONOMOUS, TEST, STOPPED
-        return together([control], lambda bits: _mode_of(*((bits or 0) & flag for flag in flags)))
+        return together([control], lambda bits: _mode_of(*(bits & flag for flag in flags)))
     return None
 
 
@@ -247,11 +260,14 @@ def _place(columns: Mapping[str, Column], height: float) -> Column | None:
 def when_of(log: ReadLog) -> datetime | None:
     """Return when the moment was that is shown as 0, if the log says so."""
     for name in CLOCKS:
-        if (column := log.columns.get(name)) is not None and column.moments:
-            moment, time = column.moments[-1], column.decode(len(column.moments) - 1, len(column.moments))[0]
-            if isinstance(time, int) and time in TIMES:
-                return _EPOCH + timedelta(microseconds=time - moment + _begin(log))
-    return log.when
+        if (column := log.columns.get(name)) is not None:
+            for moment, time in zip(reversed(column.moments), reversed(column.values()), strict=True):
+                if isinstance(time, int) and time in TIMES:
+                    return _EPOCH + timedelta(microseconds=time - moment + first_moment(log))
+    try:
+        return None if log.when is None else log.when + timedelta(microseconds=first_moment(log))
+    except OverflowError:  # its times are damaged
+        return None
 
 
 def _placed(moments: array[int], read: _Read, height: float) -> Column:

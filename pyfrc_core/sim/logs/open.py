@@ -28,11 +28,17 @@ class OpenedLog:
 
     :param when: when it began, if that is known
     :param problem: what is wrong with the file, as a sentence; empty: nothing
+    :param file: where it is
+    :param read: what the file has; None for recordings of pyfrc
+    :param is_station: whether it is a log of the driver station
     """
 
     run: PastRun
+    file: Path
     when: datetime | None = None
     problem: str = ""
+    read: ReadLog | None = None
+    is_station: bool = False
 
 
 def open_log(file: Path, height: float, name: str = "") -> OpenedLog:
@@ -50,18 +56,19 @@ def open_log(file: Path, height: float, name: str = "") -> OpenedLog:
         raise LogError("this file is empty", where=name)
     if kind := recordings.format_of(head):
         run, problem = recordings.read_recording(file, name, kind)
-        return OpenedLog(run, _changed(file), problem)
-    read: ReadLog
+        return OpenedLog(run, file, _changed(file), problem)
+    is_station = is_ds_log(head)
     if is_wpilog(head):
         read = read_wpilog(file)
-    elif is_ds_log(head):
+    elif is_station:
         read = _read_station(file, Path(name).suffix.lower() == ".dsevents")
     else:
         what, remedy = described(head, name)
         raise LogError(f"this is {what}, not a log", where=name, remedy=remedy or _KINDS)
     if not read.columns and not read.happened:
         raise LogError(f"there is nothing in it: {read.problem or 'it has no values'}", where=name)
-    return OpenedLog(run_of(read, name, height), when_of(read) or _changed(file), read.problem)
+    when = when_of(read) or _changed(file)
+    return OpenedLog(run_of(read, name, height), file, when, read.problem, read, is_station)
 
 
 def _read_station(file: Path, is_events: bool) -> ReadLog:

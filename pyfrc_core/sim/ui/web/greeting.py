@@ -23,6 +23,17 @@ if TYPE_CHECKING:
     from ...engine.source import Source
 
 _BATTERY = re.compile(r"battery(_?volt(age|s))?$", re.IGNORECASE)
+#: What is plotted first of a driver station's log, with its axis: volts, or a share.
+_STATION_CURVES = tuple(
+    (f"{VALUE}/DSLog/{name}", axis)
+    for name, axis in (
+        ("BatteryVoltage", "left"),
+        ("PacketLoss", "right"),
+        ("CANUtilization", "right"),
+        ("Connected", "left"),
+        ("Brownout", "left"),
+    )
+)
 #: The version of the messages; a page of another version asks to be reloaded.
 PROTOCOL = 1
 
@@ -110,7 +121,7 @@ def _looking(source: Source, saved: Any) -> dict[str, Any]:
     text = json.dumps(plots)
     if not any(json.dumps(path) in text for path in known):  # all are of another log, for which the page keeps them
         curves = plots.get("plot:1", {}).get("curves")
-        plots = {**plots, "plot:1": {"curves": [*(curves if isinstance(curves, list) else ()), *_battery(source)]}}
+        plots = {**plots, "plot:1": {"curves": [*(curves if isinstance(curves, list) else ()), *_first_curves(source)]}}
     whole = {name: {**plot, "seconds": 0} for name, plot in plots.items()}
     return {**layout, "version": 1, "layout": "log", "plots": whole}
 
@@ -120,15 +131,17 @@ def _paths(source: Source) -> set[str]:
     return set() if recorded is None else {path for each in recorded.histories.values() for path in each.paths()}
 
 
-def _battery(source: Source) -> list[dict[str, object]]:
-    """Return the curve of the battery's voltage, which most questions about a match begin with."""
+def _first_curves(source: Source) -> list[dict[str, object]]:
+    """Return the battery's voltage, with which most questions about a match begin, and what a driver station logs."""
     histories = () if source.recorded is None else source.recorded.histories.values()
     named = {
         path: each for each in histories for path in each.paths() if path.startswith(VALUE) and _BATTERY.search(path)
     }
     found = [path for path, history in named.items() if type(history.now.get(path)) in (float, int)]
     found.sort(key=lambda path: ("volt" not in path.lower(), len(path)))
-    return [{"path": path, "axis": "left", "color": 0} for path in found[:1]]
+    own = [(path, "left") for path in found if path not in dict(_STATION_CURVES)][:1]
+    curves = [*own, *(each for each in _STATION_CURVES if each[0] in _paths(source))]
+    return [{"path": path, "axis": axis, "color": color} for color, (path, axis) in enumerate(curves)]
 
 
 #: The largest layout, in characters of JSON.

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from starlette.requests import ClientDisconnect, Request
 
 from ....errors import PyfrcError
+from ....shell import quoted
 from ....temporary import temporary_directory
 from ...logs import open_log
 from ...logs.align import offset_of
@@ -71,6 +72,8 @@ class SentLogs:
         branch = collector.runs.add_branch(replace(opened.run, offset=offset or 0.0))
         how = "where the robots were first enabled" if offset is not None else "at their start, since one says no mode"
         problem = f" But {opened.problem}." if opened.problem else ""
+        if opened.is_station:
+            problem += f" On one time line with the robot's log, pyfrc view shows it: pyfrc view LOG {quoted(name)}"
         collector.announce(f"{name} is a branch, aligned {how}.")
         return {"branch": branch, "text": f"{name} is shown beside this, aligned {how}.{problem}"}
 
