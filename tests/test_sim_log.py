@@ -678,13 +678,18 @@ def test_a_person_sees_where_the_log_differs(recorded: RobotProject, browser: Br
         sentence = page.get_by_role("button", name="Differs first at 0:02.50, in Elevator/setpoint")
         sentence.click()
         page.locator("time.clock", has_text="0:02.50").wait_for()
-        page.get_by_title("Compare with an earlier run", exact=True).click()
-        page.locator(".menu-list button", has_text="What differs").click()
-        row = page.locator(".comparison tr", has_text="pwm[1].value").locator("td")
-        row.nth(3).wait_for()
-        assert row.all_inner_texts()[1:] == ["pwm[1].value", "0.278884", "0.52988"]
-        page.locator(".comparison tr", has_text="From the log").get_by_text("encoder[0].count").wait_for()
-        page.get_by_role("button", name="Close", exact=True).click()
+        # Its curves around that moment, with both values, and its row, with the value of that moment.
+        legend = page.locator("[data-panel='plot:1'] .legend li", has_text="Elevator/setpoint")
+        legend.locator(".in-branch", has_text="0.5").wait_for()
+        page.get_by_role("button", name="Follow again").wait_for()
+        page.locator(".networktables .found", has_text="setpoint").locator("input").wait_for()
+        row = page.locator(".differences li", has_text="pwm[1].value")
+        assert row.inner_text().split("\n")[0].startswith("pwm[1].value")
+        assert row.locator("b").all_inner_texts() == ["0.278884", "0.52988"]
+        row.locator("button").click()
+        page.locator(".devices .found").wait_for()
+        page.locator("[data-panel='plot:1'] .legend li", has_text="setpoint").wait_for(state="detached")
+        page.locator(".differences section", has_text="From the log").get_by_text("encoder[0].count").wait_for()
         page.close()
         assert wrong == []
 
@@ -698,7 +703,7 @@ def test_a_person_sees_first_what_cannot_be_compared(make_project: MakeProject, 
         page.goto(server.address)
         page.get_by_role("button", name="Nothing to compare up to 0:1").click()
         limit = "match.wpilog has no joysticks from 10 s on: what follows from that cannot be compared."
-        page.locator("dialog.comparison p").first.get_by_text(limit).wait_for()
+        page.locator(".differences p").first.get_by_text(limit).wait_for()
         page.close()
 
 

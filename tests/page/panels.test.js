@@ -8,6 +8,7 @@ const { model } = await import("#js/model.js");
 const { connect } = await import("#js/connection.js");
 const { PlotButton, Select, Switch, TextBox } = await import("#js/controls.js");
 const { Dock } = await import("#js/layout/dock.js");
+const { FirstDifference } = await import("#js/panels/differences.js");
 const { MatchPanel } = await import("#js/panels/match.js");
 const { playback } = await import("#js/playback.js");
 const { driveOn } = await import("#js/past.js");
@@ -82,6 +83,32 @@ test("the button beside a value plots it, once", () => {
   for (let times = 0; times < 2; times++) button.props.onClick();
   assert.deepEqual(settings.get("plots")["plot:1"].curves.map(({ path, color }) => [path, color]), [["pwm[0].value", 0], ["pwm[1].value", 1]]);
   assert.deepEqual(settings.tree.children[1].children[1].active, "plot:1"); // and its panel is in front
+});
+
+test("a difference is plotted and found in its panel, and the next one takes its place", () => {
+  settings.set("plots", { "plot:1": { curves: [{ path: "battery", color: 0 }] } });
+  const path = "nt:/SmartDashboard/Elevator/setpoint";
+  const shown = [[path, 2.5], ["pwm[1].value", 3], ["battery", 4]].map(([first, t]) => {
+    const button = one(elements(FirstDifference({ first: { t, paths: [first], others: [] } })), "button");
+    button.props.onClick();
+    const curves = settings.get("plots")["plot:1"].curves.map((curve) => curve.path);
+    return [curves, model.found.t, settings.tree.children[0].active, settings.tree.children[2].children[1].active];
+  });
+  assert.deepEqual(shown, [
+    [["battery", path], 2.5, "networktables", "differences"],
+    [["battery", "pwm[1].value"], 3, "devices", "differences"],
+    [["battery"], 4, "devices", "differences"],
+  ]);
+});
+
+test("what could not be compared comes before the result, and nothing is the same that was not compared", () => {
+  const text = (first) => elements(FirstDifference({ first })).find((each) => each.type === "span").props.children;
+  const none = { t: null, paths: [], others: [], until: 15, limits: ["no joysticks"], mostly: true, compared: 7 };
+  assert.deepEqual(
+    [none, { ...none, limits: [] }, { ...none, mostly: false }, { ...none, compared: 0 }, { ...none, t: 13, paths: ["nt:/a"] }].map(text),
+    ["Partly compared. No difference up to 0:15.00", "No difference up to 0:15.00", "Partly compared. What was compared does not differ up to 0:15.00",
+      "Nothing to compare up to 0:15.00", "Partly compared. Differs first at 0:13.00, in a"],
+  );
 });
 
 test("arrow keys move in a list, around its ends, and only while it is open", () => {

@@ -4,7 +4,7 @@ export class Component {
   props: any;
   state: any;
   base: any;
-  setState(state: any): void;
+  setState(state: any, callback?: () => void): void;
   componentDidMount(): void;
   componentDidUpdate(props?: any, state?: any): void;
   componentWillUnmount(): void;

@@ -94,19 +94,17 @@ class FirstDifference:
         return [(path, share, time) for path, (share, time) in slight]
 
     def plain(self, clean: Callable[[str], str]) -> dict[str, Any]:
-        """Return it for a page: of a log, with all values that differ.
+        """Return it for a page, with all values that differ.
 
         :param clean: changes each text
         """
-        answer: dict[str, Any] = {"t": self.time, "paths": self.paths}
-        if self.by.is_log:
-            answer["others"] = others = []
-            for path, time in self.sorted()[:_MOST_OTHERS]:
-                both = (value if is_number(value) else clean(str(value)) for value in self.values[path])
-                others.append((path, time, *differing_texts(*both)))
-            answer["slight"] = self.sorted_slight()[:_MOST_OTHERS]
-            answer["until"] = self.end
-        return answer
+        others = []
+        for path, time in self.sorted()[:_MOST_OTHERS]:
+            both = ("no value" if value is MISSING else value for value in self.values[path])
+            texts = (value if is_number(value) else clean(str(value)) for value in both)
+            others.append((path, time, *differing_texts(*texts)))
+        slight = self.sorted_slight()[:_MOST_OTHERS]
+        return {"t": self.time, "paths": self.paths, "others": others, "slight": slight, "until": self.end}
 
     def compare(self, one: ValueHistory, other: ValueHistory, path: str) -> None:
         """Look for a difference in this value."""

@@ -1,12 +1,12 @@
 // The menu of the branches: former runs, and logs that are shown beside the present one.
 import { command } from "#js/connection.js";
 import { compared } from "#js/compare.js";
-import { FirstDifference, showComparison } from "#js/comparison.js";
 import { askText } from "#js/dialog.js";
 import { clock, typedNumber } from "#js/format.js";
 import { Menu } from "#js/popup.js";
 import { model } from "#js/model.js";
 import { chooseLog } from "#js/open_log.js";
+import { FirstDifference, showDifferences } from "#js/panels/differences.js";
 import { isRecorded } from "#js/recorded.js";
 import { html } from "#js/view.js";
 
@@ -23,12 +23,12 @@ export function BranchesMenu() {
   const chosen = model.branches.find((branch) => branch.id === model.compared);
   if (chosen) {
     items.push({ separator: true }, { text: `Name “${chosen.name}”…`, act: () => nameBranch(chosen), disabled: model.readonly });
-    if (compared.found) items.push({ text: "What differs, and what moves the sensors…", act: showComparison });
+    if (compared.first) items.push({ text: "What differs, and what moves the sensors", act: showDifferences });
     if (chosen.offset !== undefined) items.push({ text: "Move it in time…", act: () => moveBranch(chosen), disabled: model.readonly });
   }
   if (opens) items.push(...(items.length ? [{ separator: true }] : []), { text: "Show another log beside it…", act: chooseLog });
-  const { difference, found } = compared;
-  return html`${chosen && difference !== undefined && html`<${FirstDifference} difference=${difference} found=${found} />`}
+  const { first } = compared;
+  return html`${chosen && first && html`<${FirstDifference} first=${first} />`}
     <${Menu} label=${model.branches.length ? `Branches ${model.branches.length}` : "Compare"} icon="branch" title=${model.isOver ? "Compare with another log" : "Compare with an earlier run"} items=${items} />`;
 }
 

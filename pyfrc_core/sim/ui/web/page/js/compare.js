@@ -5,14 +5,13 @@ import { length } from "#js/past.js";
 import { valueAt } from "#js/series.js";
 
 const POINTS = 4000;
-const AGAIN = 2000; // milliseconds between two comparisons with a log while the robot runs
+const AGAIN = 2000; // milliseconds between two comparisons while the robot runs
 
 class Compared {
   id = null;
   pose = { t: [], v: [] };
   offset; // of the branch that was asked for
-  difference; // the first moment at which the branch differs from the present run; null: none, undefined: not known
-  found = null; // where a log that drives this run differs: { t, paths, others, sensors, until }
+  first = null; // where the branch first differs from the present run: { t, paths, others, until }; of a log that drives it, more
   #compared = ""; // how far the run was when it was compared
   #waits = false;
 
@@ -41,17 +40,13 @@ class Compared {
     this.id = id;
     this.offset = this.branch?.offset;
     this.pose = { t: [], v: [] };
-    this.difference = undefined;
-    this.found = null;
+    this.first = null;
     this.#compared = "";
     if (id === null) return;
+    this.compare();
     try {
       const answer = await ask("plot", { paths: ["sim.pose"], from: 0, to: this.end, points: POINTS, branch: id });
       if (this.id === id) this.pose = answer.series["sim.pose"] ?? this.pose;
-      if (this.branch?.compared) this.followLog();
-      if (this.branch?.offset !== undefined) return; // times of another clock never agree exactly
-      const first = await ask("first_difference", { branch: id, paths: null });
-      if (this.id === id) this.difference = first.t;
     } catch {
       // It may be gone: then there is nothing to show.
     } finally {
@@ -59,23 +54,25 @@ class Compared {
     }
   }
 
-  // Compare with the log that drives this run, again as long as the run goes on.
-  async followLog() {
-    const { id } = this;
+  // Compare the branch with this run, again as long as the run goes on. Times of another clock never agree exactly, so other
+  // logs are not compared; a former run keeps its first difference.
+  async compare() {
+    const { id, branch, first } = this;
+    if (!branch || branch.compared === false || (branch.offset === undefined && first?.t != null)) return;
     const place = `${id} ${this.offset} ${model.run.number} ${model.run.t} ${length()}`;
-    if (this.#waits || !this.branch?.compared || place === this.#compared) return;
+    if (this.#waits || place === this.#compared) return;
     this.#waits = true;
     this.#compared = place;
     try {
-      const first = await ask("first_difference", { branch: id, paths: null });
-      if (this.id === id) [this.difference, this.found] = [first.t, first];
+      const answer = await ask("first_difference", { branch: id, paths: null });
+      if (this.id === id) this.first = answer;
     } catch {
       // It may be gone.
     }
     model.announce("compared-series");
     setTimeout(() => {
       this.#waits = false;
-      this.followLog();
+      this.compare();
     }, AGAIN);
   }
 }
@@ -92,7 +89,7 @@ model.listen((changed) => {
       model.set("compared", id);
     }
   }
-  if (changed.has("t") || changed.has("status") || changed.has("run")) compared.followLog();
+  if (changed.has("t") || changed.has("status") || changed.has("run")) compared.compare();
   // A branch that was just opened, or moved in time, is asked for again.
   const moved = changed.has("branches") && compared.id !== null && compared.branch?.offset !== compared.offset;
   if (changed.has("compared") || moved) compared.choose(model.compared);

@@ -35,6 +35,7 @@ class Model {
   tuning = false; // whether this page may set values on a robot elsewhere: only after the person has switched it on
   problem = "";
   hint = ""; // what a person who drives a disabled robot should do
+  found = null; // { path, t }: the value that a person is led to, and when; `added`: its curve came with that
   past = null; // { t, values } while the panels show a moment of the past
 
   #listeners = new Set();

@@ -10,6 +10,7 @@ const WITHOUT_STATION = { [NO_CONNECTION]: "No connection", "unknown mode": "Con
 
 let wanted = null;
 let asking = false;
+let hasOtherNeeds = false; // whether panels need other values than when they were asked for
 
 export function length() {
   return Math.max(model.status.length ?? 0, model.t);
@@ -42,13 +43,14 @@ async function fetchWanted() {
   asking = true;
   while (wanted !== null) {
     const t = wanted;
+    hasOtherNeeds = false;
     try {
       const answer = await ask("values", { t, branch: null, shown: true });
       if (wanted !== null) show(t, new Map(Object.entries(answer.values)));
     } catch (error) {
       if (wanted === t) model.set("problem", error.message);
     }
-    if (wanted === t) break;
+    if (wanted === t && !hasOtherNeeds) break;
   }
   asking = false;
 }
@@ -72,7 +74,9 @@ function modeText(mode) {
 
 // Panels that were opened need values of the moment, too: after the server has heard of them.
 model.listen((changed) => {
-  if (changed.has("needs") && model.past && !isRecorded) queueMicrotask(() => model.past && look(model.past.t));
+  if (!changed.has("needs") || isRecorded) return;
+  hasOtherNeeds = true;
+  if (model.past) queueMicrotask(() => model.past && look(model.past.t));
 });
 
 // Show the present again.

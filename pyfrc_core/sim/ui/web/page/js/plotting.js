@@ -72,6 +72,17 @@ export function addCurve(id, curve) {
   changePlot(id, { curves: [...curves, { ...curve, key, color }] });
 }
 
+// Show a value that differs in a plot, around a moment; that of the one before goes, if it came in the same way.
+export function plotFound(path, t) {
+  const id = openPlot();
+  const { found: before } = model;
+  const kept = plotOf(id).curves.filter((curve) => !before?.added || curve.path !== before.path || path === before.path);
+  const added = !kept.some((curve) => curve.path === path) || Boolean(before?.added && before.path === path);
+  changePlot(id, { curves: kept });
+  addToPlot(path, id);
+  model.set("found", { path, t, added });
+}
+
 function openPlot() {
   return panelsOf(settings.tree).find((id) => id.startsWith("plot:")) ?? "plot:1";
 }

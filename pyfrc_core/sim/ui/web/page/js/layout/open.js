@@ -8,13 +8,13 @@ export function toggle(id) {
   settings.tree = placeOf(tree, id) ? close(tree, id) : openPanel(tree, id);
 }
 
-function openPanel(tree, id) {
-  return put(tree, largestTabs(tree), id, "center");
+function openPanel(tree, id, beside = null) {
+  return put(tree, (beside && placeOf(tree, beside)) ?? largestTabs(tree), id, "center");
 }
 
-// Bring a panel to the front, and open it if it is closed.
-export function showPanel(id) {
+// Bring a panel to the front. If it is closed, open it: in the tabs with another one, or else in the largest ones.
+export function showPanel(id, beside = null) {
   const { tree } = settings;
   const place = placeOf(tree, id);
-  settings.tree = place ? activate(tree, place, id) : openPanel(tree, id);
+  settings.tree = place ? activate(tree, place, id) : openPanel(tree, id, beside);
 }

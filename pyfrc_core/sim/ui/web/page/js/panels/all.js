@@ -4,6 +4,7 @@ import { ChangesPanel } from "#js/panels/changes.js";
 import { ConsolePanel } from "#js/panels/console.js";
 import { DashboardPanel } from "#js/panels/dashboard.js";
 import { DevicesPanel } from "#js/panels/devices.js";
+import { DifferencesPanel } from "#js/panels/differences.js";
 import { FieldPanel } from "#js/panels/field.js";
 import { JoysticksPanel } from "#js/panels/joysticks.js";
 import { KeysPanel } from "#js/panels/keys.js";
@@ -26,6 +27,7 @@ export const PANELS = {
   swerve: { title: "Swerve", component: SwervePanel },
   cameras: { title: "Cameras", component: CamerasPanel, served: true },
   changes: { title: "Changes", component: ChangesPanel },
+  differences: { title: "Differences", component: DifferencesPanel },
   console: { title: "Console", component: ConsolePanel },
   match: { title: "Match", component: MatchPanel },
   joysticks: { title: "Joysticks", component: JoysticksPanel, devices: true },

@@ -4,15 +4,16 @@ import { numberText, valueText } from "#js/format.js";
 import { model } from "#js/model.js";
 import { motorsOf } from "#js/motors.js";
 import { DeviceRow, Meter, Painted } from "#js/panels/device_row.js";
+import { Finding } from "#js/panels/finding.js";
 import { carryPath } from "#js/plotting.js";
 import { settings } from "#js/settings.js";
-import { Icon, Live, classes, html } from "#js/view.js";
+import { Icon, classes, html } from "#js/view.js";
 
 const READINGS = ["current", "velocity", "temperature"]; // of a motor
 const MANY = 100; // rows of a group that is closed at first
 
-export class DevicesPanel extends Live {
-  parts = ["panels", "settings", "hello"];
+export class DevicesPanel extends Finding {
+  parts = ["panels", "settings", "hello", "found"];
   state = { search: "", closed: {} };
   search = (search) => this.setState({ search });
 
@@ -27,7 +28,7 @@ export class DevicesPanel extends Live {
     const motors = motorsOf(model.panels).filter(({ name, device }) => words.every((word) => `motors ${name} ${device}`.toLowerCase().includes(word)));
     const isClosed = (title, rows) => !words.length && (closed[title] ?? rows.length > MANY);
     const toggle = (title, rows) => this.setState({ closed: { ...closed, [title]: !isClosed(title, rows) } });
-    return html`<div class="devices content column">
+    return html`<div class="devices content column" ref=${this.element}>
       <${SearchBox} label="Search devices" text=${search} search=${this.search} />
       <div class="scroll fill">
         ${pinned.length > 0 && html`<${Group} title="Pinned" rows=${pinned} pins=${pins} />`}
@@ -38,6 +39,11 @@ export class DevicesPanel extends Live {
         ${!found.length && html`<p class="empty">${model.panels.length ? "No device is called that." : "Devices appear here when the robot creates them."}</p>`}
       </div>
     </div>`;
+  }
+
+  stateToShow(path) {
+    const group = model.panels.find(({ rows }) => rows.some((row) => row.paths.includes(path)));
+    return { search: "", closed: { ...this.state.closed, [group?.title]: false } };
   }
 }
 

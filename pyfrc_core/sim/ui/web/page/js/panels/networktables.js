@@ -8,12 +8,13 @@ import { model } from "#js/model.js";
 import { elementsOf } from "#js/parts.js";
 import { carryPath, carryTable } from "#js/plotting.js";
 import { ValueBox } from "#js/value_box.js";
-import { Bound, Icon, Live, classes, createRef, html } from "#js/view.js";
+import { Bound, Icon, classes, createRef, html } from "#js/view.js";
+import { Finding } from "#js/panels/finding.js";
 
 const START = "nt:";
 
-export class NetworkTablesPanel extends Live {
-  parts = ["paths", "types", "hello", "shown", "settings"];
+export class NetworkTablesPanel extends Finding {
+  parts = ["paths", "types", "hello", "shown", "settings", "found"];
   state = { search: "", open: Object.fromEntries(model.hello.options.dashboard.tables.map((table) => [table, true])) };
   search = (search) => this.setState({ search });
 
@@ -33,7 +34,7 @@ export class NetworkTablesPanel extends Live {
       }
     };
     visit(tree, 0);
-    return html`<div class="networktables content column">
+    return html`<div class="networktables content column" ref=${this.element}>
       <${SearchBox} label="Search NetworkTables" text=${search} search=${this.search} />
       <div class="scroll fill" role="tree">${rows}${!rows.length && html`<p class="empty">${search ? "No value is called that." : "The robot has published nothing yet."}</p>`}</div>
     </div>`;
@@ -47,6 +48,12 @@ export class NetworkTablesPanel extends Live {
     elements.forEach((element, index) => {
       rows.push(html`<${Leaf} key=${element} boards=${this.boards} locked=${!model.mayWrite} path=${element} name=${`[${index}]`} list=${path} index=${index} depth=${depth + 1} />`);
     });
+  }
+
+  stateToShow(path) {
+    const open = { ...this.state.open };
+    for (let end = START.length; end >= 0; end = path.indexOf("/", end + 1)) open[path.slice(0, end)] = true;
+    return { search: "", open };
   }
 
   toggle(path, isOpen = this.state.open[path]) {

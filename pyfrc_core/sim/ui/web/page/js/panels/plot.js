@@ -26,10 +26,11 @@ const SPANS = [[5, "5 s"], [20, "20 s"], [60, "1 min"], [0, "All"]];
 const BAND = 20; // pixels of height for each boolean or text
 const TABLE_INTERVAL = 150; // milliseconds between two tables of statistics
 const LONG = 60; // seconds, of which a packet is less than a pixel
+const AROUND = 2; // seconds that are shown before and after what a person is led to
 const DETAIL = 8000; // points of a curve while a plot is zoomed
 
 export class PlotPanel extends Live {
-  parts = ["series", "t", "shown", "settings", "window", "compared-series", "compared"];
+  parts = ["series", "t", "shown", "settings", "window", "compared-series", "compared", "found"];
   state = { over: false, at: null };
   area = createRef();
   bands = createRef();
@@ -171,9 +172,18 @@ export class PlotPanel extends Live {
     for (const path of wanted) if (!this.watched.has(path)) this.watched.set(path, watch(path));
   }
 
+  // Zoom in on a value that a person is led to.
+  find() {
+    const { found } = model;
+    if (!found || found === this.found || !this.watched.has(found.path)) return;
+    this.found = found;
+    this.zoomTo(found.t - AROUND, found.t + AROUND);
+  }
+
   update() {
     if (!this.area.current) return;
     this.watchCurves();
+    this.find();
     if (compared.key !== this.otherKey || [...this.watched.keys()].some((path) => !this.others.has(path))) this.loadOthers();
     const shape = JSON.stringify([this.curves, this.curves.map(({ path }) => this.isNumber(path)), document.documentElement.dataset.theme, compared.id, this.xCurve]);
     if (shape !== this.shape) {

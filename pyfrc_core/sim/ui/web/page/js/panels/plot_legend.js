@@ -27,6 +27,7 @@ export function PlotLegend({ plot, bare, isTable, hasBranch, isNumber, shownOf, 
       ${curves.map((curve) => html`<li key=${keyOf(curve)} class=${classes({ off: curve.hidden })}>
         <${Name} curve=${curve} plot=${plot} isNumber=${isNumber} />
         <${Value} curve=${curve} value=${shownOf(curve)} />
+        ${hasBranch && html`<span class="faint in-branch" title="In the branch"><${Value} curve=${curve} value=${shownOf({ ...curve, other: true })} /></span>`}
         <${Tools} curve=${curve} plot=${plot} isNumber=${isNumber} />
       </li>`)}
     </ul>`;
