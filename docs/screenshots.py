@@ -27,9 +27,6 @@ from pyfrc_core.sim.ui.tk.window import Window  # noqa: E402
 
 IMAGES = ROOT / "docs" / "images"
 
-#: A screen as on a school's laptop, and one as on a good laptop: its letters have twice as many pixels each way.
-SCREENS = {"": (1366, 768, 96), "-dense": (2732, 1536, 192)}
-
 _LOOKS, _PAUSE = 6000, 0.01
 
 
@@ -82,7 +79,7 @@ class Photographer:
         self.simulation.close()
 
 
-def take_pictures(project: Path, display: str, suffix: str) -> None:
+def take_pictures(project: Path, display: str) -> None:
     """Drive, and let the robot crash."""
     with ExitStack() as closing:
         photographer = Photographer(project, display)
@@ -95,9 +92,7 @@ def take_pictures(project: Path, display: str, suffix: str) -> None:
         photographer.drive(0.8, 0.74, 1.2)
         simulation.pause()
         photographer.until(lambda: simulation.status.state == "paused")
-        photographer.picture(f"window{suffix}")
-        if suffix:
-            return
+        photographer.picture("window")
         simulation.resume()
         simulation.set_button(0, 4, True)
         photographer.until(lambda: simulation.status.state == "failed")
@@ -136,13 +131,10 @@ def make_project(directory: Path) -> Path:
 
 def main() -> None:
     IMAGES.mkdir(exist_ok=True)
-    with ExitStack() as displays:
-        # Tk keeps a display that it has seen, and ends the program when that goes: all stay until the end.
-        for suffix, (width, height, dpi) in SCREENS.items():
-            display = displays.enter_context(virtual_display(width, height, dpi))
-            with tempfile.TemporaryDirectory() as directory:
-                take_pictures(make_project(Path(directory)), display.name, suffix)
-            gc.collect()  # what is Tk's can be tidied away in this thread only
+    with virtual_display() as display:
+        with tempfile.TemporaryDirectory() as directory:
+            take_pictures(make_project(Path(directory)), display.name)
+        gc.collect()  # what is Tk's can be tidied away in this thread only
     take_page_pictures()
     print(*sorted(file.name for file in IMAGES.iterdir()), sep="\n")
 

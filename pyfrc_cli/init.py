@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import json
+from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 import click
 
@@ -40,6 +44,16 @@ def _confirm(directory: Path, others: list[str]) -> None:
             f"nothing was written: {what}",
             remedy="Name a new directory, as in: pyfrc init my-robot. To create the project beside them, add --yes.",
         )
+
+
+def _origin() -> str | None:
+    """Return the file or directory that pyfrc was installed from; None if that was a package index."""
+    try:
+        record = distribution("pyfrc").read_text("direct_url.json")
+    except PackageNotFoundError:  # run from a checkout that is not installed
+        return None
+    url = json.loads(record)["url"] if record else ""
+    return url2pathname(urlsplit(url).path) if url.startswith("file:") else None
 
 
 @click.command("init")
@@ -83,3 +97,6 @@ def command(directory: Path, template: str, team: int | None, yes: bool) -> None
         hint("Install them with: python -m pip install -r requirements.txt")
     hint("Test it with: pyfrc test")
     hint("Drive it with: pyfrc sim")
+    if (origin := _origin()) is not None:
+        hint("Before the first push to GitHub, in the project (docs/how_to/test_on_github.md):")
+        hint(f"  python -m pip wheel --no-deps -w wheels {quoted(origin)}")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
@@ -72,6 +74,29 @@ def test_what_is_not_installed_is_told_with_how_to_install_it(tmp_path: Path, mo
     assert "packages that are not installed: no-such-package-for-robots~=1.0\n" in shown.output
     assert f"cd {tmp_path / 'robot'}\nInstall them with: python -m pip install -r requirements.txt\n" in shown.output
     assert "no-such-package-for-robots~=1.0\nclick>=1\n" in (tmp_path / "robot/requirements.txt").read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("record", "shown"),
+    [
+        (None, None),
+        ('{"url": "https://robots.example/pyfrc.whl", "archive_info": {}}', None),
+        (
+            '{"url": "file:///home/you/my%20files/pyfrc", "dir_info": {}}',
+            "wheel --no-deps -w wheels '/home/you/my files/pyfrc'",
+        ),
+    ],
+)
+@pytest.mark.skipif(os.name == "nt", reason="the paths are those of other systems")
+def test_how_github_gets_a_pyfrc_that_is_not_from_the_index(
+    record: str | None, shown: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from pyfrc_cli import init
+
+    monkeypatch.setattr(init, "distribution", lambda name: SimpleNamespace(read_text=lambda file: record))
+    printed = CliRunner().invoke(init.command, [str(tmp_path / "robot")]).output
+    assert ("GitHub" in printed) == (shown is not None)
+    assert shown is None or f"{shown}\n" in printed
 
 
 @pytest.mark.parametrize("name", TEMPLATES)

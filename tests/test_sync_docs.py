@@ -57,4 +57,3 @@ def test_the_guide_has_what_each_season_downloads() -> None:
         assert f"`{season.downloads.platforms[0]}`" in GUIDE
         assert f"`{season.downloads.marker_machine}`" in GUIDE
         assert f"`~/wpilib/{season.year}/robotpy`" in GUIDE
-        assert f"\n{season.downloads.python_url}\n" in GUIDE

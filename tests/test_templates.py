@@ -9,6 +9,7 @@ import json
 import re
 import shlex
 import shutil
+import subprocess
 import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterator
@@ -18,9 +19,12 @@ from pathlib import Path
 import pytest
 import yaml
 from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings, sampled
+from package_index import add_wheel
 from roborio import Roborio, require_roborio
+from skips import missing_programs, require
 
 from pyfrc_cli.main import COMMANDS
+from pyfrc_core._version import __version__, requirement
 from pyfrc_core.deploy import session, starting
 from pyfrc_core.deploy.progress import DeployProgress, UserInterface
 from pyfrc_core.deploy.robot_packages import packages_by_module
@@ -36,6 +40,7 @@ else:
     import tomli as tomllib
 
 SOURCES = Path(__file__).parents[1] / "templates"
+GITHUB = SOURCES.with_name("docs") / "how_to" / "test_on_github.md"
 
 #: What the templates import on a robot, and what that imports.
 ON_THE_ROBOT = (
@@ -44,7 +49,7 @@ ON_THE_ROBOT = (
 )
 
 #: The first command of the workflows.
-INSTALLING = ["pip", "install", "-r", "requirements.txt"]
+INSTALLING = ["pip", "install", "--find-links", "wheels", "-r", "requirements.txt"]
 
 
 @pytest.fixture(scope="module")
@@ -119,11 +124,45 @@ def test_what_the_workflows_install_is_installed_here(project_of: Callable[[str]
         project = project_of(template)
         needed = project.path / "requirements.txt"
         lists[needed.read_text("utf-8")] = needed
-    program, install, option, _ = INSTALLING
+    program, install, *_, option, _ = INSTALLING
     arguments = [word for needed in lists.values() for word in (option, str(needed))]
     result = project.run(install, *arguments, program=program, env={"PIP_DISABLE_PIP_VERSION_CHECK": "1"})
     assert result.code == 0, result.output
     assert "Downloading" not in result.output
+
+
+def test_the_page_on_github_shows_the_workflow(project_of: Callable[[str], RobotProject]) -> None:
+    written = yaml.safe_load((project_of("timed").path / ".github/workflows/test.yml").read_text("utf-8"))
+    (block,) = re.findall(r"```yaml\n(.*?)```", GITHUB.read_text("utf-8"), re.DOTALL)
+    (shown,) = yaml.safe_load(block)["jobs"].values()
+    for step in written["jobs"]["test"]["steps"]:
+        for key in ("cache", "cache-dependency-path"):  # only make it faster
+            step.get("with", {}).pop(key, None)
+    assert shown == written["jobs"]["test"]
+
+
+@pytest.mark.slow
+def test_a_clone_has_the_wheel_from_which_the_workflow_installs_pyfrc(
+    project_of: Callable[[str], RobotProject], tmp_path: Path
+) -> None:
+    """As the page says, until the index has it."""
+    require("a clone of a project", missing_programs("git"))
+    project, clone = shutil.copytree(project_of("timed").path, tmp_path / "project"), tmp_path / "clone"
+    wheel = add_wheel(tmp_path, "pyfrc", __version__)
+    pip = (sys.executable, "-m", "pip", "--disable-pip-version-check")
+    git = ("git", "-c", "user.name=a", "-c", "user.email=a@b.c")
+    for command in (
+        (*pip, "wheel", "--no-deps", "-w", "wheels", str(wheel)),
+        (*git, "init", "-q"),
+        (*git, "add", "."),
+        (*git, "commit", "-q", "-m", "Test each push"),
+        (*git, "clone", "-q", str(project), str(clone)),
+    ):
+        subprocess.run(command, cwd=project, check=True, capture_output=True)
+    links = INSTALLING[2:4]
+    found = (*pip, "download", "--no-deps", "--no-index", *links, "-d", str(tmp_path / "found"), requirement())
+    subprocess.run(found, cwd=clone, check=True, capture_output=True)
+    assert [file.name for file in (tmp_path / "found").iterdir()] == [wheel.name]
 
 
 @sampled_templates

@@ -66,7 +66,7 @@ _ROWS = (
     _Row(
         "expected an indented block",
         "",
-        "After a line with a colon, the next is indented: indent this one by four spaces, or write pass before it.",
+        "After a line with a colon, the next is indented: by four spaces more than that line, or write pass before it.",
     ),
     _Row(
         "unexpected indent|unindent does not match",

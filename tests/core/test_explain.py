@@ -557,7 +557,7 @@ def test_a_method_with_other_parameters(headline_of: Raise, tmp_path: Path) -> N
         ("x = 3 \u2013 1\n", "robot.py:1: the character \u2013 is a dash", "Write - with"),
         ("x =\u00a03\n", "robot.py:1: U+00A0 is a special space", "an ordinary space"),
         ("def f()\n    pass\n", "robot.py:1: SyntaxError: expected ':'", "Write a colon"),
-        ("if True:\nx = 1\n", "IndentationError", "indent this one by four spaces"),
+        ("if True:\nx = 1\n", "IndentationError", "by four spaces more than that line"),
         ("if True:\n    x = 1\n   y = 2\n", "IndentationError", "Indent this line exactly"),
         ("if True:\n\tx = 1\n        y = 2\n", "robot.py:3: TabError", "spaces only"),
         ("if True:\n    x = 1\nelse if x:\n    y = 2\n", "robot.py:3: SyntaxError", "Write elif, in one word."),

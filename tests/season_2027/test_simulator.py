@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import re
 import shlex
 from pathlib import Path
 from typing import Any
 
 import pytest
 from conftest import MakeProject
+from test_docs import commands, files
 from web_pages import Page, served
 
 ROBOT = {
@@ -111,13 +111,11 @@ def test_what_cannot_be_chosen(arguments: tuple[str, ...], said: str, make_proje
 
 @pytest.mark.slow
 def test_the_guides_example_works(make_project: MakeProject) -> None:
-    guide = (Path(__file__).parents[2] / "docs/how_to/use_opmodes.md").read_text("utf-8")
-    (robot,) = re.findall(r"```python\n(.*?)```", guide, re.DOTALL)
-    project = make_project({"leaving/robot.py": robot})
-    commands = re.findall(r"^\$ pyfrc (.*)", guide, re.MULTILINE)
-    assert len(commands) == 2
-    for command in commands:
-        result = project.run(*shlex.split(command), "--record", "run.jsonl")
+    project = make_project(files("docs/how_to/use_opmodes.md"))
+    guide = commands("docs/how_to/use_opmodes.md")
+    assert len(guide) == 2
+    for command in guide:
+        result = project.run(*shlex.split(command)[1:], "--record", "run.jsonl")
         assert result.code == 0, result.output
         assert "Leave the line" in dict(map(reversed, changes_of(project.path / "run.jsonl", "control.opmode")))
 
