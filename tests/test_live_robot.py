@@ -241,7 +241,7 @@ from pyfrc_core.wpi import network
 robot = "10.12.34.77"
 subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
 subprocess.run(["ip", "address", "add", robot + "/24", "dev", "lo"], check=True)
-server = network.Server(robot, 5810)
+server = network.NetworkServer(robot, 5810)
 said = {"robotIP": int.from_bytes(socket.inet_aton(robot), "big"), "robotIp": robot}  # until 2026, and from 2027 on
 
 def serve(listener):
@@ -277,9 +277,9 @@ def test_a_server_that_was_closed_takes_nothing_from_the_next_one(tmp_path: Path
     """The library gives the numbers of what was destroyed to what is made next."""
     port = lasting_port()
     for _ in range(2):
-        before = network.Server("127.0.0.1", port)
+        before = network.NetworkServer("127.0.0.1", port)
         before.close()
-        server = network.Server("127.0.0.1", port)
+        server = network.NetworkServer("127.0.0.1", port)
         del before
         gc.collect()
         client = network_client.Client("a dashboard", [("127.0.0.1", port)])

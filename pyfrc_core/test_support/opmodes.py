@@ -21,14 +21,14 @@ from .options import READY_MADE_TESTS
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
     from ..project import Project
-    from ..wpi.opmodes import Opmode, OpmodeOfTests
+    from ..wpi.opmodes import OpmodeOfTests, PublishedOpmode
 
 
 #: Limits a test with the fixture `opmode` to the opmodes that it names: ``@pytest.mark.opmode("Drive")``.
 MARK = "opmode"
 
 
-def run_for_each(metafunc: pytest.Metafunc, published: Callable[[], tuple[Opmode, ...]]) -> None:
+def run_for_each(metafunc: pytest.Metafunc, published: Callable[[], tuple[PublishedOpmode, ...]]) -> None:
     """Make a test that has the fixture `opmode` one test for each opmode, or for each that its mark names.
 
     :param published: returns the opmodes of the robot
@@ -92,7 +92,7 @@ def hint_without_opmode(item: pytest.Item) -> list[tuple[str, str]]:
     return [("pyfrc", text.format(published[0].name))]
 
 
-def published_opmodes(project: Project) -> tuple[Opmode, ...]:
+def published_opmodes(project: Project) -> tuple[PublishedOpmode, ...]:
     """Return what the robot publishes when it is made: in another process, since tests are only collected here.
 
     :raises RobotCodeError: when the robot cannot be made
@@ -100,7 +100,7 @@ def published_opmodes(project: Project) -> tuple[Opmode, ...]:
     return run_in_subprocess(_publish, project, "while it was asked for its opmodes")
 
 
-def _publish(project: Project, log: CrashLog) -> tuple[Opmode, ...]:
+def _publish(project: Project, log: CrashLog) -> tuple[PublishedOpmode, ...]:
     patches.install(project.files)
     robot_class = load_robot(project)
     run = RobotRun()

@@ -66,7 +66,7 @@ if TYPE_CHECKING:
     from ..physics.core import PhysicsInterface
     from ..physics.engine import Physics, PhysicsModule
     from ..processes.crash_report import CrashLog
-    from ..wpi.opmodes import Opmode, OpmodeOfTests
+    from ..wpi.opmodes import OpmodeOfTests, PublishedOpmode
 
 _NOT_IN_FILE_NAMES = re.compile(r"[^\w.\[\]-]+")  # compiled before the fork, not in each test's process
 
@@ -94,7 +94,7 @@ class PyFrcPlugin(WatchedTests):
         *,
         project: Project | None = None,
         options: TestOptions | None = None,
-        published: tuple[Opmode, ...] | RobotCodeError | None = None,
+        published: tuple[PublishedOpmode, ...] | RobotCodeError | None = None,
     ) -> None:
         self.project = project or Project(Path(robot_file).resolve())
         self.options = options or TestOptions.combined(self.project.settings.test)
@@ -175,7 +175,7 @@ class PyFrcPlugin(WatchedTests):
         """One of the opmodes that your robot publishes: the test runs once for each of them."""
         return opmodes.value_of(request.param)
 
-    def opmodes(self) -> tuple[Opmode, ...]:
+    def opmodes(self) -> tuple[PublishedOpmode, ...]:
         """Return what the robot publishes; only the first call asks it.
 
         :raises RobotCodeError: when the robot cannot be made

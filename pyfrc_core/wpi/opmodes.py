@@ -20,7 +20,7 @@ _WPILIBS_NAMES = {"teleoperated": "teleop", "utility": "test"}
 _WORDS = {"test": "utility"}
 
 
-class Opmode(NamedTuple):
+class PublishedOpmode(NamedTuple):
     """An opmode that the robot has published.
 
     :param mode: the robot's mode that it is for: ``autonomous``, ``teleop`` or ``test``
@@ -51,7 +51,7 @@ def mode_name(mode: Any) -> str:
     return MODES.get(int(mode), "")
 
 
-def find_opmode(published: Collection[Opmode], opmode: str | OpmodeOfTests, mode: str = "") -> Opmode:
+def find_opmode(published: Collection[PublishedOpmode], opmode: str | OpmodeOfTests, mode: str = "") -> PublishedOpmode:
     """Return the opmode of a name, from those that the robot has published.
 
     :param opmode: its name, or what the fixture `opmode` gives
@@ -78,7 +78,7 @@ def find_opmode(published: Collection[Opmode], opmode: str | OpmodeOfTests, mode
     raise no_opmode(name, published)
 
 
-def no_opmode(name: str, published: Collection[Opmode]) -> UsageError:
+def no_opmode(name: str, published: Collection[PublishedOpmode]) -> UsageError:
     """Return the error that the robot has published no opmode of this name."""
     by_lower_case = {each.name.lower(): each.name for each in published}
     close = get_close_matches(name.lower(), by_lower_case, n=1)
@@ -87,6 +87,6 @@ def no_opmode(name: str, published: Collection[Opmode]) -> UsageError:
     return UsageError(f"there is no opmode {name!r}: {there[0].lower()}{there[1:]}", remedy=remedy)
 
 
-def _there(published: Collection[Opmode]) -> str:
+def _there(published: Collection[PublishedOpmode]) -> str:
     there = ", ".join(f"{each.name!r} ({_WORDS.get(each.mode, each.mode)})" for each in published)
     return f"The robot has published {there or 'none'}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal, NamedTuple
 
 
-class Widget(NamedTuple):
+class DashboardControl(NamedTuple):
     """What the user of a dashboard can change of an object that robot code shows.
 
     :param kind: a choice, the button of a command, a switch, or a number

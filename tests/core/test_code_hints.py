@@ -19,19 +19,19 @@ from pyfrc_core.runtime.checks.kinds import Kinds
 from pyfrc_core.runtime.checks.lost_commands import find_lost_commands
 from pyfrc_core.runtime.checks.never_used import find_never_used, find_unmatched_keys
 from pyfrc_core.runtime.checks.no_effect import find_lines_without_effect
-from pyfrc_core.runtime.checks.sources import Source
+from pyfrc_core.runtime.checks.sources import SourceFile
 from pyfrc_core.runtime.checks.wrong_moments import find_wrong_moments
 from pyfrc_core.runtime.checks.wrong_tests import find_wrong_tests
 from pyfrc_core.runtime.checks.wrong_units import find_wrong_units
 
 
-def source(text: str, is_test: bool = False) -> Source:
+def source(text: str, is_test: bool = False) -> SourceFile:
     """Run a text as a file of the project."""
     module = ModuleType("robot")
     vars(module).update(wpilib=wpilib, commands2=commands2)
     text = dedent(text).strip() + "\n"
     exec(text, vars(module))
-    return Source("robot.py", ast.parse(text), module, is_test)
+    return SourceFile("robot.py", ast.parse(text), module, is_test)
 
 
 def hints(text: str, is_test: bool = False) -> list[str]:

@@ -12,7 +12,7 @@ from ...hal.rows import all_rows
 from ...runtime.clock import PACKET_US, to_us
 from ...runtime.scripts.targets import MODE, OPMODE, PLUGGED, RESTART
 from ...wpi import robots, station
-from ...wpi.opmodes import Opmode
+from ...wpi.opmodes import PublishedOpmode
 from .dashboard_generator import DashboardFinder, DashboardGenerator
 from .drivers import choose_models
 from .finders import SensorFinder, find_controls
@@ -108,7 +108,7 @@ class InputGenerator:
         #: Switches that are closed for the whole match.
         self._held: set[str] = set()
         self._sensors.paused = _is_simulated(run)
-        self._opmodes: list[Opmode] = []
+        self._opmodes: list[PublishedOpmode] = []
         #: What the driver station was set to last.
         self._mode = ""
         self._enabled_since_us: int | None = None

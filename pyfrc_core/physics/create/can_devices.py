@@ -17,7 +17,7 @@ from ...runtime.clock import PACKET_US
 from ...wpi import motors, sparks
 from ..can_motors import Controller, Mechanism, Spark, Talon, read_settings
 from .motors import Motor
-from .names import Name, Reached
+from .names import DeviceName, Reached
 
 #: The gearing and the moment of inertia at the motor of what moves while the joysticks are tested.
 _TRIAL_GEARING, _TRIAL_INERTIA = 20.0, 2e-4
@@ -85,7 +85,9 @@ class CanDevices:
 def find_can_devices(objects: Iterable[Reached]) -> CanDevices:
     """Return the devices that the robot's code holds."""
     found = CanDevices()
-    things = [(Name(path), thing, expression) for path, thing, expression in objects if expression and _kind(thing)]
+    things = [
+        (DeviceName(path), thing, expression) for path, thing, expression in objects if expression and _kind(thing)
+    ]
     cancoders = [entry for entry in things if _kind(entry[1]) == "CANcoder"]
     controllers = [entry for entry in things if _kind(entry[1]) != "CANcoder"]
     followers = Counter(_place_of_leader(thing) for _, thing, _ in controllers)
@@ -135,7 +137,9 @@ def _parts(thing: Any) -> list[str]:
     return [own, *(own.replace("CANMotor", other) for other in ("CANEncoder", "CANDIO") if not _is_spark(thing))]
 
 
-def _motor(name: Name, thing: Any, expression: str, count: int, cancoders: list[tuple[Name, Any, str]]) -> CanMotor:
+def _motor(
+    name: DeviceName, thing: Any, expression: str, count: int, cancoders: list[tuple[DeviceName, Any, str]]
+) -> CanMotor:
     """Return the motor with what the robot has configured, and with what moves while the joysticks are tested.
 
     :param count: the number of motors, with those of the followers
@@ -169,7 +173,7 @@ def _motor(name: Name, thing: Any, expression: str, count: int, cancoders: list[
     )
 
 
-def _beside(name: Name, cancoders: list[tuple[Name, object, str]]) -> tuple[Name, Any, str] | None:
+def _beside(name: DeviceName, cancoders: list[tuple[DeviceName, object, str]]) -> tuple[DeviceName, Any, str] | None:
     """Return the only CANcoder of the same part of the robot, for a motor that could turn it."""
     beside = [each for each in cancoders if each[0].owner == name.owner]
     return beside[0] if len(beside) == 1 and name.task != "drive" else None

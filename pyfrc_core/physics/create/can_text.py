@@ -11,7 +11,7 @@ from .can_devices import CanMotor, known_gearing
 from .module_text import ModuleText
 from .motors import Motor
 from .survey import Encoder
-from .swerve_modules import Module
+from .swerve_modules import WheelModule
 
 #: Words in the names of motors that turn a flywheel or a roller, which have no gears.
 _WITHOUT_GEARS = {"flywheel", "shooter", "launcher"}
@@ -78,7 +78,7 @@ def wheel_motors(text: ModuleText, motors: Sequence[Motor], wanted: str) -> tupl
     return f"self.{names[0]}.output()", names
 
 
-def add_swerve(text: ModuleText, modules: list[Module]) -> None:
+def add_swerve(text: ModuleText, modules: list[WheelModule]) -> None:
     """Add a swerve drive; `speeds` are those of the robot in the code that follows."""
     drive, steer = modules[0].drive, modules[0].steer
     units = (math.pi * _WHEEL_DIAMETER, math.pi * _WHEEL_DIAMETER / 0.0254, 1.0, math.tau, 360.0)

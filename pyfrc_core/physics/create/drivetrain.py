@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 
 from .can_devices import CanMotor
 from .motors import Motor
-from .names import Name
+from .names import DeviceName
 from .sticks import FORWARD_AXES, Responses
 from .survey import Encoder, Survey
-from .swerve_modules import Module, wheel_pairs
+from .swerve_modules import WheelModule, wheel_pairs
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class DrivetrainLayout:
     """
 
     drivetrain: Tank | Mecanum | None = None
-    modules: list[Module] = field(default_factory=list)
+    modules: list[WheelModule] = field(default_factory=list)
     encoders: dict[str, list[Encoder]] = field(default_factory=dict)
     mechanisms: list[tuple[Motor, Encoder]] = field(default_factory=list)
     can_mechanisms: list[CanMotor] = field(default_factory=list)
@@ -173,7 +173,7 @@ def _assign_encoders(found: Survey, layout: DrivetrainLayout) -> None:
     layout.undriven = [*(motor for motor in others if not isinstance(motor, CanMotor)), *free]
 
 
-def _likeness(motor: Name, encoder: Name) -> tuple[int, bool, bool, bool]:
+def _likeness(motor: DeviceName, encoder: DeviceName) -> tuple[int, bool, bool, bool]:
     """Return a sort key: the greater, the more likely they belong together."""
     return (
         len(motor.purpose & encoder.purpose),

@@ -56,7 +56,7 @@ class ModuleText:
         self.setup.append(f"self.{name} = EncoderShaft({simulation.made}, {units})")
         return name
 
-    def simulate(self, name: str, simulation: source.Simulation) -> None:
+    def simulate(self, name: str, simulation: source.SimulationCode) -> None:
         """Add the simulation of a device, as an attribute of this name."""
         self.sims.add(simulation.name)
         self.setup.append(f"self.{name} = {simulation.made}")

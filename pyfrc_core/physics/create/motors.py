@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...hal import HalData
-from .names import Name, one_line
+from .names import DeviceName, one_line
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Motor:
     :param inverted: whether the robot has inverted it, if that is known
     """
 
-    name: Name
+    name: DeviceName
     channel: int | None = None
     device: str = ""
     inverted: bool = False

@@ -42,7 +42,7 @@ _DRIVING = {"drive", "driving", "speed", "propulsion"}
 _OF_MODULES = _SWERVE | _STEERING | _DRIVING | {"module", "modules"}
 
 
-class Name:
+class DeviceName:
     """A device's name in robot code, from the robot down: ``drivetrain.left_motor``."""
 
     def __init__(self, path: tuple[str, ...] = ()) -> None:
@@ -122,7 +122,7 @@ Place = tuple[str, int]
 class NamedDevice(NamedTuple):
     """A device in the robot's code."""
 
-    name: Name
+    name: DeviceName
     #: The robot's object.
     thing: Any
 
@@ -156,7 +156,7 @@ def find_devices(objects: Iterable[Reached]) -> dict[Place, NamedDevice]:
     found: dict[Place, NamedDevice] = {}
     for path, thing, _ in objects:
         for place, suffix in _places(thing):
-            found.setdefault(place, NamedDevice(Name((*path[:-1], path[-1] + suffix)), thing))
+            found.setdefault(place, NamedDevice(DeviceName((*path[:-1], path[-1] + suffix)), thing))
     return found
 
 

@@ -20,7 +20,7 @@ from ...runtime.robot import RobotRun
 from ...wpi import devices, motor_controllers
 from .can_devices import CanDevices, find_can_devices
 from .motors import Motor
-from .names import Name, NamedDevice, Place, find_devices, find_objects, find_track_width, one_line
+from .names import DeviceName, NamedDevice, Place, find_devices, find_objects, find_track_width, one_line
 from .sticks import Responses, try_sticks
 from .swerve_modules import SwerveSurvey, find_swerve
 
@@ -43,7 +43,7 @@ class Encoder:
     :param counts: whether the robot uses its count, and never calls `setDistancePerPulse`
     """
 
-    name: Name
+    name: DeviceName
     index: int
     channels: tuple[int, int] | None
     counts: bool
@@ -66,7 +66,7 @@ class Gyro:
     :param wraps: whether its angle stays between -180 and 180
     """
 
-    name: Name
+    name: DeviceName
     channel: int | None = None
     device: str = ""
     angle: str = ""
@@ -157,8 +157,8 @@ def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice], can: Can
     """Return the devices that the robot has created in the HAL, with their names in its code."""
     found = Survey()
 
-    def name_of(key: str, channel: int) -> Name:
-        return named[key, channel].name if (key, channel) in named else Name()
+    def name_of(key: str, channel: int) -> DeviceName:
+        return named[key, channel].name if (key, channel) in named else DeviceName()
 
     strips = hal_data["addressable_led"]
     led_ports = {strips[index]["output_port"] for index in _made(hal_data, "addressable_led")}
@@ -223,7 +223,7 @@ def _add_sim_device(found: Survey, device: str, named: Mapping[Place, NamedDevic
     elsewhere = (":" in device and not device.startswith("CAN")) or device.startswith("navX")
     number = None if elsewhere else re.search(r"\[(?:\d+,)?(\d+)\]$", device)
     known = named.get(("CAN", int(number[1]))) if number else None
-    name = known.name if known else Name()
+    name = known.name if known else DeviceName()
     values = {value.name for value in devices.sim_values(device)}
     for kind in _GYROS:
         if kind.device.fullmatch(device) and kind.angle in values:

@@ -28,7 +28,7 @@ _HALF = 0.27
 
 
 @dataclass(frozen=True)
-class Module:
+class WheelModule:
     """A wheel with its two motors.
 
     :param x: its place in front of the robot's centre, in metres
@@ -47,7 +47,7 @@ class Module:
 class SwerveSurvey:
     """The modules, and sentences about assumptions."""
 
-    modules: list[Module]
+    modules: list[WheelModule]
     assumptions: list[str]
 
 
@@ -89,7 +89,9 @@ def _corner(motor: Motor) -> object:
     return motor.name.end, motor.name.side
 
 
-def _placed(pairs: list[tuple[CanMotor, CanMotor]], objects: Iterable[Reached], assumptions: list[str]) -> list[Module]:
+def _placed(
+    pairs: list[tuple[CanMotor, CanMotor]], objects: Iterable[Reached], assumptions: list[str]
+) -> list[WheelModule]:
     """Return the modules with their places, from the robot's kinematics if it has one."""
     known = next((found for each in objects if (found := geometry.module_places(each.thing))), None)
     if known is None:
@@ -104,14 +106,14 @@ def _placed(pairs: list[tuple[CanMotor, CanMotor]], objects: Iterable[Reached], 
     else:
         order = "of the robot's kinematics" if known else "front left, front right, rear left, rear right"
         assumptions.append(f"It was assumed that the modules are in the order {order}.")
-    return [Module(drive, steer, x, y) for (drive, steer), (x, y) in zip(pairs, places, strict=True)]
+    return [WheelModule(drive, steer, x, y) for (drive, steer), (x, y) in zip(pairs, places, strict=True)]
 
 
 def _sign(value: float) -> int:
     return (value > 0) - (value < 0)
 
 
-def _measured(run: RobotRun, modules: list[Module], assumptions: list[str]) -> list[Module]:
+def _measured(run: RobotRun, modules: list[WheelModule], assumptions: list[str]) -> list[WheelModule]:
     """Return the modules with their encoders' values while the robot drives straight ahead."""
 
     def is_driving() -> bool:

@@ -19,7 +19,7 @@ from ...explain.places import last_name
 from ...explain.returned import class_of, public_name, returned_type
 from ...wpi import names
 from .kinds import Kinds
-from .sources import CodeWarning, Source, methods_of
+from .sources import CodeWarning, SourceFile, methods_of
 
 _AT_START = ("robotInit", "robot_init", "createObjects")
 #: The methods of joysticks that read an axis.
@@ -27,7 +27,7 @@ _AXIS = re.compile(r"get_?(raw_?axis|twist|throttle|(left|right)_?trigger_?axis|
 _STARTED_AT_ONCE = ("Robot", "Subsystem", "SubsystemBase", "Container")
 
 
-def find_wrong_comparisons(sources: list[Source]) -> Iterator[CodeWarning]:
+def find_wrong_comparisons(sources: list[SourceFile]) -> Iterator[CodeWarning]:
     """Yield comparisons of an enum's value with a text or a number."""
     for source in sources:
         held = {
@@ -51,7 +51,7 @@ def _constants(side: ast.expr) -> list[str | int]:
     return [each.value for each in items if isinstance(each, ast.Constant) and isinstance(each.value, (str, int))]
 
 
-def _never_equal(enum: type[Any], value: str | int, source: Source, node: ast.Compare) -> CodeWarning:
+def _never_equal(enum: type[Any], value: str | int, source: SourceFile, node: ast.Compare) -> CodeWarning:
     path = public_name(enum)
     members = {each.lower(): each for each in enum.__members__}
     close = get_close_matches(f"k{value}".lower(), members, n=1) or get_close_matches(str(value).lower(), members, n=1)
@@ -73,7 +73,7 @@ def _enums() -> dict[str, type[Any]]:
     return {name: enum for name, enum in found.items() if enum is not None}
 
 
-def find_early_reads(sources: list[Source]) -> Iterator[CodeWarning]:
+def find_early_reads(sources: list[SourceFile]) -> Iterator[CodeWarning]:
     """Yield where the alliance is read once, before the driver station is connected."""
     for source in sources:
         count = sum(last_name(each.func) in UNKNOWN_AT_FIRST for each in source.all(ast.Call))
@@ -100,7 +100,7 @@ def find_sticks_read_once(kinds: Kinds) -> Iterator[CodeWarning]:
                     yield source.warning(call, text, in_2027(f"{remedy}teleopPeriodic."))
 
 
-def _run_at_start(source: Source) -> Iterator[ast.FunctionDef]:
+def _run_at_start(source: SourceFile) -> Iterator[ast.FunctionDef]:
     """Yield the methods that run when the robot program starts."""
     for cls in source.all(ast.ClassDef):
         at_once = any(last_name(base).endswith(_STARTED_AT_ONCE) for base in cls.bases)

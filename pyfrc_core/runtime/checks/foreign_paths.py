@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator
 
 from ...season import CURRENT
-from .sources import CodeWarning, Source
+from .sources import CodeWarning, SourceFile
 
 #: The functions that write the file or directory of an argument: its name as a keyword. `open` depends on the mode.
 _WRITERS = {
@@ -27,13 +27,13 @@ _WRITABLE = (f"{CURRENT.controller.home}/", "/tmp/", "/var/tmp/", "/media/", "/u
 _OF_A_LAPTOP = re.compile(r"[A-Za-z]:[\\/]|/Users/|/home/(?!lvuser/)|~/(?:Desktop|Documents|Downloads)/")
 
 
-def find_foreign_paths(sources: list[Source]) -> Iterator[CodeWarning]:
+def find_foreign_paths(sources: list[SourceFile]) -> Iterator[CodeWarning]:
     """Yield the paths in the robot's files that a robot does not have or may not write."""
     for source in sources:
         yield from _in_file(source)
 
 
-def _in_file(source: Source) -> Iterator[CodeWarning]:
+def _in_file(source: SourceFile) -> Iterator[CodeWarning]:
     tree = source.tree
     assigned = {
         target.id: node.value

@@ -12,7 +12,7 @@ from typing import Any
 from ...explain.places import last_name
 from ...explain.returned import class_of, returned_type
 from ...wpi import names
-from .sources import Source
+from .sources import SourceFile
 
 #: What makes a command in the methods of a subsystem.
 _BY_SUBSYSTEM = re.compile(r"self\.(run|run_?once|run_?end|start_?end|start_?run)", re.IGNORECASE)
@@ -28,12 +28,12 @@ class Kinds:
     A name has a class if all lines of its file that assign it make an object of that class; if none does, those of all.
     """
 
-    def __init__(self, sources: list[Source]) -> None:
+    def __init__(self, sources: list[SourceFile]) -> None:
         self.sources = sources
         self.robot = [each for each in sources if not each.is_test]
         #: By name, in all files ("") and in each.
         self._held: dict[tuple[str, str], type[Any] | None] = {}
-        self._functions: dict[str, list[tuple[ast.FunctionDef, Source]]] = {}
+        self._functions: dict[str, list[tuple[ast.FunctionDef, SourceFile]]] = {}
         for source in sources:
             for node in source.nodes:
                 if isinstance(node, ast.FunctionDef):
@@ -41,7 +41,7 @@ class Kinds:
                 elif isinstance(node, (ast.Assign, ast.AnnAssign, ast.arg)):
                     self._hold(node, source)
 
-    def _hold(self, node: ast.Assign | ast.AnnAssign | ast.arg, source: Source) -> None:
+    def _hold(self, node: ast.Assign | ast.AnnAssign | ast.arg, source: SourceFile) -> None:
         value: ast.expr | None = getattr(node, "value", None)
         annotation: ast.expr | None = getattr(node, "annotation", None)
         targets: list[Any] = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", node)]
@@ -54,7 +54,7 @@ class Kinds:
             for key in (("", name), (source.name, name)) if annotation is not None or value is not None else ():
                 self._held[key] = cls if self._held.get(key, cls) is cls else None
 
-    def of(self, expression: ast.expr | None, source: Source) -> type[Any] | None:
+    def of(self, expression: ast.expr | None, source: SourceFile) -> type[Any] | None:
         """Return the class of an expression's value; None if that is not certain."""
         if not isinstance(expression, ast.Call):
             name = last_name(expression) if expression is not None else ""
@@ -62,18 +62,18 @@ class Kinds:
         called = self.called(expression, source)
         return called if isinstance(called, type) else class_of(returned_type(called))
 
-    def called(self, call: ast.Call, source: Source) -> object:
+    def called(self, call: ast.Call, source: SourceFile) -> object:
         """Return the class, function or method that is called; None if that is not certain."""
         found = object_of(call.func, source)
         if found is None and isinstance(call.func, ast.Attribute):
             found = getattr(self.of(call.func.value, source), call.func.attr, None)
         return found
 
-    def owner(self, call: ast.Call, source: Source) -> type[Any] | None:
+    def owner(self, call: ast.Call, source: SourceFile) -> type[Any] | None:
         """Return the class of the object whose method is called; None if that is not certain."""
         return self.of(call.func.value, source) if isinstance(call.func, ast.Attribute) else None
 
-    def is_library(self, call: ast.Call, source: Source) -> bool:
+    def is_library(self, call: ast.Call, source: SourceFile) -> bool:
         """Return whether a method of an object of a library's class is called."""
         owner = self.owner(call, source)
         return owner is not None and owner.__module__.partition(".")[0] in (*names.LIBRARIES, "wpimath", "rev")
@@ -90,7 +90,7 @@ class Kinds:
             name for name, each in returned if isinstance(each, str) and _is_command(vars(commands2).get(each))
         )
 
-    def makes_command(self, made: ast.expr, source: Source, calls: int = 3) -> bool:
+    def makes_command(self, made: ast.expr, source: SourceFile, calls: int = 3) -> bool:
         """Return whether an expression makes a command."""
         if not isinstance(made, ast.Call):
             return False
@@ -104,7 +104,7 @@ class Kinds:
             return False  # a library's method, with the name of one of the user's
         return any(self.makes_command(each, where, calls - 1) for each, where in self._returned(name, calls))
 
-    def is_endless(self, made: ast.expr, source: Source, calls: int = 3) -> bool:
+    def is_endless(self, made: ast.expr, source: SourceFile, calls: int = 3) -> bool:
         """Return whether an expression makes a command that never ends by itself."""
         if not isinstance(made, ast.Call) or not self.makes_command(made, source):
             return False
@@ -118,11 +118,11 @@ class Kinds:
         found = self._functions.get(name, [])
         return bool(found) and not any(isinstance(node, ast.Return) for each, _ in found for node in ast.walk(each))
 
-    def _by_subsystem(self, made: ast.Call, source: Source) -> bool:
+    def _by_subsystem(self, made: ast.Call, source: SourceFile) -> bool:
         function = getattr(self.owner(made, source), last_name(made.func), None)
         return getattr(function, "__annotations__", {}).get("return") == "Command"
 
-    def _returned(self, name: str, calls: int) -> Iterator[tuple[ast.expr, Source]]:
+    def _returned(self, name: str, calls: int) -> Iterator[tuple[ast.expr, SourceFile]]:
         """Yield what a function of the user's returns, if there is one of this name only."""
         found = self._functions.get(name, [])
         for function, source in found if len(found) == 1 and calls else ():
@@ -137,7 +137,7 @@ def _is_command(maker: object) -> bool:
     )
 
 
-def object_of(expression: ast.expr | None, source: Source) -> object:
+def object_of(expression: ast.expr | None, source: SourceFile) -> object:
     """Return what a dotted name is in a file; None for anything else."""
     found: object = source.module if expression is not None else None
     for name in ast.unparse(expression).split(".") if expression is not None else ():

@@ -12,7 +12,7 @@ from ...explain.places import last_name
 from ...season.spelling import normalized
 from ...wpi import names
 from .kinds import Kinds, object_of
-from .sources import CodeWarning, Source
+from .sources import CodeWarning, SourceFile
 
 #: What calls the functions that it gets, and throws away what they return.
 _CALLING = frozenset({"run", "runonce", "runend", "startend", "runcommand", "instantcommand", "startendcommand"})
@@ -42,14 +42,14 @@ def find_lost_commands(kinds: Kinds) -> Iterator[CodeWarning]:
     yield from _without_scheduler(robots)
 
 
-def _used_calls(robots: list[Source]) -> Iterator[tuple[str, ast.Call]]:
+def _used_calls(robots: list[SourceFile]) -> Iterator[tuple[str, ast.Call]]:
     """Yield the calls whose value is used, each with its place, the last first."""
     for source in robots:
         alone = [each.value for each in source.all(ast.Expr)]
         yield from ((source.at(each), each) for each in reversed(source.all(ast.Call)) if each not in alone)
 
 
-def _dropped(made: ast.Call, function: ast.FunctionDef, source: Source, caller: str) -> CodeWarning:
+def _dropped(made: ast.Call, function: ast.FunctionDef, source: SourceFile, caller: str) -> CodeWarning:
     """Return what is wrong with a command that is a statement of its own.
 
     :param caller: the place of a line that uses what the function around returns
@@ -73,7 +73,7 @@ def _dropped(made: ast.Call, function: ast.FunctionDef, source: Source, caller: 
     return source.warning(made, text, remedy)
 
 
-def _made_inside(call: ast.Call, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
+def _made_inside(call: ast.Call, kinds: Kinds, source: SourceFile) -> Iterator[CodeWarning]:
     """Yield ``runOnce(lambda: self.arm.raise_it())``, where that function returns a command."""
     for each in call.args:
         if isinstance(each, ast.Call) and kinds.returns_nothing(last_name(each.func)):
@@ -86,7 +86,7 @@ def _made_inside(call: ast.Call, kinds: Kinds, source: Source) -> Iterator[CodeW
             yield source.warning(call, text, f"Write {ast.unparse(made)} in place of {ast.unparse(call)}")
 
 
-def _behind_endless(call: ast.Call, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
+def _behind_endless(call: ast.Call, kinds: Kinds, source: SourceFile) -> Iterator[CodeWarning]:
     name, parts = normalized(last_name(call.func)), call.args[:-1]
     if name in ("andthen", "beforestarting") and isinstance(call.func, ast.Attribute):
         parts = [call.func.value, *parts] if name == "andthen" else call.args
@@ -98,7 +98,7 @@ def _behind_endless(call: ast.Call, kinds: Kinds, source: Source) -> Iterator[Co
             yield source.warning(each, text, remedy)
 
 
-def _without_scheduler(robots: list[Source]) -> Iterator[CodeWarning]:
+def _without_scheduler(robots: list[SourceFile]) -> Iterator[CodeWarning]:
     """Yield a robot with commands that does not call their scheduler."""
     used = {normalized(last_name(node)) for each in robots for node in each.all(ast.expr)}
     if not used & {*BINDINGS, "schedule", "setdefaultcommand"} or used & {"commandscheduler", "scheduler"}:

@@ -11,7 +11,7 @@ from ...explain.other_season import in_2027
 from ...explain.places import last_name
 from ...season.spelling import normalized
 from .kinds import Kinds, object_of
-from .sources import CodeWarning, Source
+from .sources import CodeWarning, SourceFile
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def find_never_used(kinds: Kinds) -> Iterator[CodeWarning]:
             yield from _defined_twice(cls, source)
 
 
-def _calls(files: Collection[Source], name: str, method: str) -> Iterator[tuple[Source, ast.Call]]:
+def _calls(files: Collection[SourceFile], name: str, method: str) -> Iterator[tuple[SourceFile, ast.Call]]:
     """Yield the calls of a method, named by a regular expression, of the object that has a name."""
     for source in files:
         for node in source.all(ast.Call):
@@ -91,7 +91,7 @@ def _calls(files: Collection[Source], name: str, method: str) -> Iterator[tuple[
                 yield source, node
 
 
-def find_unmatched_keys(files: Collection[Source]) -> Iterator[CodeWarning]:
+def find_unmatched_keys(files: Collection[SourceFile]) -> Iterator[CodeWarning]:
     """Yield where SmartDashboard is asked for a key that is only put in another spelling."""
     places: dict[str, dict[str, dict[str, str]]] = {"put": {}, "get": {}}
     for source, call in _calls(files, "SmartDashboard", "(put|get).+"):
@@ -107,7 +107,7 @@ def find_unmatched_keys(files: Collection[Source]) -> Iterator[CodeWarning]:
             yield CodeWarning(got[key], text, "Write the same key in both.")
 
 
-def _defined_twice(parent: ast.Module | ast.ClassDef, source: Source) -> Iterator[CodeWarning]:
+def _defined_twice(parent: ast.Module | ast.ClassDef, source: SourceFile) -> Iterator[CodeWarning]:
     first: dict[str, int] = {}
     for node in parent.body:
         if isinstance(node, ast.FunctionDef) and not node.decorator_list:

@@ -19,7 +19,7 @@ from ...season import CURRENT
 from ...season.spelling import normalized
 from ...wpi import names
 from .kinds import Kinds
-from .sources import CodeWarning, Source, methods_of
+from .sources import CodeWarning, SourceFile, methods_of
 
 #: How methods begin that return something.
 _ASKS = re.compile(r"(get|is|has|at)(?=[A-Z_]|$)")
@@ -65,7 +65,7 @@ def _nodes(node: ast.AST) -> Iterator[ast.AST]:
             yield from _nodes(child)
 
 
-def _of_expression(value: ast.expr, source: Source) -> Iterator[CodeWarning]:
+def _of_expression(value: ast.expr, source: SourceFile) -> Iterator[CodeWarning]:
     """Yield what is wrong with an expression that is a statement of its own."""
     written = ast.unparse(value)
     if isinstance(value, ast.Compare):
@@ -82,7 +82,7 @@ def _of_expression(value: ast.expr, source: Source) -> Iterator[CodeWarning]:
         yield source.warning(value, text, f"To set it, write: {ast.unparse(value.left)} = {written}")
 
 
-def _of_assignment(node: ast.Assign, source: Source) -> Iterator[CodeWarning]:
+def _of_assignment(node: ast.Assign, source: SourceFile) -> Iterator[CodeWarning]:
     """Yield ``speed =+ 1``."""
     value, target = node.value, node.targets[0]
     if not isinstance(value, ast.UnaryOp) or not isinstance(value.op, (ast.UAdd, ast.USub)):
@@ -95,7 +95,7 @@ def _of_assignment(node: ast.Assign, source: Source) -> Iterator[CodeWarning]:
 
 
 def _of_condition(
-    test: ast.expr, methods: set[str], library_methods: frozenset[str], source: Source
+    test: ast.expr, methods: set[str], library_methods: frozenset[str], source: SourceFile
 ) -> Iterator[CodeWarning]:
     """Yield a function that is asked like its value, and a POV whose -1 counts as true."""
     if isinstance(test, ast.Call) and normalized(last_name(test.func)) == "getpov" and CURRENT.year < 2027:
@@ -121,7 +121,7 @@ def _of_condition(
             yield source.warning(each, text, f"Write {written}()")
 
 
-def _of_call(call: ast.Call, source: Source) -> Iterator[CodeWarning]:
+def _of_call(call: ast.Call, source: SourceFile) -> Iterator[CodeWarning]:
     """Yield ``(one and other).onTrue(...)`` of triggers, and a button that does not exist."""
     bound = call.func.value if isinstance(call.func, ast.Attribute) and is_binding(call) else None
     if isinstance(bound, ast.BoolOp):
@@ -179,7 +179,7 @@ def _asked(test: ast.expr) -> Iterator[ast.expr]:
         yield test
 
 
-def _replaced_methods(source: Source) -> Iterator[CodeWarning]:
+def _replaced_methods(source: SourceFile) -> Iterator[CodeWarning]:
     """Yield ``self.isFinished = True`` in a class that has a method of this name."""
     for definition in (each for each in source.tree.body if isinstance(each, ast.ClassDef)):
         cls = vars(source.module).get(definition.name)
@@ -194,7 +194,7 @@ def _replaced_methods(source: Source) -> Iterator[CodeWarning]:
                     yield source.warning(node, text, remedy)
 
 
-def _assigned(source: Source) -> Iterator[str]:
+def _assigned(source: SourceFile) -> Iterator[str]:
     """Yield the names to which a file assigns something, and those of its properties."""
     for node in source.nodes:
         if isinstance(node, (ast.Attribute, ast.Name)) and isinstance(node.ctx, ast.Store):

@@ -38,7 +38,7 @@ class CodeWarning:
 
 
 @dataclass(frozen=True)
-class Source:
+class SourceFile:
     """One file.
 
     :param name: relative to the project
@@ -68,13 +68,13 @@ class Source:
         return CodeWarning(self.at(node), text, remedy)
 
 
-def sources(project: Project) -> Iterator[Source]:
+def sources(project: Project) -> Iterator[SourceFile]:
     """Yield the robot's files and its tests; physics.py runs on no robot, and is left out."""
     for module in loaded_modules.look():
         file = str(module.__file__)
         if project.files.is_project_file(file) and Path(file) != project.physics_file:
             is_test = not project.files.is_robot_code(file)
-            yield Source(project.files.relative(file), parsed(file), module, is_test)
+            yield SourceFile(project.files.relative(file), parsed(file), module, is_test)
 
 
 def methods_of(cls: ast.ClassDef) -> list[ast.FunctionDef]:

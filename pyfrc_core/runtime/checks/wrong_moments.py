@@ -12,7 +12,7 @@ from ...explain.returned import short_name
 from ...season.spelling import normalized
 from ...wpi import names
 from .kinds import Kinds
-from .sources import CodeWarning, Source, methods_of
+from .sources import CodeWarning, SourceFile, methods_of
 
 _IN_EACH_LOOP = {each for each in names.OF_MODES if each.endswith(("Periodic", "_periodic"))} | {"execute", "periodic"}
 #: Where a loop's variables are made.
@@ -32,7 +32,7 @@ def find_wrong_moments(kinds: Kinds) -> Iterator[CodeWarning]:
                 yield from _in_each_loop(method, kinds, source)
 
 
-def _in_each_loop(method: ast.FunctionDef, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
+def _in_each_loop(method: ast.FunctionDef, kinds: Kinds, source: SourceFile) -> Iterator[CodeWarning]:
     beginning = _BEGINNINGS.get(method.name, method.name.replace("Periodic", "Init").replace("_periodic", "_init"))
     made_at = "__init__" if method.name in _BEGINNINGS else in_2027("robotInit")
     for statement in _always(method.body):

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from ...explain.places import last_name
 from .kinds import Kinds, object_of
-from .sources import CodeWarning, Source
+from .sources import CodeWarning, SourceFile
 
 #: A line that sets what only robot code sets.
 _OUTPUT = re.compile(r"hal_data\['(?:pwm|relay|solenoid)'\]\[\d+\](?:\['\w+'\])? = ")
@@ -34,7 +34,7 @@ def find_wrong_tests(kinds: Kinds) -> Iterator[CodeWarning]:
             yield from _of_hal_data(test, source)
 
 
-def _of_hal_data(test: ast.FunctionDef, source: Source) -> Iterator[CodeWarning]:
+def _of_hal_data(test: ast.FunctionDef, source: SourceFile) -> Iterator[CodeWarning]:
     """Yield outputs that are set, and inputs that are set after ``control.run_test(...)``."""
     calls = [at for at, each in enumerate(test.body) if "control.run_test(" in ast.unparse(each)]
     for at, each in enumerate(test.body):

@@ -10,7 +10,7 @@ from ...explain.other_season import in_2027
 from ...explain.places import last_name
 from ...season.spelling import normalized
 from .kinds import Kinds
-from .sources import CodeWarning, Source
+from .sources import CodeWarning, SourceFile
 
 #: Functions of wpilib and of geometry that return degrees.
 _DEGREES = frozenset({"getangle", "getyaw", "degrees", "getpov"})
@@ -30,7 +30,7 @@ def find_wrong_units(kinds: Kinds) -> Iterator[CodeWarning]:
                 yield from _of_power(call, kinds, source)
 
 
-def _of_angle(call: ast.Call, source: Source) -> Iterator[CodeWarning]:
+def _of_angle(call: ast.Call, source: SourceFile) -> Iterator[CodeWarning]:
     angle, name = call.args[-1], last_name(call.func)
     number, written = _number(angle), ast.unparse(angle)
     is_degrees = isinstance(angle, ast.Call) and normalized(last_name(angle.func)) in _DEGREES
@@ -42,7 +42,7 @@ def _of_angle(call: ast.Call, source: Source) -> Iterator[CodeWarning]:
         yield source.warning(call, f"{name}() takes {takes}, and {written} is a number in degrees", f"Write {right}")
 
 
-def _of_power(call: ast.Call, kinds: Kinds, source: Source) -> Iterator[CodeWarning]:
+def _of_power(call: ast.Call, kinds: Kinds, source: SourceFile) -> Iterator[CodeWarning]:
     bases = {each.__name__ for each in getattr(kinds.owner(call, source), "__mro__", ())}
     numbers = [number for each in call.args if (number := _number(each)) is not None and abs(number) > 1]
     if numbers and bases & {"MotorController", "RobotDriveBase", "SparkBase"}:

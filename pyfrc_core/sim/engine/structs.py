@@ -34,7 +34,7 @@ class _UnknownSchema(Exception):
     """A schema is missing, or cannot be read."""
 
 
-class Layout:
+class StructLayout:
     """How a struct is stored.
 
     :param names: those of its parts, such as ``/translation/x``
@@ -61,10 +61,10 @@ class Structs:
 
     def __init__(self, schema_of: Callable[[str], str]) -> None:
         self._schema_of = schema_of
-        self._layouts: dict[str, Layout] = {}
+        self._layouts: dict[str, StructLayout] = {}
         self._paths: dict[tuple[str, int], list[str]] = {}
 
-    def layout(self, kind: str) -> Layout | None:
+    def layout(self, kind: str) -> StructLayout | None:
         """Return how a struct is stored; None when its schema is missing or damaged."""
         found = self._layouts.get(kind)
         if found is None:
@@ -117,8 +117,8 @@ class _Builder:
         #: The bit field that is being filled: its bytes, and the bits that are used.
         self._unit = self._used = 0
 
-    def layout(self) -> Layout:
-        return Layout("".join(self._codes), self._names, self._readers)
+    def layout(self) -> StructLayout:
+        return StructLayout("".join(self._codes), self._names, self._readers)
 
     def add(self, kind: str, prefix: str, depth: int) -> None:
         """Add the parts of a struct.

@@ -18,7 +18,7 @@ from ..options import TestOptions
 if TYPE_CHECKING:
     from ...errors import RobotCodeError
     from ...project import Project
-    from ...wpi.opmodes import Opmode
+    from ...wpi.opmodes import PublishedOpmode
     from ..pytest_plugin import PyFrcPlugin
 
 
@@ -49,7 +49,7 @@ class TestJob:
     project: Project
     options: TestOptions
     turns: str | None
-    published: tuple[Opmode, ...] | RobotCodeError | None
+    published: tuple[PublishedOpmode, ...] | RobotCodeError | None
     no_plugins: bool = False
 
 

@@ -12,7 +12,7 @@ ROBOT = "wpilib.RobotBase"
 SETS_DISTANCE = "setDistancePerPulse()"
 
 
-class Simulation(NamedTuple):
+class SimulationCode(NamedTuple):
     """The simulation of a device.
 
     :param name: the name to import, see `imports`
@@ -41,9 +41,9 @@ def motor(model: str, count: int | str) -> str:
     return f"DCMotor.{model}({count})"
 
 
-def pwm(channel: int) -> Simulation:
+def pwm(channel: int) -> SimulationCode:
     """Return the simulation of a PWM output."""
-    return Simulation("PWMSim", f"PWMSim({channel})")
+    return SimulationCode("PWMSim", f"PWMSim({channel})")
 
 
 def power_of_pwm(expression: str) -> str:
@@ -51,15 +51,15 @@ def power_of_pwm(expression: str) -> str:
     return f"{expression}.getSpeed()"
 
 
-def encoder(channels: tuple[int, int] | None, index: int) -> Simulation:
+def encoder(channels: tuple[int, int] | None, index: int) -> SimulationCode:
     """Return the simulation of an encoder, by its first channel if that is known."""
     how = f"createForChannel({channels[0]})" if channels else f"createForIndex({index})"
-    return Simulation(ENCODER, f"{ENCODER}.{how}")
+    return SimulationCode(ENCODER, f"{ENCODER}.{how}")
 
 
-def analog_gyro(channel: int) -> Simulation:
+def analog_gyro(channel: int) -> SimulationCode:
     """Return the simulation of an analog gyro."""
-    return Simulation("AnalogGyroSim", f"AnalogGyroSim({channel})")
+    return SimulationCode("AnalogGyroSim", f"AnalogGyroSim({channel})")
 
 
 def turned_gyro(expression: str, turned: str, rate: str) -> list[str]:
@@ -71,10 +71,10 @@ def turned_gyro(expression: str, turned: str, rate: str) -> list[str]:
     return [f"{expression}.setAngle({expression}.getAngle(){turned})", f"{expression}.setRate({rate})"]
 
 
-def number(device: str, value: str) -> Simulation:
+def number(device: str, value: str) -> SimulationCode:
     """Return a number of a SimDevice, with ``get`` and ``set``."""
     made = f"SimDeviceSim({_quoted(device)}).getDouble({_quoted(value)})"
-    return Simulation("SimDeviceSim", made)
+    return SimulationCode("SimDeviceSim", made)
 
 
 def wheel_speed(speeds: str, wheel: str) -> str:

@@ -35,7 +35,7 @@ from wpilib import DriverStation
 from wpilib.simulation import DriverStationSim
 
 from ...errors import UsageError
-from ..opmodes import Opmode, OpmodeOfTests
+from ..opmodes import OpmodeOfTests, PublishedOpmode
 
 #: The four modes that `TestController.get_mode` returns.
 Mode: TypeAlias = Literal["disabled", "autonomous", "teleop", "test"]
@@ -201,12 +201,12 @@ def set_game_message(message: str) -> None:
 # -- opmodes -----------------------------------------------------------------------------------------------------------
 
 
-def published_opmodes() -> list[Opmode]:
+def published_opmodes() -> list[PublishedOpmode]:
     """Return the opmodes that the robot has published: there are none before 2027."""
     return []
 
 
-def opmode_of_tests(opmode: Opmode) -> OpmodeOfTests:
+def opmode_of_tests(opmode: PublishedOpmode) -> OpmodeOfTests:
     """Return what tests get for an opmode."""
     return opmode
 
@@ -225,7 +225,7 @@ def choose_first_opmodes() -> None:
     """Choose the first opmode of each mode: there are none before 2027."""
 
 
-def select_opmode(opmode: Opmode) -> None:
+def select_opmode(opmode: PublishedOpmode) -> None:
     """Select an opmode with the next packet, and its mode."""
 
 

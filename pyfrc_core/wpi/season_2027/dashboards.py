@@ -9,7 +9,7 @@ import tunables
 from wpilib import Field2d
 from wpimath import Pose2d
 
-from ..widgets import Widget
+from ..widgets import DashboardControl
 from . import network
 
 __all__ = ["Field2d", "place_robot", "robot_pose", "show_field", "show_poses", "shown", "widget_of"]
@@ -87,7 +87,7 @@ def written_entry(name: str) -> str:
     return network.written_entry(name, network.properties_of(name))
 
 
-def widget_of(name: str) -> Widget | None:
+def widget_of(name: str) -> DashboardControl | None:
     """Return what the user of a dashboard can change by an entry of this name; None if that is nothing."""
     table, _, entry = name.rpartition("/")
     if not name.startswith(_TUNABLES) or entry.startswith("."):
@@ -95,10 +95,10 @@ def widget_of(name: str) -> Widget | None:
     made_by = network.text_of(f"{table}/.type")
     if made_by == _CHOOSER:
         options = network.texts_of(name) if entry == "options" else []
-        return Widget("choice", f"{table}/selected/tune", table, tuple(options)) if options else None
+        return DashboardControl("choice", f"{table}/selected/tune", table, tuple(options)) if options else None
     if made_by == "Command":
-        return Widget("command", name, table) if entry == "running" else None
+        return DashboardControl("command", name, table) if entry == "running" else None
     type_name = network.type_of(name) if network.properties_of(name).get("mutable") is True else ""
     if type_name == "boolean":
-        return Widget("flag", name, name)
-    return Widget("number", name, name) if type_name == "double" else None
+        return DashboardControl("flag", name, name)
+    return DashboardControl("number", name, name) if type_name == "double" else None

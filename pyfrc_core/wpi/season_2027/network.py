@@ -76,7 +76,7 @@ def serve_this_computer(port: int) -> None:
 # -- what is published -------------------------------------------------------------------------------------------------
 
 
-class Update:
+class EntryUpdate:
     """News of an entry.
 
     :ivar name: its name
@@ -106,9 +106,9 @@ class Listener:
         self._poller, self._flags = ntcore.NetworkTableListenerPoller(tables), flags
         self.resume()
 
-    def read(self) -> Iterator[Update]:
+    def read(self) -> Iterator[EntryUpdate]:
         """Yield what has changed since the last call."""
-        return map(Update, (event.data for event in self._poller.read_queue()))
+        return map(EntryUpdate, (event.data for event in self._poller.read_queue()))
 
     def close(self) -> None:
         """Collect nothing any longer."""
@@ -284,7 +284,7 @@ class DataEntry:
         self._publisher.set(value, 0 if at_us is None else timing.hal_time(at_us))
 
 
-class Server:
+class NetworkServer:
     """Other tables than the robot's, served to dashboards.
 
     :param listen: the address of this computer at which they can connect; empty: all of them. None: no one can
@@ -298,7 +298,7 @@ class Server:
         #: What dashboards write.
         self.written = Listener(self._tables, _VALUES_OF_OTHERS)
 
-    def publish(self, update: Update) -> None:
+    def publish(self, update: EntryUpdate) -> None:
         """Publish a value of the robot's tables, with its type and its properties."""
         name, kind = update.name, update.type_name
         known = self._published.get(name)

@@ -34,7 +34,7 @@ from wpilib.simulation import DriverStationSim
 
 from ...errors import UsageError
 from ..opmodes import MODES as MODES_OF_OPMODES
-from ..opmodes import Opmode, OpmodeOfTests, no_opmode
+from ..opmodes import OpmodeOfTests, PublishedOpmode, no_opmode
 
 #: The four modes that `TestController.get_mode` returns; "test" is WPILib's utility mode.
 Mode: TypeAlias = Literal["disabled", "autonomous", "teleop", "test"]
@@ -260,10 +260,10 @@ def set_game_message(message: str) -> None:
 # -- opmodes -----------------------------------------------------------------------------------------------------------
 
 
-def published_opmodes() -> list[Opmode]:
+def published_opmodes() -> list[PublishedOpmode]:
     """Return the opmodes that the robot has published."""
     return [
-        Opmode(
+        PublishedOpmode(
             each.name,
             MODES_OF_OPMODES.get(int(hal.opmode_get_robot_mode(each.id)), ""),
             each.id,
@@ -274,7 +274,7 @@ def published_opmodes() -> list[Opmode]:
     ]
 
 
-def opmode_of_tests(opmode: Opmode) -> OpmodeOfTests:
+def opmode_of_tests(opmode: PublishedOpmode) -> OpmodeOfTests:
     """Return what tests get for an opmode: what WPILib's own fixture gives."""
     return wpilib.testing.OpMode(RobotMode(int(hal.opmode_get_robot_mode(opmode.id))), opmode.name)
 
@@ -316,7 +316,7 @@ def select_opmode_named(name: str) -> None:
     DriverStationSim.set_opmode(_chosen.get(mode, 0))
 
 
-def select_opmode(opmode: Opmode) -> None:
+def select_opmode(opmode: PublishedOpmode) -> None:
     """Select an opmode with the next packet, and its mode."""
     _choose(opmode)
     set_mode(autonomous=opmode.mode == "autonomous", test=opmode.mode == "test", enabled=sends_enabled())
@@ -334,7 +334,7 @@ def choose_first_opmodes() -> None:
     send_mode(DriverStationSim.get_robot_mode())
 
 
-def _choose(opmode: Opmode) -> None:
+def _choose(opmode: PublishedOpmode) -> None:
     _chosen[int(hal.opmode_get_robot_mode(opmode.id))] = opmode.id
 
 

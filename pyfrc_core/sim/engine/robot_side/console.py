@@ -18,7 +18,7 @@ from ....runtime.clock import Clock
 Put = Callable[[int, str], object]
 
 
-class Console:
+class PrintedOutput:
     """What is printed in this process from now on.
 
     :param stamp: what to print behind each text that ends a line; see `OutputPipe`
@@ -61,7 +61,7 @@ class Console:
 class _Stamped:
     """A stream in the place of another one."""
 
-    def __init__(self, stream: TextIO, console: Console) -> None:
+    def __init__(self, stream: TextIO, console: PrintedOutput) -> None:
         self._stream, self._console, self._open = stream, console, ""
 
     def __getattr__(self, name: str) -> Any:

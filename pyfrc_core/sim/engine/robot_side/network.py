@@ -62,7 +62,7 @@ class Served:
         listen = "" if shared else "127.0.0.1"
         self.problem = _problem_with(listen, port)
         self.address = None if self.problem else f"localhost:{port}"
-        self._server = network.Server(None if self.problem else listen, port)
+        self._server = network.NetworkServer(None if self.problem else listen, port)
 
     def exchange(self) -> None:
         """Copy what the robot has published to dashboards, and what dashboards have written to the robot."""

@@ -40,7 +40,7 @@ from ..messages import Failed, Job, Ready, WindowClosed
 from ..program_files import keep_no_bytecode_of_new_code
 from ..scene import Tag
 from ..snapshot import Failure
-from .console import Console
+from .console import PrintedOutput
 from .session import Ended, Session
 from .wpilog import WpiLog
 
@@ -54,7 +54,7 @@ def run_robot(job: Job, connection: Connection, log: CrashLog, stamp: str) -> No
     """Run a robot until the other end of `connection` is closed, or the robot fails; the failure is sent there.
 
     :param log: written to when the process ends by itself
-    :param stamp: see `Console`
+    :param stamp: see `PrintedOutput`
     """
     for name in job.options.extensions:
         robots.load_extension(LOADABLE[name].module)
@@ -72,7 +72,7 @@ def _run(job: Job, connection: Connection, log: CrashLog, stamp: str) -> None:
     project, files = job.project, job.project.files
     run = RobotRun(LogPlace.of_run(project.root))
     loaded = False
-    console = Console(run.clock, stamp, keeps=job.options.wpilog is not None)
+    console = PrintedOutput(run.clock, stamp, keeps=job.options.wpilog is not None)
     try:
         keep_no_bytecode_of_new_code(project.root)
         patches.install(files)
@@ -131,7 +131,7 @@ def _failure(error: BaseException, project: Project, now: float) -> Failure:
 
 
 @contextmanager
-def _logged(run: RobotRun, project: Project, file: Path, console: Console) -> Iterator[None]:
+def _logged(run: RobotRun, project: Project, file: Path, console: PrintedOutput) -> Iterator[None]:
     log = WpiLog(file)
 
     def close() -> None:

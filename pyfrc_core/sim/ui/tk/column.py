@@ -9,7 +9,7 @@ from . import theme as colors
 from .theme import Theme
 
 
-class Column:
+class ScrollingColumn:
     """A scrolling column; its widgets are packed into `inside`.
 
     :param width: in pixels

@@ -20,7 +20,7 @@ _MOST_LEDS = 48
 
 
 @dataclass(frozen=True)
-class Place:
+class RowPlace:
     """The place of a row on its canvas, in pixels: its value is between `left` and `right`."""
 
     left: int
@@ -34,7 +34,7 @@ class Item:
     #: The height of the row and the width of its value, in pixels of the design.
     height, value_room = 22, 96
 
-    def __init__(self, canvas: tk.Canvas, theme: Theme, row: Row, place: Place) -> None:
+    def __init__(self, canvas: tk.Canvas, theme: Theme, row: Row, place: RowPlace) -> None:
         self.row, self.place = row, place
         self._canvas, self._theme = canvas, theme
         self._shown: Any = self  # nothing equals it

@@ -11,7 +11,7 @@ from ...engine.snapshot import Snapshot
 from ..models.devices import SETTABLE, DeviceRows, Row
 from ..models.wording import shown_number, typed_number
 from . import theme as colors
-from .device_items import ITEMS, Item, Place
+from .device_items import ITEMS, Item, RowPlace
 from .theme import Theme
 from .tooltip import Tooltip
 
@@ -90,7 +90,7 @@ class DeviceView:
             for row in panel.rows:
                 make = ITEMS[row.kind]
                 height = px(make.height)
-                place = Place(px(_LABELS), right, y + height // 2)
+                place = RowPlace(px(_LABELS), right, y + height // 2)
                 self.items.append(make(canvas, self._theme, row, place))
                 y += height
             y += px(4)

@@ -19,7 +19,7 @@ from ..models.driver_station_keys import SUMMARY, DriverStationKeys
 from ..models.joysticks import Sticks
 from ..models.wording import status_texts
 from .center_view import CenterView
-from .column import Column
+from .column import ScrollingColumn
 from .device_view import DeviceView
 from .joystick_view import WIDTH as JOYSTICK_WIDTH
 from .joystick_view import JoystickView
@@ -105,7 +105,7 @@ class Window:
         middle.pack(fill="both", expand=True, padx=gap)
         self.devices = DeviceView(middle, theme, tooltip, simulation, self.focus_field)
         self.devices.frame.pack(side="left", fill="y")
-        self.column = Column(middle, theme, px(JOYSTICK_WIDTH + 2))
+        self.column = ScrollingColumn(middle, theme, px(JOYSTICK_WIDTH + 2))
         self.column.frame.pack(side="right", fill="y")
         right = self.column.inside
         self.center = CenterView(middle, theme, tooltip, simulation)
