@@ -14,18 +14,40 @@ from pyfrc_core.season import CURRENT
 #: The files whose tests run in season 2027, too, but for those with the mark ``season_2026``. None uses WPILib outside
 #: of robots' files. By day, the named tests of a file run; without names, all of them.
 IN_2027: dict[str, set[str]] = {
-    "deploy_installs": {"test_from_nothing_to_two_rollbacks"},
+    "deploy_installs": {"test_from_nothing_to_a_rollback"},
     "determinism": {"test_sample_robot_passes_all_tests_and_does_the_same_again_and_again[worker]"},
-    "failures": set(),
+    "failures": {
+        "test_a_run_with_failures_exits_with_1_and_tells_each",
+        "test_a_robot_whose_own_loop_returns_early_fails",
+    },
     "fuzz_lines": set(),
     "fuzz_states": set(),
     "lost_driver_station": set(),
     "one_row": set(),
-    "robot_time": set(),
+    "robot_time": {
+        "test_python_time_is_robot_time_in_robot_code_only",
+        "test_fake_time",
+        "test_threads_locks_queues_events_timers_and_pools_keep_robot_time",
+        "test_loops_and_callbacks_keep_their_rates",
+        "test_practice_match_of_another_season",
+        "test_whose_loop_it_is_shows_nowhere_outside[wpilib's]",
+        "test_whose_loop_it_is_shows_nowhere_outside[its own]",
+    },
     "scripts": {"test_a_recordings_replay_does_the_same[command]"},
-    "sim_headless": set(),
-    "sim_session": set(),
-    "sim_wpilog": set(),
+    "sim_headless": {"test_a_practice_match", "test_a_robot_that_fails"},
+    "sim_session": {
+        "test_driving_as_from_a_driver_station",
+        "test_going_back_lands_on_the_same_snapshot",
+        "test_new_code_is_brought_to_the_same_moment",
+        "test_where_processes_cannot_be_forked",
+        "test_a_robot_that_fails_takes_nothing_with_it[5-ZeroDivisionError: division by zero]",
+        "test_the_robot_of_todays_physics_begins_at_the_start_that_is_chosen",
+        "test_a_practice_match",
+        "test_an_emergency_stop_lasts_until_the_robot_is_restarted",
+        "test_a_robot_that_has_just_been_switched_on",
+        "test_one_packet_is_a_fiftieth_of_a_second",
+    },
+    "sim_wpilog": {"test_the_log_has_what_the_robot_publishes", "test_the_log_has_the_console"},
 }
 
 #: Those that run nightly only: what they are about is ours, and meets little of the season's WPILib.

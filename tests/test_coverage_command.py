@@ -128,6 +128,7 @@ def test_lines_that_only_a_fuzz_match_runs_count(project: RobotProject, isolatio
     assert functions_run(report) == {"in_a_thread", "in_a_notifier", "in_autonomous", "with_button_pressed"}
 
 
+@pytest.mark.slow
 def test_the_figures_equal_those_of_coverage_by_hand(project: RobotProject) -> None:
     assert project.run("test", "--record", "scripts", "--", "-k", "teleop").code == 0
     (script,) = (project.path / "scripts").glob("*teleop.jsonl")
@@ -176,8 +177,6 @@ def test_a_command_that_fails_keeps_its_exit_code_and_is_reported(make_project: 
     result = project.run("coverage", "--fail-under", "1", "test")
     assert result.code == 1
     assert re.search(r"^robot\.py +\d+ ", result.stdout, re.MULTILINE)
-    none = project.run("coverage", "test", "--", "-k", "no_such_test")
-    assert none.code == 5
 
 
 @pytest.mark.parametrize(

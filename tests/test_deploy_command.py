@@ -149,6 +149,7 @@ def test_a_program_that_dies_is_shown_with_its_traceback_and_the_way_back(robot:
 # -- what can be wrong with a robot ------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_lost_connection_is_reported_and_the_next_deploy_works(robot: Roborio, make_project) -> None:
     project = make_project(program())
     # More than is sent before the robot has read any of it: with all of it sent, the robot may have switched.
@@ -164,6 +165,7 @@ def test_a_lost_connection_is_reported_and_the_next_deploy_works(robot: Roborio,
 
 
 @pytest.mark.parametrize("as_json", sampled([False, True], False))
+@pytest.mark.slow
 def test_ctrl_c_leaves_all_whole(as_json: bool, robot: Roborio, make_project) -> None:
     project = make_project(program(1))
     assert deploy(project, robot).code == 0

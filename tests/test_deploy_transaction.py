@@ -366,7 +366,7 @@ NAMES = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="/\0
 )
 
 
-@settings(max_examples=25, suppress_health_check=list(HealthCheck))
+@settings(max_examples=10, suppress_health_check=list(HealthCheck))
 @given(programs=st.lists(st.dictionaries(NAMES, st.binary(max_size=200), max_size=6), min_size=2, max_size=3))
 def test_any_programs_one_after_the_other(programs: list[dict[str, bytes]], agents: Agents) -> None:
     """Manifests made here, since the file system of this machine may not have all such names."""

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import hal
 import pytest
+from conftest import sampled
 from hal import simulation as hs
 from sim_robots import run, settle
 
@@ -160,7 +161,9 @@ TESTS = """
     """
 
 
-@pytest.mark.parametrize("physics", [DOCUMENTED, TODAYS], ids=["documented", "today's"])
+@pytest.mark.parametrize(
+    "physics", [DOCUMENTED, pytest.param(TODAYS, marks=pytest.mark.slow)], ids=["documented", "today's"]
+)
 def test_outputs_of_a_disabled_robot_are_off_for_physics(physics: str, make_project) -> None:
     project = make_project({"robot.py": ROBOT, "physics.py": physics, "tests/test_it.py": TESTS})
     result = project.run("test")
@@ -245,7 +248,7 @@ ROLLING_TESTS = """
     """
 
 
-@pytest.mark.parametrize("physics", ROLLS)
+@pytest.mark.parametrize("physics", sampled(ROLLS, "tank model, documented"))
 def test_wheels_that_roll_out_move_encoders_and_pose_alike(physics: str, make_project) -> None:
     project = make_project({"robot.py": ROLLING_ROBOT, "physics.py": ROLLS[physics], "tests/test_it.py": ROLLING_TESTS})
     result = project.run("test")

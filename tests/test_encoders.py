@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from conftest import MakeProject
+from conftest import MakeProject, sampled
 
 from pyfrc_core.wpi import encoder_channels
 
@@ -77,7 +77,11 @@ def test_a_shaft_refuses_what_is_not_a_number(values: tuple[float, float], make_
 
 
 @pytest.mark.parametrize(
-    "made", ["2, 3", "bChannel=3, aChannel=2", "wpilib.DigitalInput(2), wpilib.DigitalInput(3)", "2, bChannel=3"]
+    "made",
+    sampled(
+        ["2, 3", "bChannel=3, aChannel=2", "wpilib.DigitalInput(2), wpilib.DigitalInput(3)", "2, bChannel=3"],
+        *("bChannel=3, aChannel=2", "wpilib.DigitalInput(2), wpilib.DigitalInput(3)"),
+    ),
 )
 def test_the_channels_of_an_encoder(made: str, make_project: MakeProject) -> None:
     project = make_project(

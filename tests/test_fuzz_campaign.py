@@ -58,6 +58,7 @@ def campaign(make_shared_project) -> tuple[Any, Any]:
     return project, result
 
 
+@pytest.mark.slow
 def test_a_bug_is_found_kept_and_gone_when_it_is_repaired(campaign, make_project) -> None:
     played, result = campaign
     project = make_project({})
@@ -109,7 +110,7 @@ def test_the_same_campaign_writes_the_same_files_in_however_many_processes(campa
 
 def test_in_a_robot_without_a_fault_nothing_is_found(make_project) -> None:
     project = copy_of("timed", make_project, seconds=5.0)
-    result = project.run("fuzz", "--runs", "16")
+    result = project.run("fuzz", "--runs", "4")
     assert result.code == 0, result.output
     assert "Nothing was found." in result.stdout
     assert not kept(project)
@@ -172,6 +173,12 @@ def test_what_is_a_failure(kind: str, make_project) -> None:
     assert ("the robot code hangs here" if kind == "hangs" else f"then {message.format(line)}") in replayed.output
     if kind in ("hal_errors", "not_a_number", "process_ended", "stuck_modes"):
         assert project.run("test").code == 1
+    if kind == "not_a_number":
+        again = project.run("fuzz", "--runs", "1")
+        assert again.code == 1
+        assert f"still fails: {file.relative_to(project.path).as_posix()}" in again.output
+        project.write({"robot.py": FAULTY.format("self.motor.set(0.5)")})
+        assert project.run("test").code == 0
 
 
 @pytest.mark.parametrize(
@@ -311,7 +318,7 @@ EXITING = """
 @pytest.mark.parametrize(
     ("where", "code", "message", "name"),
     [
-        (2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"),
+        pytest.param(*(2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"), marks=pytest.mark.slow),
         (1, "sys.exit(5)", "exit(5) was called", "systemexit-robot-robotinit"),
     ],
 )

@@ -79,7 +79,6 @@ def test_after_misbehavior_the_match_goes_on(make_project) -> None:
             ("self.group = wpilib.MotorControllerGroup(self.can)", "self.group.set(0.5)"),
             ("self.drive = DifferentialDrive(self.can.set, self.can.set)", "self.drive.tankDrive(0.5, 0.5)"),
         ],
-        ("pass", "self.can.set(0.2)"),
         ("self.drive = DifferentialDrive(self.can, CanMotor())", "self.drive.arcadeDrive(0.5, 0.0)"),
     ),
 )

@@ -181,10 +181,11 @@ def test_unchanged_code_does_the_same(project: RobotProject) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "difference"),
     [
-        (
+        pytest.param(
             "SETPOINT = 0.3",
             "SETPOINT = 0.4",
             "at 0:02.60, in AdvantageKit/RealOutputs/Arm/Setpoint: 0.3 in match.wpilog",
+            marks=pytest.mark.slow,
         ),
         pytest.param(
             '"Fast", 0.8',

@@ -9,8 +9,6 @@ from conftest import MakeProject, Result
 
 from pyfrc_core.test_support.uncollected import find_uncollected
 
-pytestmark = pytest.mark.bare
-
 ROBOT = """
     import wpilib
 

@@ -311,7 +311,7 @@ steps:
 }
 
 
-@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+@pytest.mark.parametrize("newline", sampled(["\n", "\r\n"], "\r\n"))
 def test_the_settings_name_the_packages_of_the_new_season(project: RobotProject, newline: str) -> None:
     project.write(SETTINGS)
     for name in SETTINGS:

@@ -424,6 +424,17 @@ CODE = {
         + turned = pose.rotation().rotate_by(wpimath.Rotation2d.from_degrees(90))
         + far, get = pose.x + (pose.translation().y), (lambda: pose.x)
     """,
+    "imports below comments stay where they are": """
+          import wpilib
+        - from wpimath.geometry import Pose2d
+        + from wpimath import Pose2d
+          # for the arm
+        - from wpimath.controller import PIDController
+        + from wpimath import PIDController
+          # for the sensors
+          import wpilib
+          print(wpilib, Pose2d(), PIDController)
+    """,
     "aliases": """
         - import wpilib as w, wpimath.geometry as geo
         - from wpilib.drive import DifferentialDrive as DD

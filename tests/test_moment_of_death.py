@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from conftest import MakeProject
+from conftest import MakeProject, sampled
 
 ROBOT = """
     import os
@@ -34,7 +34,7 @@ def robot(death: str) -> str:
     return ROBOT.replace("DEATH", DEATHS[death][0])
 
 
-@pytest.mark.parametrize(("death", "isolation"), [("killed", "fork"), ("exit", "reuse")])
+@pytest.mark.parametrize(("death", "isolation"), sampled([("killed", "fork"), ("exit", "reuse")], ("exit", "reuse")))
 def test_in_a_test(make_project: MakeProject, death: str, isolation: str) -> None:
     """In forked processes and in new ones."""
     project = make_project({"robot.py": robot(death), "tests/test_it.py": TEST})
@@ -44,7 +44,7 @@ def test_in_a_test(make_project: MakeProject, death: str, isolation: str) -> Non
     assert MOMENT in result.blocks()["test_drive"]
 
 
-@pytest.mark.parametrize("death", list(DEATHS))
+@pytest.mark.parametrize("death", sampled(DEATHS, "killed"))
 def test_in_a_simulation(make_project: MakeProject, death: str) -> None:
     """As fast as it goes, updates come after dozens of packets."""
     project = make_project({"robot.py": robot(death)})

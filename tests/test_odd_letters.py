@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from conftest import MakeProject
+from conftest import MakeProject, sampled
 
 ROBOT = r"""
     import wpilib
@@ -15,7 +15,7 @@ ROBOT = r"""
 """
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "cp1252"])
+@pytest.mark.parametrize("encoding", sampled(["utf-8", "cp1252"], "cp1252"))
 def test_the_error_of_a_simulated_robot(encoding: str, make_project: MakeProject) -> None:
     """A name that is no UTF-8, from `os.listdir`, has such a letter; and pipes on Windows know few of them."""
     project = make_project({"robot.py": ROBOT})

@@ -59,7 +59,7 @@ def passed_as_without_pyfrc(result: Result) -> bool:
         "# Not for wpilib, magicbot or commands2\nraise SystemExit\n",
         pytest.param('"""class Robot of wpilib"""\n', marks=pytest.mark.slow),
         pytest.param("class RobotArm(Exception):\n    pass\n", marks=pytest.mark.slow),
-        "import wpilib_helper\n\n\nclass RobotArm(Exception):\n    pass\n",
+        pytest.param("import wpilib_helper\n\n\nclass RobotArm(Exception):\n    pass\n", marks=pytest.mark.slow),
         "import os  # not wpilib\n\n\nclass Robot(os.PathLike):\n    pass\n",
     ],
 )
@@ -89,7 +89,7 @@ def test_a_robot_class_makes_a_robot_project(make_project: MakeProject, robot: s
     assert result.code == 0, result.output
 
 
-@pytest.mark.parametrize("name", ["robot.py", "physics.py"])
+@pytest.mark.parametrize("name", sampled(["robot.py", "physics.py"], "physics.py"))
 def test_a_robot_of_another_user_is_not_run(make_project: MakeProject, name: str) -> None:
     require("that another user's robot is not run", [] if hasattr(os, "getuid") and os.getuid() == 0 else ["root"])
     files = {"robot.py": ROBOT, "physics.py": "class PhysicsEngine:\n    pass\n", "mine/test_app.py": APPLICATION}
@@ -119,7 +119,7 @@ def other_season(directory: Path) -> dict[str, str]:
     return {"PYTHONPATH": str(directory)}
 
 
-@pytest.mark.parametrize("args", [["-p", "their_tool"], ["-p", "their_tool", "-q"]])
+@pytest.mark.parametrize("args", sampled([["-p", "their_tool"], ["-p", "their_tool", "-q"]], ["-p", "their_tool"]))
 def test_beside_an_unknown_season_it_is_as_if_not_installed(
     make_project: MakeProject, tmp_path: Path, args: list[str]
 ) -> None:

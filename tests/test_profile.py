@@ -307,6 +307,7 @@ def test_a_failing_command_is_reported_with_its_exit_code(make_project: MakeProj
     assert "MyRobot.teleopPeriodic" in result.stdout.partition("How long each call took")[2]
 
 
+@pytest.mark.slow
 def test_profiling_does_not_change_what_the_robot_does(make_project: MakeProject) -> None:
     project = make_project({"robot.py": COMMAND_ROBOT, "tests/test_a.py": TELEOP})
 

@@ -6,7 +6,7 @@ import os
 import re
 
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject, RobotProject, sampled
 from loops import for_each
 from roborio import Roborio
 from roborio.fixtures import roborio  # noqa: F401 - `robot`
@@ -62,7 +62,7 @@ def test_each_command_takes_it_behind_its_name(path: tuple[str, ...]) -> None:
 
 @pytest.mark.parametrize("args", [["-q", "-v", "init"], ["-q", "config", "check", "-v"], ["test", "-v", "--quiet"]])
 def test_quiet_and_verbose_cannot_both_be(args: list[str], project: RobotProject) -> None:
-    result = project.run(*args)
+    result = project.run_here(*args)
     assert (result.code, result.stdout) == (2, "")
     assert "--verbose and --quiet are mutually exclusive" in result.stderr
 
@@ -138,20 +138,34 @@ def test_the_doctor_tells_problems_only(project: RobotProject) -> None:
     assert "--main" in remedy
 
 
-def test_failures_are_told(project: RobotProject) -> None:
+@pytest.mark.slow
+def test_what_is_found_is_told(project: RobotProject) -> None:
     fuzzed = project.run("fuzz", "-q", "--runs", "3", "-j", "1")
     assert fuzzed.code == 1, fuzzed.output
     assert "ValueError: not that button" in words(fuzzed.stdout)[0]
     *_, last = fuzzed.stdout.splitlines()
     command, found = last.rsplit(maxsplit=1)
     assert command == "  pyfrc replay"
-    for args in (["replay", found], ["sim", "--ui", "none", "--script", found]):
-        failed = project.run(*args, "--quiet")
-        assert failed.code == 1
-        said, failure = words(failed.stdout)
-        assert said == "the robot's words"
-        assert "ValueError: not that button" in failure
-    wrong = project.run("-q", "config", "check", "--project", "none")
+    assert (project.path / found).is_file()
+
+
+@pytest.mark.parametrize(
+    "args",
+    sampled([["replay", "fails.jsonl"], ["sim", "--ui", "none", "--script", "fails.jsonl"]], ["replay", "fails.jsonl"]),
+)
+def test_failures_are_told(args: list[str], project: RobotProject) -> None:
+    head = '{"format": "pyfrc-input 1", "robot": "robot.py", "seed": 0, "end": 1}\n'
+    step = '{"t": 0.1, "set": {"mode": "teleop", "joysticks[0].buttons[1]": true}}\n'
+    project.write({"fails.jsonl": head + step})
+    failed = project.run(*args, "--quiet")
+    assert failed.code == 1
+    said, failure = words(failed.stdout)
+    assert said == "the robot's words"
+    assert "ValueError: not that button" in failure
+
+
+def test_what_is_wrong_is_told(project: RobotProject) -> None:
+    wrong = project.run_here("-q", "config", "check", "--project", "none")
     assert (wrong.code, wrong.first_error) == (2, "there is no directory none")
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject, RobotProject, sampled
 
 from pyfrc_core.compat import unrepeatable
 from pyfrc_core.runtime.scripts.script import load_script
@@ -228,7 +228,7 @@ def turns_in_real_time(with_phoenix: PhoenixProject, use: str, speed: float) -> 
         yield [float(line) for line in noted.read_text("utf-8").split()]
 
 
-@pytest.mark.parametrize("use", WAITED_FOR)
+@pytest.mark.parametrize("use", sampled(WAITED_FOR, WAITED_FOR[0]))
 def test_robot_time_waits_where_a_device_closes_a_loop_or_is_simulated(with_phoenix: PhoenixProject, use: str) -> None:
     """In tests and replays, while the robot is enabled: at a fifth of its speed, each packet of 20 ms takes 0.1 s."""
     for times in turns_in_real_time(with_phoenix, use, speed=0.2):
@@ -236,7 +236,7 @@ def test_robot_time_waits_where_a_device_closes_a_loop_or_is_simulated(with_phoe
         assert times[8] - times[0] > 0.59, times
 
 
-@pytest.mark.parametrize("use", NOT_WAITED_FOR)
+@pytest.mark.parametrize("use", sampled(NOT_WAITED_FOR, NOT_WAITED_FOR[0]))
 def test_robot_time_waits_for_no_other_device(with_phoenix: PhoenixProject, use: str) -> None:
     """At this speed, one packet would take half an hour."""
     for times in turns_in_real_time(with_phoenix, use, speed=0.00001):

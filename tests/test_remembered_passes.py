@@ -139,6 +139,7 @@ def test_without_a_change_nothing_runs(project) -> None:
     assert expected in result.output
 
 
+@pytest.mark.slow
 def test_a_change_runs_what_depends_on_the_file(project) -> None:
     for name, old, new, expected in [
         ("parts/arm.py", "return 1", "return 2", ALL),

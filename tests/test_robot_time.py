@@ -612,7 +612,7 @@ def test_what_the_robot_leaves_can_be_waited_for_after_its_end(make_project) -> 
 @pytest.mark.parametrize(
     ("end", "status", "said"),
     [
-        ("sys.exit(3)", 3, ""),
+        pytest.param("sys.exit(3)", 3, "", marks=pytest.mark.slow),
         ("raise ValueError('in the other')", 1, "ValueError: in the other"),
         ("return", 1, "a process that robot code has forked goes on as the robot"),
     ],

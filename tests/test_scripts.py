@@ -151,6 +151,7 @@ def test_whatever_a_test_does_is_recorded(make_project) -> None:
     )
 
 
+@pytest.mark.slow
 def test_structs_that_a_test_publishes_are_recorded(make_project) -> None:
     """Such as the pose from a camera; what the robot publishes itself is not an input."""
     robot = """
@@ -333,8 +334,8 @@ EXITING = """
     ("code", "message"),
     [
         ("exit()", "exit() was called"),
-        ("sys.exit(5)", "exit(5) was called"),
-        ("sys.exit('enough')", "SystemExit: enough"),
+        pytest.param("sys.exit(5)", "exit(5) was called", marks=pytest.mark.slow),
+        pytest.param("sys.exit('enough')", "SystemExit: enough", marks=pytest.mark.slow),
         ("raise KeyboardInterrupt", "KeyboardInterrupt"),
     ],
 )

@@ -63,7 +63,7 @@ def test_the_halves_are_alike_and_on_the_field() -> None:
     assert len(both["blue"]) == 13
 
 
-@pytest.mark.filterwarnings("default::pyfrc_core.config.findings.SettingsWarning")
+@pytest.mark.filterwarnings("ignore::pyfrc_core.config.findings.SettingsWarning")
 @pytest.mark.parametrize(
     ("config", "drawn"),
     [

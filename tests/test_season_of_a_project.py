@@ -170,7 +170,7 @@ def test_ready_made_tests_beside_an_unknown_wpilib(make_project: MakeProject, tm
 FITTING = [f"{CURRENT.year}.1.1", "newest", "ignored", *(["2025.3.2.0"] if CURRENT.year == min(SEASONS) else [])]
 
 
-@pytest.mark.parametrize("wanted", sampled(FITTING, *list(FITTING)[:2]))
+@pytest.mark.parametrize("wanted", sampled(FITTING, *list(FITTING)[:1]))
 def test_a_project_of_this_season_or_an_earlier_one_runs(wanted: str, make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, "pyproject.toml": asks_for(wanted)})
     assert project.run("test", "--builtin").code == 0

@@ -69,7 +69,9 @@ def of_python(console: list[dict[str, Any]]) -> list[tuple[str, float]]:
     return [(line["text"], line["t"]) for line in own]
 
 
-@pytest.mark.parametrize("logged", [(), ("--wpilog", "run.wpilog")], ids=["", "logged"])
+@pytest.mark.parametrize(
+    "logged", [pytest.param((), marks=pytest.mark.slow), ("--wpilog", "run.wpilog")], ids=["", "logged"]
+)
 def test_the_file_of_a_run_at_full_speed(logged: tuple[str, ...], make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT.replace("{end}", "900")})
     result = project.run(

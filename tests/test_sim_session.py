@@ -286,7 +286,7 @@ def test_a_script_is_played_and_can_be_taken_over(project: Project) -> None:
     ("button", "headline"),
     [
         (5, "ZeroDivisionError: division by zero"),
-        (6, "hangs here"),
+        pytest.param(6, "hangs here", marks=pytest.mark.slow),
         (7, "exit code 3"),
     ],
 )

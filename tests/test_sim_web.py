@@ -18,8 +18,6 @@ from pyfrc_core.sim.ui.web.runs import Runs
 from pyfrc_core.sim.ui.web.server import WebOptions
 from pyfrc_core.sim.ui.web.updates import UpdateBuilder
 
-pytestmark = pytest.mark.bare
-
 DASHBOARD = {
     "robot.py": """
         import math
@@ -60,6 +58,7 @@ DASHBOARD = {
 }
 
 
+@pytest.mark.bare
 def test_a_page_drives_the_robot(make_project) -> None:
     with served(make_project(FILES)) as server, server.page() as page:
         page.run_for(0.1)
@@ -231,6 +230,7 @@ def test_a_page_that_does_not_read_gets_merged_updates(make_project) -> None:
         assert slow.values == quick.values
 
 
+@pytest.mark.bare
 def test_a_layout_is_saved_for_the_project(make_project) -> None:
     made = make_project(FILES)
     with served(made) as server:
@@ -322,6 +322,7 @@ def test_the_page_closes_the_simulation(make_project) -> None:
         page.quit()
 
 
+@pytest.mark.bare
 def test_the_pages_files_are_served_with_their_types(make_project) -> None:
     with served(make_project(FILES)) as server:
         status, headers, content = server.get(server.address.partition(":")[2].partition("/?")[2].join(("/?", "")))

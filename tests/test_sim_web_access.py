@@ -224,7 +224,7 @@ def test_share_to_drive_is_asked_for(make_project) -> None:
             page.command("enable")
 
 
-@pytest.mark.filterwarnings("default::pyfrc_core.config.findings.SettingsWarning")
+@pytest.mark.filterwarnings("ignore::pyfrc_core.config.findings.SettingsWarning")
 @pytest.mark.parametrize("image", sampled(["SECRET", "link.png", "../secret.svg", "pipe", "secret.txt"], "link.png"))
 def test_no_file_but_a_picture_of_the_project_is_handed_out(image: str, make_project) -> None:
     made = make_project({**FILES, "sim/secret.txt": "SECRET", "secret.svg": "SECRET"})

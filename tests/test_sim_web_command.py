@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 
 import pytest
 from browsers import NO_BROWSER
-from conftest import RobotProject
+from conftest import RobotProject, sampled
 from sim_robots import FILES, PATIENCE
 from started_commands import StartedCommand
 from web_pages import Page, served
@@ -59,7 +59,7 @@ def simulating(made: RobotProject, *arguments: str, environment: Mapping[str, st
         yield Running(command)
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+@pytest.mark.parametrize("name", sampled(["SIGINT", "SIGTERM"], "SIGTERM"))
 def test_it_prints_its_address_and_ends_by_a_signal(make_project, name: str) -> None:
     with simulating(make_project(FILES), "--ui", "web") as running:
         running.until(re.compile("No browser is opened: there is no display."))

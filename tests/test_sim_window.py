@@ -15,7 +15,7 @@ from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from conftest import MakeProject
+from conftest import MakeProject, sampled
 from skips import missing_tkinter
 from virtual_display import VirtualDisplay, require_window, virtual_display
 
@@ -339,9 +339,10 @@ def test_devices_are_shown_and_set(user: User) -> None:
     devices = user.window.devices
     assert [panel.title for panel in devices.rows.panels][:2] == ["PWM", "Digital I/O"]
     assert user.row("2  Arm").kind == "meter"
+    lamp = next(item for item in devices.items if item.row.paths == ("dio[4].value",))
+    user.until(lambda: devices.canvas.itemcget(lamp._lamp, "fill") == theme.LAMP_ON)
     user.click_row("3  Limit")
     user.until(lambda: user.snapshot.values["dio[4].value"] is False)
-    lamp = next(item for item in devices.items if item.row.paths == ("dio[4].value",))
     user.until(lambda: devices.canvas.itemcget(lamp._lamp, "fill") == theme.LAMP_OFF)
     user.until(lambda: user.snapshot.values["custom.Arm"] == "down")
     user.click_row("Encoder 0")
@@ -383,7 +384,8 @@ def test_devices_are_shown_and_set(user: User) -> None:
 def test_the_field_and_what_robot_code_draws(user: User) -> None:
     field = user.window.field
     canvas, start = field.canvas, user.snapshot.scene.robot
-    assert canvas.winfo_height() > 2 * user.window.console.text.winfo_height()
+    center = user.window.center
+    assert center._sash() == pytest.approx(0.72 * center.frame.winfo_height(), abs=2)
     assert start is not None
     user.press("ctrl+e")
     user.until(lambda: canvas.find_withtag("drawing"))
@@ -441,7 +443,7 @@ def test_a_robot_that_crashes_is_restarted(user: User) -> None:
     assert user.snapshot.mode == "disabled"
 
 
-@pytest.mark.parametrize("what", ["an endless loop", "a thread that never ends"])
+@pytest.mark.parametrize("what", sampled(["an endless loop", "a thread that never ends"], "an endless loop"))
 def test_closing_whatever_the_robot_does(what: str, sit: Sit, make_project: MakeProject) -> None:
     user = sit(make_project(ROBOT).path)
     user.press("ctrl+e")

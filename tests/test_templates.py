@@ -166,6 +166,7 @@ def test_a_clone_has_the_wheel_from_which_the_workflow_installs_pyfrc(
 
 
 @sampled_templates
+@pytest.mark.slow
 def test_it_goes_through_a_match_in_the_simulator(project: RobotProject, template: str) -> None:
     result = project.run("sim", "--ui", "none", "--mode", "practice")
     assert result.code == 0, result.output

@@ -106,7 +106,7 @@ def library_project(make_project: MakeProject, taken: int) -> RobotProject:
     )
 
 
-@pytest.mark.parametrize("isolation", sampled(["fork", "reuse", "none"], "fork", "reuse"))
+@pytest.mark.parametrize("isolation", sampled(["fork", "reuse", "none"], "fork"))
 def test_a_library_gets_another_port_than_the_one_in_use(library_project: RobotProject, isolation: str) -> None:
     strict = ("--", "-W", "error", "-k", "test_one")
     result = library_project.run("test", "-j", "2", "--isolation", isolation, *strict)
@@ -115,6 +115,7 @@ def test_a_library_gets_another_port_than_the_one_in_use(library_project: RobotP
     assert "warning" not in result.output
 
 
+@pytest.mark.slow
 def test_tests_that_run_side_by_side_do_not_collide(library_project: RobotProject) -> None:
     result = library_project.run("test", "-j", "2", "--", "-W", "error")
     assert result.code == 0, result.output

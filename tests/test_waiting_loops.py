@@ -113,7 +113,7 @@ READY_MADE = """
         pytest.param(OWN_START, "teleopPeriodic", "time.sleep(0.02)", "2 s", marks=pytest.mark.slow),
         (MAGIC, "execute", "time.sleep(0.02)", "2 s"),
         pytest.param(COMMANDS, "execute", "wpilib.wait(0.02)", "2 s", marks=pytest.mark.slow),
-        (CALLBACK, "look", "self.pressed.wait()", "2 s"),
+        pytest.param(CALLBACK, "look", "self.pressed.wait()", "2 s", marks=pytest.mark.slow),
     ],
     ids=["timed", "own start", "magic", "command", "callback"],
 )

@@ -116,6 +116,7 @@ def run(project: RobotProject, *options: str) -> tuple[list[str], dict[str, str]
     return [line for line in result.output.splitlines() if line.startswith("pyfrc: ")], outcomes
 
 
+@pytest.mark.slow
 def test_a_plugin_with_a_thread_of_its_own_changes_nothing(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, "tests/test_a.py": TESTS})
     assert run(project, "-p", "serving") == ([], {"test_forked": "PASSED", "test_another": "PASSED"})
@@ -134,6 +135,7 @@ def test_a_thread_that_the_robot_starts_on_import_is_named_with_its_line(make_pr
     assert outcomes == {"test_forked": "FAILED", "test_another": "PASSED"}
 
 
+@pytest.mark.slow
 def test_a_device_in_the_robots_class_is_named(make_project: MakeProject) -> None:
     robot = ROBOT.replace("pass", "motor = wpilib.PWMSparkMax(3)")
     (explained,), _ = run(make_project({"robot.py": robot, "tests/test_a.py": TESTS}))

@@ -66,13 +66,14 @@ class WhatIf:
 
     def _read(self, process: subprocess.Popen[str]) -> None:
         assert process.stdout is not None
-        for line in process.stdout:
-            with suppress(OSError):  # the terminal has gone
-                self._say(line)
-            self._lines = [*self._lines[-_LINES:], line.strip()]
-            if not self._address and (found := _ADDRESS.match(line)) is not None:
-                self._address = found[1]
-                self._known.set()
+        with process.stdout as lines:
+            for line in lines:
+                with suppress(OSError):  # the terminal has gone
+                    self._say(line)
+                self._lines = [*self._lines[-_LINES:], line.strip()]
+                if not self._address and (found := _ADDRESS.match(line)) is not None:
+                    self._address = found[1]
+                    self._known.set()
         self._known.set()
 
     def close(self) -> None:

@@ -100,7 +100,7 @@ ACTS: dict[str, tuple[Callable[[AgentDisk], object], Act, tuple[Program | None, 
 }
 
 
-@pytest.mark.parametrize("number", FAILS, ids=errno.errorcode.get)
+@pytest.mark.parametrize("number", sampled(FAILS, errno.ENOSPC), ids=errno.errorcode.get)
 @pytest.mark.parametrize("name", sampled(ACTS, "update", "same files"))
 def test_any_step(robot: AgentDisk, name: str, number: int, monkeypatch: pytest.MonkeyPatch) -> None:
     before, act, expected = ACTS[name]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import Protocol
 
 import pytest
 from roborio.local import LocalRobot, directory_in_memory
@@ -76,32 +77,49 @@ def started(robot: AgentDisk, controller: ControllerKind) -> Program | None:
     return {name: content.decode() for name, content in files.items()}, packages
 
 
-def check_all_cuts(
-    directory: Path,
-    controller: ControllerKind,
-    monkeypatch: pytest.MonkeyPatch,
-    act: Callable[[AgentDisk], object],
-    old: Program | None,
-    new: Program | None,
-    environment: str | None = None,
-) -> None:
-    """Do something on a robot, and look at what power cuts leave; then deploy there."""
-    robot = AgentDisk(directory / "robot", controller.layout)
-    with noted(robot.root, monkeypatch) as disk:
-        act(robot)
-    assert started(robot, controller) == new
-    outcomes = set()
-    for state in disk.states:
-        state.write(directory / "after")
-        after = AgentDisk(directory / "after", controller.layout)
-        found = started(after, controller)
-        assert found in (old, new), "neither the old nor the new program would be started"
-        outcomes.add(found == new)
-        kept = Releases(after.places, Activity(lambda **said: None))
-        assert not any(different_in_release(kept, number) for number in kept.numbers()), "a release is incomplete"
-        deploy(after, TWO, environment)
-        assert started(after, controller) == (TWO, packages_of(environment)), "a deploy after that does not work"
-    assert outcomes == {True, False}
+class Check(Protocol):
+    """Do something on a robot, and look at what power cuts leave."""
+
+    def __call__(
+        self,
+        controller: ControllerKind,
+        act: Callable[[AgentDisk], object],
+        old: Program | None,
+        new: Program | None,
+        environment: str | None = None,
+    ) -> None: ...
+
+
+@pytest.fixture(params=[9, pytest.param(1, marks=pytest.mark.slow)], ids=["some", "each"])
+def check(directory: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Check:
+    """By day, a deploy after that is tried after some of the power cuts: it takes most of the time."""
+
+    def check_all_cuts(
+        controller: ControllerKind,
+        act: Callable[[AgentDisk], object],
+        old: Program | None,
+        new: Program | None,
+        environment: str | None = None,
+    ) -> None:
+        robot = AgentDisk(directory / "robot", controller.layout)
+        with noted(robot.root, monkeypatch) as disk:
+            act(robot)
+        assert started(robot, controller) == new
+        outcomes = set()
+        for number, state in enumerate(disk.states):
+            state.write(directory / "after")
+            after = AgentDisk(directory / "after", controller.layout)
+            found = started(after, controller)
+            assert found in (old, new), "neither the old nor the new program would be started"
+            outcomes.add(found == new)
+            kept = Releases(after.places, Activity(lambda **said: None))
+            assert not any(different_in_release(kept, number) for number in kept.numbers()), "a release is incomplete"
+            if number % request.param == 0:
+                deploy(after, TWO, environment)
+                assert started(after, controller) == (TWO, packages_of(environment)), "a deploy after that fails"
+        assert outcomes == {True, False}
+
+    return check_all_cuts
 
 
 BOTH = pytest.mark.parametrize(
@@ -111,17 +129,19 @@ BOTH = pytest.mark.parametrize(
 
 @BOTH
 @pytest.mark.parametrize("files", [TWO, RENAMED], ids=["update", "another main file"])
-def test_deploys(directory: Path, controller: ControllerKind, files: Files, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_deploys(directory: Path, controller: ControllerKind, files: Files, check: Check) -> None:
     deploy(AgentDisk(directory / "robot", controller.layout), ONE)
-    check_all_cuts(directory, controller, monkeypatch, lambda robot: deploy(robot, files), (ONE, {}), (files, {}))
+    check(controller, lambda robot: deploy(robot, files), (ONE, {}), (files, {}))
 
 
-def test_the_first_deploy(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    check_all_cuts(directory, ROBORIO, monkeypatch, lambda robot: deploy(robot, ONE), None, (ONE, {}))
+def test_the_first_deploy(check: Check) -> None:
+    check(ROBORIO, lambda robot: deploy(robot, ONE), None, (ONE, {}))
 
 
 @pytest.mark.parametrize("exchanges", [True, False])
-def test_another_tools_program_is_taken_over(directory: Path, exchanges: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_tools_program_is_taken_over(
+    directory: Path, exchanges: bool, check: Check, monkeypatch: pytest.MonkeyPatch
+) -> None:
     robot = AgentDisk(directory / "robot", ROBORIO.layout)
     if not exchanges:  # as before Linux 3.15
         monkeypatch.setattr(releases, "exchange", lambda one, other: False)
@@ -130,27 +150,27 @@ def test_another_tools_program_is_taken_over(directory: Path, exchanges: bool, m
     start = ROBORIO.layout.start.replace("{main}", f"{ROBORIO.layout.code}/robot.py")
     (robot.home / ROBORIO.layout.command).write_text(start)
     theirs = {"robot.py": "# theirs\n"}
-    check_all_cuts(directory, ROBORIO, monkeypatch, lambda robot: deploy(robot, ONE), (theirs, {}), (ONE, {}))
+    check(ROBORIO, lambda robot: deploy(robot, ONE), (theirs, {}), (ONE, {}))
 
 
 @BOTH
-def test_rollbacks(directory: Path, controller: ControllerKind, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rollbacks(directory: Path, controller: ControllerKind, check: Check) -> None:
     robot = AgentDisk(directory / "robot", controller.layout)
     deploy(robot, ONE)
     deploy(robot, RENAMED)
     back = {"op": "rollback", "release": 1}
-    check_all_cuts(directory, controller, monkeypatch, lambda robot: robot.ask(back), (RENAMED, {}), (ONE, {}))
+    check(controller, lambda robot: robot.ask(back), (RENAMED, {}), (ONE, {}))
 
 
-def test_an_undeploy(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_undeploy(directory: Path, check: Check, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(RealRobot, "stop", lambda host, start: False)
     deploy(AgentDisk(directory / "robot", ROBORIO.layout), ONE)
     undeploy = {"op": "undeploy"}
-    check_all_cuts(directory, ROBORIO, monkeypatch, lambda robot: robot.ask(undeploy), (ONE, {}), None)
+    check(ROBORIO, lambda robot: robot.ask(undeploy), (ONE, {}), None)
 
 
 @BOTH
-def test_other_packages(directory: Path, controller: ControllerKind, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_packages(directory: Path, controller: ControllerKind, check: Check) -> None:
     robot = AgentDisk(directory / "robot", controller.layout)
     deploy(robot, ONE, FIRST)
 
@@ -158,7 +178,7 @@ def test_other_packages(directory: Path, controller: ControllerKind, monkeypatch
         deploy(robot, TWO, SECOND)
 
     old, new = (ONE, packages_of(FIRST)), (TWO, packages_of(SECOND))
-    check_all_cuts(directory, controller, monkeypatch, act, old, new, SECOND)
+    check(controller, act, old, new, SECOND)
 
 
 def test_while_damaged_files_are_replaced(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -55,6 +55,7 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
     commands2.CommandScheduler.resetInstance()
 
 
+@pytest.mark.filterwarnings("ignore::ImportWarning")  # Python's, of the dot before a module's name
 @pytest.mark.parametrize(
     ("code", "message", "remedy"),
     [

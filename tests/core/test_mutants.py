@@ -151,6 +151,7 @@ def test_the_map_follows_lines_that_have_moved(repository: Path, scratch: Path) 
     assert all(each == ["tests/test_program.py::test_counter"] for each in tests.values())
 
 
+@pytest.mark.slow
 def test_verdicts(
     repository: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -219,6 +219,7 @@ def test_the_simulators_own_log(make_project: MakeProject) -> None:
     assert outputs(project.path / "replayed.jsonl") == outputs(project.path / "a.trace.jsonl")
 
 
+@pytest.mark.slow
 def test_a_campaign_begins_with_a_log(make_project: MakeProject) -> None:
     project = make_project(robot())
     assert project.run("sim", "--ui", "none", "--script", "drive.jsonl").code == 0

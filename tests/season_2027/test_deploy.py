@@ -104,6 +104,7 @@ def test_a_program_that_crashes_is_rolled_back(project: RobotProject, robot: Sys
     assert (known["current"], known["running"]) == (1, True)
 
 
+@pytest.mark.slow
 def test_a_program_in_java_is_replaced_at_the_switch(project: RobotProject, robot: Systemcore) -> None:
     command, jar = robot.put("/home/systemcore/robotCommand", JAVA), robot.put("/home/systemcore/Robot.jar", "")
     project.write({"robot.py": "import wpilib, no_such_module\n"})
@@ -207,6 +208,7 @@ TALKS = """
 """
 
 
+@pytest.mark.slow
 def test_a_virtual_systemcore(project: RobotProject, tmp_path: Path) -> None:
     command = ["virtual-robot", "--directory", str(tmp_path / "disk"), "--", sys.executable, "-m", "pyfrc"]
     result = project.run(*command, "deploy", "--skip-tests", "--robot")

@@ -33,6 +33,7 @@ def next_step(project: RobotProject, environment: dict[str, str]) -> tuple[str, 
     return step["text"], step["remedy"]
 
 
+@pytest.mark.slow
 def test_from_a_blank_controller_to_the_deploy(make_project: MakeProject, index: PackageIndex, tmp_path: Path) -> None:
     project = make_project({"robot.py": ROBOT})
     environment = index.environment(tmp_path / "home")

@@ -162,6 +162,7 @@ def test_a_recording_has_the_opmodes_and_its_replay_is_the_same(make_project: Ma
     assert "The trace equals the recorded one." in result.stdout, result.output
 
 
+@pytest.mark.slow
 def test_fuzz_selects_opmodes_and_finds_what_fails_in_one(make_project: MakeProject) -> None:
     project = make_project(
         {"robot.py": ROBOT.replace("-self.robot.stick.get_y()", "1 / (self.robot.stick.get_y() - 1)")}

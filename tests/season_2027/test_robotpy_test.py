@@ -187,6 +187,7 @@ def test_beside_pyfrc_it_is_as_without(make_project: MakeProject) -> None:
     assert "pyfrc: " not in runs[0].output
 
 
+@pytest.mark.slow
 def test_a_test_with_our_fixtures_says_which_tool_runs_it(make_project: MakeProject) -> None:
     """Unless the project has a fixture of that name."""
     test = "def test_{0}(control, robot, {0}):\n    pass\n"

@@ -84,6 +84,7 @@ def test_a_mode_without_a_window_runs_its_opmode(
     assert "The trace equals the recorded one." in project.run("replay", "run.jsonl").stdout
 
 
+@pytest.mark.slow
 def test_a_practice_match_runs_the_opmode_of_each_mode(make_project: MakeProject) -> None:
     project = make_project(ROBOT)
     result = project.run("sim", "--mode", "practice", "--opmode", "Left", "--record", "run.jsonl")

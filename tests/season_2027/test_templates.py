@@ -52,6 +52,7 @@ def test_what_the_seasons_share_is_there_once(make_project: MakeProject) -> None
 
 
 @pytest.mark.parametrize("template", sampled(["mecanum", "opmode"], "opmode"))
+@pytest.mark.slow
 def test_create_physics_finds_its_drivetrain(make_project: MakeProject, template: str) -> None:
     """What it writes passes the template's tests; a robot with opmodes is driven in one."""
     project = make_project({})
