@@ -127,22 +127,6 @@ def test_a_table_has_statistics_of_what_is_in_view(drove: Seen) -> None:
     page.get_by_label("Show sim.pose[0]").wait_for()
 
 
-def test_curves_over_another_curve(drove: Seen) -> None:
-    page = drove.page
-    page.get_by_label("Settings of sim.pose[0]").click()
-    page.get_by_role("button", name="Show the others over this curve (XY)").click()
-    page.locator(f"{PLOT} .axis-choice", has_text="X").wait_for()
-    robot = drove.simulation.snapshot.scene.robot
-    low, high = limits(drove, "X")
-    assert low < 10 < robot.x < high
-    drove.drag(page.locator(f"{PLOT} .u-over"), (0.2, 0.2), (0.6, 0.8))
-    zoomed = limits(drove, "X")
-    assert zoomed[1] - zoomed[0] == pytest.approx(0.4 * (high - low), rel=0.1)
-    page.locator(f"{PLOT} .u-over").dblclick()
-    drove.eventually(f"{CONFIG}.then(({{ ranges }}) => !ranges.x)")
-    assert limits(drove, "X") == pytest.approx([low, high], abs=0.1)
-
-
 def test_more_curves_than_colours_look_different(drove: Seen) -> None:
     page = drove.page
     page.evaluate(ADD, [f"joysticks[0].axes[{number}]" for number in range(6)])
@@ -168,7 +152,7 @@ def test_the_axis_of_time_has_times(drove: Seen) -> None:
           document.body.append(area);
           const found = {};
           for (const seconds of [1, 20, 150, 1200]) {
-            const chart = buildChart(area, { width: 500, height: 200, lines: [{ axis: "left", color: 0 }], isXY: false,
+            const chart = buildChart(area, { width: 500, height: 200, lines: [{ axis: "left", color: 0 }],
               ranges: () => ({}), setRange() {}, hooks: {}, dblclick() {} }, [[0, seconds], [0, 1]]);
             chart.setScale("x", { min: 0, max: seconds });
             await new Promise(requestAnimationFrame);

@@ -69,7 +69,7 @@ def align(robot: OpenedLog, station: OpenedLog) -> Alignment:
             None, "no enablings and disablings of both fit together, and one does not have the time of day"
         )
     best = max(ways, key=lambda way: way.matched)
-    if any(way.matched == best.matched and abs(way.offset - best.offset) > _NEAR for way in ways):
+    if _is_ambiguous(best, ways):
         return Alignment(None, "its enablings fit in several places, and one does not have the time of day")
     doubt = "; one does not have the time of day, so another match would fit, too"
     return Alignment(best.offset, _matched(best) + doubt)
@@ -81,15 +81,20 @@ def _by_clocks(robot: PastRun, station: PastRun, clocks: float, ways: list[_Way]
     :param clocks: what is added to the station's times so that both show the same time of day
     """
     near = [way for way in ways if abs(way.offset - clocks) <= _SAME_TIME]
-    if near:
-        best = max(near, key=lambda way: (way.matched, -abs(way.offset - clocks)))
+    best = max(near, key=lambda way: way.matched, default=None)
+    if best is not None and not _is_ambiguous(best, near):
         return Alignment(best.offset, f"{_matched(best)}, and the time of day within {abs(best.offset - clocks):.1f} s")
     if clocks > robot.end or clocks + station.end < 0:
         apart = timedelta(seconds=round(clocks - robot.end if clocks > 0 else -clocks - station.end))
         return Alignment(None, f"by the time of day, there are {apart} between them")
     if not _agrees(robot, station, _Way(clocks, 1, 0.0)):
         return Alignment(None, "at the same time of day, the robot is enabled in one of them and disabled in the other")
-    return Alignment(clocks, "by the time of day alone, which may be some seconds wrong: they share no enabling")
+    return Alignment(clocks, "by the time of day alone, which may be some seconds wrong: no enabling says more")
+
+
+def _is_ambiguous(best: _Way, ways: list[_Way]) -> bool:
+    """Return whether another way fits as well."""
+    return any(way.matched == best.matched and abs(way.offset - best.offset) > _NEAR for way in ways)
 
 
 def _matched(way: _Way) -> str:
@@ -124,9 +129,12 @@ def _ways(robot: PastRun, station: PastRun) -> Iterator[_Way]:
 
 
 def _edges(network: ValueHistory) -> list[tuple[float, bool]]:
-    """Return when the robot was enabled and disabled."""
-    states = [(time, state) for time, state in _states(network) if state is not None]
-    return [(time, state) for (_, before), (time, state) in pairwise(states) if state != before]
+    """Return when the robot was enabled and disabled; what happened while that was not known has no moment."""
+    return [
+        (time, state)
+        for (_, before), (time, state) in pairwise(_states(network))
+        if state is not None and before is (not state)
+    ]
 
 
 def _states(network: ValueHistory) -> list[tuple[float, bool | None]]:

@@ -1,4 +1,4 @@
-// The chart of a plot, which uPlot draws: curves over time, or curves over another curve.
+// The chart of a plot, which uPlot draws: curves over time.
 import uPlot from "#vendor/uplot/uPlot.esm.js";
 import { font } from "#js/canvas.js";
 import { dashOf, strokeOf } from "#js/curves.js";
@@ -8,14 +8,14 @@ import { onWheel } from "#js/wheel.js";
 
 const sync = uPlot.sync("time"); // the cursor is at the same moment in every plot
 const TIME_STEPS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 1200, 1800, 3600, 7200, 18000];
-const SIDES = ["x", "left", "right"]; // uPlot's axes, in their order
+const SIDES = ["x", "left", "right"]; // uPlot's axes, in their order; the panel zooms time
 const DASHED = [6, 4]; // of the compared branch
 
 // Build a chart in an element.
-// lines: curves, those of the branch with `other: true`; isXY: over another curve
+// lines: curves, those of the branch with `other: true`
 // ranges(): the limits that the person has set, by axis; setRange(axis, limits): others, or null for automatic ones
 // hooks: uPlot's
-export function buildChart(element, { width, height, lines, isXY, ranges, setRange, hooks, dblclick }, data) {
+export function buildChart(element, { width, height, lines, ranges, setRange, hooks, dblclick }, data) {
   const shown = lines.filter((line) => !line.hidden);
   const hasRight = shown.some((line) => line.axis === "right");
   const hasLeft = !hasRight || shown.some((line) => line.axis === "left");
@@ -23,33 +23,28 @@ export function buildChart(element, { width, height, lines, isXY, ranges, setRan
   const limited = (_, low, high, key) => ranges()[key] ?? padded(low, high);
   const chart = new uPlot(
     {
-      mode: isXY ? 2 : 1,
       width: Math.max(width, 80),
       height: Math.max(height, 60),
       legend: { show: false },
-      cursor: isXY
-        ? { drag: { x: true, y: true, setScale: false }, dataIdx: () => null, points: { show: false }, bind: { dblclick: () => dblclick } }
-        : { y: false, sync: { key: sync.key, setSeries: false }, drag: { x: true, y: false, setScale: false }, points: { size: 7 }, bind: { dblclick: () => dblclick } },
-      scales: { x: isXY ? { time: false, range: limited } : { time: false, auto: false }, left: { range: limited }, right: { range: limited } },
+      cursor: { y: false, sync: { key: sync.key, setSeries: false }, drag: { x: true, y: false, setScale: false }, points: { size: 7 }, bind: { dblclick: () => dblclick } },
+      scales: { x: { time: false, auto: false }, left: { range: limited }, right: { range: limited } },
       series: [{}, ...lines.map((line) => ({
-        ...(isXY ? { facets: [{ scale: "x", auto: true }, { scale: line.axis, auto: true }] } : { scale: line.axis }),
+        scale: line.axis,
         show: !line.hidden,
         stroke: strokeOf(line),
         width: line.other ? 1.25 : 1.75,
         alpha: line.other && dashOf(line).length ? 0.5 : 1,
         dash: dashOf(line).length ? dashOf(line) : line.other ? DASHED : undefined,
-        paths: isXY ? pathOverCurve : line.math ? uPlot.paths.linear() : uPlot.paths.stepped({ align: 1 }),
+        paths: line.math ? uPlot.paths.linear() : uPlot.paths.stepped({ align: 1 }),
         points: { show: false },
         spanGaps: false,
       }))],
       axes: [
-        isXY
-          ? { ...axis, size: 26, space: 60, values: tickTexts }
-          : { ...axis, size: 26, space: 60, incrs: TIME_STEPS, values: (_, ticks) => ticks.map(clockTick) },
+        { ...axis, size: 26, space: 60, incrs: TIME_STEPS, values: (_, ticks) => ticks.map(clockTick) },
         { ...axis, scale: "left", show: hasLeft, size: 56, space: tickSpace, values: tickTexts },
         { ...axis, scale: "right", side: 1, show: hasRight, size: 56, space: tickSpace, values: tickTexts, grid: { show: !hasLeft, stroke: color("grid"), width: 1 } },
       ],
-      hooks: { ...hooks, ready: [(plot) => holdAxes(plot, isXY, setRange)] },
+      hooks: { ...hooks, ready: [(plot) => holdAxes(plot, setRange)] },
     },
     data,
     element,
@@ -58,28 +53,24 @@ export function buildChart(element, { width, height, lines, isXY, ranges, setRan
 }
 
 // An axis under the pointer: the wheel zooms, dragging moves, a double click makes it automatic again.
-function holdAxes(plot, isXY, setRange) {
+function holdAxes(plot, setRange) {
   const elements = plot.root.querySelectorAll(".u-axis");
   const axes = SIDES.filter((_, index) => plot.axes[index].show);
   axes.forEach((key, index) => {
-    if (key === "x" && !isXY) return; // the panel zooms time
+    if (key === "x") return;
     const element = elements[index];
-    const length = () => (key === "x" ? plot.over.clientWidth : plot.over.clientHeight);
     const limits = () => [plot.scales[key].min, plot.scales[key].max];
     element.classList.add("axis-handle");
     element.title = "The wheel zooms this axis, dragging moves it, a double click makes it automatic";
     const zoom = (factor, event) => {
-      const box = plot.over.getBoundingClientRect();
-      const at = plot.posToVal(key === "x" ? event.clientX - box.left : event.clientY - box.top, key);
+      const at = plot.posToVal(event.clientY - plot.over.getBoundingClientRect().top, key);
       setRange(key, limits().map((limit) => at + (limit - at) * factor));
     };
     onWheel(element, { zoom });
     element.addEventListener("pointerdown", (down) => {
       const before = limits();
-      const start = key === "x" ? down.clientX : down.clientY;
       const move = (event) => {
-        const pixels = key === "x" ? start - event.clientX : event.clientY - start;
-        const by = (pixels / length()) * (before[1] - before[0]);
+        const by = ((event.clientY - down.clientY) / plot.over.clientHeight) * (before[1] - before[0]);
         setRange(key, before.map((limit) => limit + by));
       };
       element.setPointerCapture(down.pointerId);
@@ -88,22 +79,6 @@ function holdAxes(plot, isXY, setRange) {
     });
     element.addEventListener("dblclick", () => setRange(key, null));
   });
-}
-
-// The line through the points of one curve over another one; uPlot's own paths need times in order.
-function pathOverCurve(plot, number) {
-  let found = null;
-  uPlot.orient(plot, number, (_series, xs, ys, scaleX, scaleY, toX, toY, left, top, width, height) => {
-    const stroke = new Path2D();
-    let isDown = false;
-    for (let index = 0; index < xs.length; index++) {
-      const isPoint = xs[index] !== null && ys[index] !== null;
-      if (isPoint) stroke[isDown ? "lineTo" : "moveTo"](toX(xs[index], scaleX, width, left), toY(ys[index], scaleY, height, top));
-      isDown = isPoint;
-    }
-    found = { stroke, fill: null, clip: null, band: null, gaps: null, flags: 0 };
-  });
-  return found;
 }
 
 function tickTexts(_, ticks) {

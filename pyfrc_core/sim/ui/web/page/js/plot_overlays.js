@@ -84,18 +84,3 @@ export function drawMoment(plot) {
   plot.ctx.fillStyle = color("past");
   plot.ctx.fillRect(x - devicePixelRatio / 2, top, Math.max(devicePixelRatio, 1.5), height);
 }
-
-// Where curves over another one are at the moment that is shown: pointOf(line) returns x and y, null where it has none.
-export function drawPoints(plot, lines, pointOf) {
-  const { left, top, width, height } = plot.bbox;
-  for (const line of lines.filter((each) => !each.hidden)) {
-    const [x, y] = pointOf(line);
-    if (x === null || y === null) continue;
-    const place = [plot.valToPos(x, "x", true), plot.valToPos(y, line.axis, true)];
-    if (place[0] < left || place[0] > left + width || place[1] < top || place[1] > top + height) continue;
-    plot.ctx.fillStyle = strokeOf(line);
-    plot.ctx.beginPath();
-    plot.ctx.arc(...place, 4.5 * devicePixelRatio, 0, 2 * Math.PI);
-    plot.ctx.fill();
-  }
-}

@@ -1,4 +1,4 @@
-// Values over time, or over another value. Curves are added by "+" or by dragging a value here; dragging in the plot or
+// Values over time. Curves are added by "+" or by dragging a value here; dragging in the plot or
 // the wheel zooms, a double click follows again. In a log, a click goes to that moment; while a robot is driven, Alt and a click.
 import { ElementSize, Picture } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
@@ -12,7 +12,7 @@ import { length } from "#js/past.js";
 import { buildChart } from "#js/plot_chart.js";
 import { aligned, csvOf, download } from "#js/plot_data.js";
 import { statistics } from "#js/plot_math.js";
-import { drawBands, drawGaps, drawMoment, drawPoints } from "#js/plot_overlays.js";
+import { drawBands, drawGaps, drawMoment } from "#js/plot_overlays.js";
 import { PlotPicker } from "#js/plot_picker.js";
 import { addCurve, addToPlot, carriedPath, changePlot, hasPath, plotOf } from "#js/plotting.js";
 import { unwatch, watch } from "#js/series.js";
@@ -79,12 +79,6 @@ export class PlotPanel extends Live {
     return this.config.curves.filter(({ path }) => !isAbsent(this.watched.get(path), this.others.get(path)));
   }
 
-  // The curve that the others are drawn over; undefined over time.
-  get xCurve() {
-    const { x } = this.config;
-    return x && this.curves.find((curve) => keyOf(curve) === x && this.isNumber(curve.path));
-  }
-
   render({ id, plot: widget }, { over, at }) {
     const { seconds, table: isTable } = this.config;
     const { curves } = this;
@@ -92,7 +86,7 @@ export class PlotPanel extends Live {
     this.interval = isTable ? TABLE_INTERVAL : 0;
     const moment = at ?? model.past?.t ?? model.t;
     const isNumber = ({ path }) => this.isNumber(path);
-    const plot = { curves, x: this.config.x, isNumber, change: this.change, remove: this.remove, setX: this.setX, copy: (curve) => addCurve(id, { ...curve, hidden: undefined }) };
+    const plot = { curves, isNumber, change: this.change, remove: this.remove, copy: (curve) => addCurve(id, { ...curve, hidden: undefined }) };
     return html`<div class=${classes({ plot: true, content: true, column: true, over })} onDragOver=${this.over} onDragLeave=${() => this.setState({ over: false })} onDrop=${this.drop}>
       ${!widget && html`<div class="panel-tools flex">
         <div class="segments small" role="group" aria-label="Time that is shown">
@@ -107,7 +101,7 @@ export class PlotPanel extends Live {
           hold=${Boolean(this.zoom)} setHold=${(hold) => (hold ? this.zoomTo(...this.range()) : this.follow(seconds))} />
         <button class=${classes({ quiet: true, chosen: isTable })} aria-pressed=${Boolean(isTable)} title="Minimum, mean and maximum of what is in view" onClick=${() => this.set({ table: !isTable })}>Table</button>`}
         <button class="quiet" title="Save the values as CSV" aria-label="Save the values as CSV" disabled=${!curves.length} onClick=${this.save}><${Icon} name="download" />CSV</button>
-        <button class="quiet" title="Remove all curves" disabled=${!curves.length} onClick=${() => this.set({ curves: absent, ranges: {}, x: null })}>Clear</button>
+        <button class="quiet" title="Remove all curves" disabled=${!curves.length} onClick=${() => this.set({ curves: absent, ranges: {} })}>Clear</button>
       </div>`}
       <${PlotLegend} plot=${plot} bare=${Boolean(widget)} isTable=${isTable && curves.length > 0} hasBranch=${compared.id !== null} isNumber=${isNumber}
         shownOf=${(curve) => this.valueOf(curve, moment)} statisticsOf=${(curve) => this.statisticsOf(curve)} />
@@ -127,9 +121,6 @@ export class PlotPanel extends Live {
     this.set({ curves: this.config.curves.filter((each) => keyOf(each) !== keyOf(curve)) });
   };
 
-  // Draw over a curve, or over time (null): the limits were those of other axes.
-  setX = (x) => this.set({ x, ranges: {} });
-
   setRange = (axis, limits) => {
     const { [axis]: _, ...others } = this.ranges;
     this.set({ ranges: limits ? { ...others, [axis]: limits } : others });
@@ -137,8 +128,8 @@ export class PlotPanel extends Live {
 
   // The axes whose limits can be set, and what they show.
   axes() {
-    const used = new Set(this.curves.filter((curve) => this.isNumber(curve.path) && curve !== this.xCurve).map((curve) => curve.axis));
-    return [...(this.xCurve ? ["x"] : []), ...["left", "right"].filter((axis) => used.has(axis))];
+    const used = new Set(this.curves.filter(({ path }) => this.isNumber(path)).map((curve) => curve.axis));
+    return ["left", "right"].filter((axis) => used.has(axis));
   }
 
   limits = (axis) => {
@@ -185,7 +176,7 @@ export class PlotPanel extends Live {
     this.watchCurves();
     this.find();
     if (compared.key !== this.otherKey || [...this.watched.keys()].some((path) => !this.others.has(path))) this.loadOthers();
-    const shape = JSON.stringify([this.curves, this.curves.map(({ path }) => this.isNumber(path)), document.documentElement.dataset.theme, compared.id, this.xCurve]);
+    const shape = JSON.stringify([this.curves, this.curves.map(({ path }) => this.isNumber(path)), document.documentElement.dataset.theme, compared.id]);
     if (shape !== this.shape) {
       this.shape = shape;
       this.build();
@@ -193,7 +184,7 @@ export class PlotPanel extends Live {
     if (!this.plot) return this.drawBands();
     const isOther = this.picture.changes(...this.drawn());
     const isMoved = this.moment.changes(model.past?.t);
-    if (isOther || this.xCurve) this.drawCurves();
+    if (isOther) this.drawCurves();
     else if (isMoved) this.plot.redraw(false);
     else return;
     this.drawBands();
@@ -215,8 +206,7 @@ export class PlotPanel extends Live {
     const [from, to] = this.range();
     this.plot.batch(() => {
       this.plot.setData(this.columns(this.plot.width), false);
-      if (!this.xCurve) this.plot.setScale("x", { min: from, max: to });
-      else for (const axis of ["x", ...this.axes()]) this.plot.setScale(axis, { min: null, max: null });
+      this.plot.setScale("x", { min: from, max: to });
     });
   }
 
@@ -227,11 +217,7 @@ export class PlotPanel extends Live {
       const one = this.seriesOf(line) ?? { t: [], v: [] };
       return { ...one, until: one.until ?? length() };
     };
-    const { xCurve } = this;
-    const over = xCurve ? [xCurve, { ...xCurve, other: true }].map(curveOf) : [];
-    const [times, ...columns] = aligned([...over, ...this.lines.map(curveOf)], from, Math.min(to, this.end), width);
-    if (!xCurve) return [times, ...columns];
-    return [null, ...this.lines.map((line, index) => [columns[line.other ? 1 : 0], columns[2 + index]])];
+    return aligned(this.lines.map(curveOf), from, Math.min(to, this.end), width);
   }
 
   // The end of what there is.
@@ -274,9 +260,7 @@ export class PlotPanel extends Live {
     this.plot = null;
     const curves = this.curves.filter(({ path }) => this.isNumber(path));
     if (!curves.length) return;
-    const { xCurve } = this;
-    const drawn = curves.filter((curve) => curve !== xCurve);
-    this.lines = [...drawn, ...(compared.id === null ? [] : drawn.map((curve) => ({ ...curve, other: true })))];
+    this.lines = [...curves, ...(compared.id === null ? [] : curves.map((curve) => ({ ...curve, other: true })))];
     const { width, height } = this.size;
     this.plot = buildChart(
       this.area.current,
@@ -284,20 +268,18 @@ export class PlotPanel extends Live {
         width,
         height,
         lines: this.lines,
-        isXY: Boolean(xCurve),
         ranges: () => this.ranges,
         setRange: this.setRange,
-        dblclick: () => (xCurve ? this.setX(this.config.x) : this.follow(this.config.seconds)),
+        dblclick: () => this.follow(this.config.seconds),
         hooks: {
           setSelect: [(plot) => this.select(plot)],
           setCursor: [(plot) => this.hover(plot)],
-          drawAxes: [(plot) => !xCurve && drawGaps(plot, gapsOf(this.modes, length()))],
-          draw: [(plot) => (xCurve ? drawPoints(plot, this.lines, (line) => this.pointOf(line)) : drawMoment(plot))],
+          drawAxes: [(plot) => drawGaps(plot, gapsOf(this.modes, length()))],
+          draw: [drawMoment],
         },
       },
       this.columns(width),
     );
-    if (xCurve) return;
     onWheel(this.plot.over, { zoom: this.zoomBy, move: this.moveBy });
     this.plot.over.addEventListener("click", (event) => isMeant(event) && goTo(this.plot.posToVal(event.offsetX, "x")));
   }
@@ -309,12 +291,9 @@ export class PlotPanel extends Live {
   }
 
   select(plot) {
-    const { left, width, top, height } = plot.select;
-    if (width < 4 || (this.xCurve && height < 4)) return;
-    if (this.xCurve) {
-      const ranges = Object.fromEntries(this.axes().map((axis) => [axis, [plot.posToVal(top + height, axis), plot.posToVal(top, axis)]]));
-      this.set({ ranges: { ...ranges, x: [plot.posToVal(left, "x"), plot.posToVal(left + width, "x")] } });
-    } else this.zoomTo(plot.posToVal(left, "x"), plot.posToVal(left + width, "x"));
+    const { left, width } = plot.select;
+    if (width < 4) return;
+    this.zoomTo(plot.posToVal(left, "x"), plot.posToVal(left + width, "x"));
     plot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
   }
 
@@ -360,11 +339,6 @@ export class PlotPanel extends Live {
     this.detail = new Map();
     this.set({ seconds });
     this.setState({});
-  }
-
-  pointOf(line) {
-    const t = model.past?.t ?? model.t;
-    return [{ ...this.xCurve, other: line.other }, line].map((curve) => numberIn(this.valueOf(curve, t)));
   }
 
   // Where time is, across the panel.

@@ -5,13 +5,13 @@ import { shownNumber, typedNumber } from "#js/format.js";
 import { model } from "#js/model.js";
 import { html } from "#js/view.js";
 
-const NAMES = { x: "X", left: "Left", right: "Right" };
+const NAMES = { left: "Left", right: "Right" };
 
 // axes: names of the axes that the plot has; ranges(): limits that were set; limits(axis): what the chart shows
-// hold: whether the time that is shown stays, or undefined if the plot has no axis of time
+// hold: whether the time that is shown stays
 export function PlotAxes({ axes, ranges, limits, setRange, hold, setHold }) {
   return html`<${Dropdown} label="Axes" title="Limits of the axes" content=${() => html`<div class="form">
-    ${hold !== undefined && html`<div><label><input type="checkbox" checked=${hold} onChange=${() => setHold(!hold)} /> Keep the time that is shown</label></div>`}
+    <div><label><input type="checkbox" checked=${hold} onChange=${() => setHold(!hold)} /> Keep the time that is shown</label></div>
     ${axes.map((axis) => html`<${Axis} key=${axis} axis=${axis} locked=${axis in ranges()} range=${() => ranges()[axis] ?? limits(axis)} setRange=${setRange} />`)}
   </div>`} />`;
 }

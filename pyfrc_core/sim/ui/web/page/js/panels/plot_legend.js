@@ -12,7 +12,7 @@ const MATH = [["", "Its value"], ["derivative", "Derivative, per second"], ["int
 const LINE_NAMES = ["solid", "dashed", "dotted", "dash-dotted"];
 
 // bare: names and values alone, as in a widget
-// plot: { curves, x, change(curve, changes), remove(curve), … } as `CurveSettings` needs it
+// plot: { curves, change(curve, changes), remove(curve), … } as `CurveSettings` needs it
 // isNumber(curve), shownOf(curve), statisticsOf(curve): of the run, and of the branch for a curve with `other: true`
 export function PlotLegend({ plot, bare, isTable, hasBranch, isNumber, shownOf, statisticsOf }) {
   const curves = plot.curves;
@@ -63,16 +63,14 @@ function Value({ curve, value }) {
 }
 
 function Tools({ curve, plot, isNumber }) {
-  const isX = plot.x === keyOf(curve);
   const other = curve.axis === "left" ? "right" : "left";
-  return html`${isX && html`<span class="axis-choice" title="The other curves are drawn over this one">X</span>`}
-    ${!isX && isNumber(curve) && html`<button class="axis-choice" title="The axis of this curve: left or right" aria-label=${`Axis of ${keyOf(curve)}`}
+  return html`${isNumber(curve) && html`<button class="axis-choice" title="The axis of this curve: left or right" aria-label=${`Axis of ${keyOf(curve)}`}
       onClick=${() => plot.change(curve, { axis: other })}>${curve.axis === "left" ? "L" : "R"}</button>`}
     <button class="tool" aria-label=${`Remove ${keyOf(curve)}`} title="Remove" onClick=${() => plot.remove(curve)}><${Icon} name="close" /></button>`;
 }
 
 // What is shown of a value, in which unit, and how it is drawn.
-// plot: { curves, x, isNumber(curve), change(curve, changes, or a function that returns them), copy(curve), setX(key or null) }
+// plot: { curves, isNumber(curve), change(curve, changes, or a function that returns them), copy(curve) }
 function CurveSettings({ curve, plot }) {
   return html`<${Dropdown} className="curve-button" title=${`Settings of ${titleOf(curve)}`} name=${`Settings of ${keyOf(curve)}`}
     label=${html`<${CurveName} curve=${curve} />`} content=${(close) => html`<${Settings} curve=${curve} plot=${plot} close=${close} />`} />`;
@@ -88,7 +86,6 @@ function Settings({ curve, plot, close }) {
   const { path, color, math = "", minus = "", from = unitOfPath(path), to = from } = curve;
   const others = [...new Set(plot.curves.filter(plot.isNumber).map((each) => each.path))].filter((each) => each !== path || each === minus);
   const line = Math.floor(color / CURVE_COLORS) % LINES.length;
-  const isX = plot.x === keyOf(curve);
   return html`<div class="form">
     <label><span>Show</span><${Select} aria-label="Show" value=${math} options=${MATH} set=${chosen("math")} /></label>
     <label><span>Minus</span><${Select} aria-label="Minus" value=${minus} options=${[["", "nothing"], ...others.map((each) => [each, nameOf(each)])]} set=${chosen("minus")} /></label>
@@ -98,7 +95,6 @@ function Settings({ curve, plot, close }) {
       class=${classes({ chosen: color % CURVE_COLORS === number })} onClick=${() => change((now) => ({ color: now.color - (now.color % CURVE_COLORS) + number }))}><i class="swatch" style=${swatchOf({ color: number })}></i></button>`)}</div>
     <div class="choices" role="group" aria-label="Line">${LINE_NAMES.map((name, number) => html`<button key=${name} aria-label=${`Line: ${name}`} title=${name}
       class=${classes({ chosen: line === number })} onClick=${() => change((now) => ({ color: number * CURVE_COLORS + (now.color % CURVE_COLORS) }))}><i class="swatch wide" style=${swatchOf({ color: number * CURVE_COLORS + (color % CURVE_COLORS) })}></i></button>`)}</div>
-    <button onClick=${() => { close(); plot.setX(isX ? null : keyOf(curve)); }}>${isX ? "Show all curves over time" : "Show the others over this curve (XY)"}</button>
     <button onClick=${() => { close(); plot.copy(curve); }}>Add this value once more</button>
   </div>`;
 }
