@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import sys
@@ -233,6 +234,7 @@ def test_every_sample_robot_runs_with_it(make_project: MakeProject, robot: str) 
         path.unlink(missing_ok=True)
     printed = create(project)
     assert "wrote sim/config.json\nwrote sim/config.schema.json\nwrote physics.py" in printed
+    assert json.loads((project.path / "sim/config.json").read_text("utf-8"))["pyfrc"]["field"] == {"walls": True}
     run_tests(project, "--builtin", "--", "-k", "operator")
 
 

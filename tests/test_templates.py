@@ -304,6 +304,12 @@ def test_no_two_templates_share_a_file_and_none_replaces_one_of_the_base() -> No
     assert [files for files in where.values() if len(files) > 1] == []
 
 
+def test_a_new_robot_is_held_by_the_walls_of_the_field() -> None:
+    configs = [json.loads(file.read_text("utf-8")) for file in SOURCES.rglob("sim/config.json")]
+    assert len(configs) >= len(TEMPLATES)
+    assert all(config["pyfrc"]["field"] == {"walls": True} for config in configs)
+
+
 def test_every_directory_of_templates_is_one() -> None:
     names = {path.name for path in SOURCES.iterdir() if path.is_dir()}
     assert names - {"2027"} == {"base", *TEMPLATES} - {"opmode"}

@@ -6,7 +6,7 @@ from wpimath.geometry import Pose2d, Rotation2d
 from wpimath.kinematics import DifferentialDriveOdometry
 
 # Where the robot starts: metres from the corner at the right of the blue drivers, as in sim/config.json.
-START = Pose2d(0.91, 4.03, Rotation2d())
+START = Pose2d(3.05, 4.03, Rotation2d())
 TRACK_WIDTH = 0.61  # from the left wheels to the right wheels, in metres
 
 

@@ -65,5 +65,6 @@ def propose(project: Project, log: CrashLog) -> Proposal:
 
 def _config_text(found: Survey) -> str:
     """Return the text of ``sim/config.json``, with the robot and the names of its channels."""
-    content: dict[str, Any] = {"$schema": SCHEMA_NAME, "pyfrc": {"robot": _ROBOT, **found.labels}}
+    new = {"field": {"walls": True}, "robot": _ROBOT, **found.labels}
+    content: dict[str, Any] = {"$schema": SCHEMA_NAME, "pyfrc": new}
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"

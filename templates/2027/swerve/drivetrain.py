@@ -27,7 +27,7 @@ MODULE_PLACES = (
 )
 
 # Where the robot starts: metres from the corner at the right of the blue drivers, as in sim/config.json.
-START = Pose2d(0.91, 4.03, Rotation2d())
+START = Pose2d(3.05, 4.03, Rotation2d())
 
 MAX_TURNING_SPEED = 6.0  # of the whole robot, in rad/s
 

@@ -12,7 +12,7 @@ WHEEL_CIRCUMFERENCE = 0.48  # in metres
 COUNTS_PER_TURN = 2048
 
 # Where the robot starts: metres from the corner at the right of the blue drivers, as in sim/config.json.
-START = Pose2d(0.91, 4.03, Rotation2d())
+START = Pose2d(3.05, 4.03, Rotation2d())
 
 
 class Drive(commands2.Subsystem):
