@@ -64,10 +64,10 @@ def _address(context: click.Context, option: click.Parameter, value: str | None)
 def command(**request: Any) -> None:
     """Look at logs of a robot, or at a robot, on a page in your browser: values, plots, field, console, timeline.
 
-    A log is a .wpilog of WPILib, AdvantageKit or PyKit, a .dslog or .dsevents of the driver station, or a recording or
-    trace of pyfrc (.jsonl). The driver station's log of a match is shown on the time line of the robot's, also of a
-    directory with both; you can compare other logs with the first one. A robot is never enabled, and its values are set
-    only after you have switched that on.
+    A log is a .wpilog of WPILib, AdvantageKit or PyKit (also .wpilogxz and .rlog), a .dslog or .dsevents of the driver
+    station, or a recording or trace of pyfrc (.jsonl). The driver station's log of a match is shown on the time line of
+    the robot's, also of a directory with both; you can compare other logs with the first one. A robot is never enabled,
+    and its values are set only after you have switched that on.
 
     \b
     Exit codes: 0 all went well, 1 a file is no log that can be read, 2 wrong usage.

@@ -13,6 +13,8 @@ from pathlib import Path
 from struct import Struct
 from typing import Any, NamedTuple
 
+from .log_formats import as_wpilog
+
 #: The most records that are kept, with 12 bytes each: about 300 MiB.
 MOST_RECORDS = 24_000_000
 #: The largest files that are read as a whole, in bytes; larger ones are mapped.
@@ -116,19 +118,19 @@ class DataLog:
 
 
 def read_data_log(file: Path, most: int = MOST_RECORDS) -> DataLog:
-    """Find the records of a data log, as far as it is whole.
+    """Find the records of a data log, also in another form (`log_formats`), as far as it is whole.
 
     :param most: the most records that are kept
     """
-    data = _content(file)
+    data, problem = as_wpilog(file) or (_content(file), "")
     if len(data) < _HEADER:
-        return DataLog(data, [], "it ends within its header")
+        return DataLog(data, [], problem or "it ends within its header")
     index = _Index(data, most)
     index.read()
     entries = [entry for entry in index.entries if entry.moments]
     for entry in entries:
         entry.sort()
-    return DataLog(data, entries, index.problem)
+    return DataLog(data, entries, problem or index.problem)
 
 
 def _content(file: Path) -> _Bytes:

@@ -278,8 +278,8 @@ def test_no_damage_is_more_than_a_sentence(tmp_path_factory: pytest.TempPathFact
         ("nothing.wpilog", b"WPILOG\x00\x01\x00\x00\x00\x00", "there is nothing in it: it has no values"),
         ("photo.wpilog", b"\x89PNG\r\n\x1a\n" * 9, "this is a picture, not a log"),
         ("match.hoot", b"CTRE", "owlet -f wpilog"),
-        ("match.revlog", b"REV", "AdvantageScope opens it"),
-        ("match.rlog", b"\x00\x00", "before 2023"),
+        ("match.revlog", b"REV", "revlog-converter FILE.revlog"),
+        ("match.rlog", b"\x00\x00", "this is binary data, not a log"),
         ("a.jsonl", b'{"format": "another"}\n', "this is JSON, not a log"),
     ],
 )

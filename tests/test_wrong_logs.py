@@ -49,7 +49,7 @@ INPUTS_ONLY = {
 }
 REMEDY = {
     "match.hoot": "owlet -f wpilog FILE.hoot FILE.wpilog",
-    "match.revlog": "AdvantageScope opens it",
+    "match.revlog": "revlog-converter FILE.revlog -o FILE.wpilog",
     "logs.zip": "Unpack it first.",
     "logs": "Its newest logs: a.wpilog",
     "match.dslog": "Take the data log of the robot of the same match (.wpilog).",

@@ -8,19 +8,20 @@ from pathlib import Path
 from struct import Struct
 
 from ...errors import PyfrcError, UsageError
+from ...log_formats import is_other_form
 from ...shell import quoted
 
 #: How much of a file shows what it is, in bytes.
 _HEAD = 4096
 #: The beginning of the driver station's logs: version, seconds since 1904, and their fraction.
 _DS_HEADER = Struct(">iqQ")
-_LOGS, _MOST_NAMED = (".wpilog", ".dslog", ".dsevents"), 5
+_LOGS, _MOST_NAMED = (".wpilog", ".wpilogxz", ".rlog", ".dslog", ".dsevents"), 5
 #: Endings of logs that only their makers' tools can read, with what converts them.
 FOREIGN_LOGS = {
     ".hoot": "CTRE's format is closed. Phoenix Tuner X (Log Extractor) or CTRE's command owlet writes it as a "
     ".wpilog: owlet -f wpilog FILE.hoot FILE.wpilog",
-    ".rlog": "This is AdvantageKit's format before 2023. AdvantageScope opens it, and exports it as a .wpilog.",
-    ".revlog": "REV's format is not read here. AdvantageScope opens it, and exports it as a .wpilog.",
+    ".revlog": "REV's format is not read here. REV's revlog-converter (github.com/REVrobotics/node-revlog-converter) "
+    "writes it as a .wpilog: revlog-converter FILE.revlog -o FILE.wpilog",
 }
 #: How JSON begins; tables of TOML begin with a bracket, too.
 _JSON = re.compile(rb"\{|\[(\s*\[)*\s*([\"{\]\d-]|true\b|false\b|null\b)")
@@ -36,9 +37,9 @@ _BEGINNINGS: tuple[tuple[tuple[bytes, ...], str, str], ...] = (
 )
 
 
-def is_wpilog(head: bytes) -> bool:
-    """Return whether a file begins as data logs do."""
-    return head.startswith(b"WPILOG")
+def is_data_log(head: bytes, name: str) -> bool:
+    """Return whether a file begins as data logs do: WPILib's, and those in another form."""
+    return head.startswith(b"WPILOG") or is_other_form(head, name)
 
 
 def is_ds_log(head: bytes) -> bool:

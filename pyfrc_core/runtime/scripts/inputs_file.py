@@ -7,7 +7,8 @@ from pathlib import Path
 
 from ...season import CURRENT
 from ...wording import from_here
-from .file_kinds import FOREIGN_LOGS, described, is_ds_log, is_wpilog, read_head
+from .file_kinds import FOREIGN_LOGS, described, is_ds_log, read_head
+from .file_kinds import is_data_log as begins_as_data_log
 from .script import InputScript, ScriptError, load_script, script_beside
 
 _SCRIPT, _DATA_LOG = ".jsonl", ".wpilog"
@@ -19,8 +20,8 @@ _KINDS = (
 
 
 def is_data_log(file: Path) -> bool:
-    """Return whether a file, which exists, is a data log of WPILib."""
-    return is_wpilog(read_head(file, _NEEDED, ScriptError))
+    """Return whether a file, which exists, is a data log."""
+    return begins_as_data_log(read_head(file, _NEEDED, ScriptError), file.name)
 
 
 def load_inputs(file: Path, given: Collection[str] = ()) -> InputScript:
@@ -30,7 +31,7 @@ def load_inputs(file: Path, given: Collection[str] = ()) -> InputScript:
     :raises UsageError: saying what the file is instead, or naming the line and what is wrong with it
     """
     head = read_head(file, _NEEDED, ScriptError)
-    if is_wpilog(head):
+    if begins_as_data_log(head, file.name):
         from .data_log import script_from_log  # imports WPILib
 
         return script_from_log(file, given)

@@ -7,7 +7,7 @@ from datetime import datetime
 from pathlib import Path
 
 from ...errors import PyfrcError
-from ...runtime.scripts.file_kinds import FOREIGN_LOGS, described, is_ds_log, is_wpilog, read_head
+from ...runtime.scripts.file_kinds import FOREIGN_LOGS, described, is_data_log, is_ds_log, read_head
 from ..engine.past_run import PastRun
 from . import recordings
 from .columns import ReadLog
@@ -15,7 +15,7 @@ from .ds_log import read_ds_events, read_ds_log
 from .layout import run_of, when_of
 from .wpilog import read_wpilog
 
-_KINDS = "Logs are .wpilog, .dslog and .dsevents, and recordings and traces of pyfrc (.jsonl)."
+_KINDS = "Logs are .wpilog, .wpilogxz, .rlog, .dslog and .dsevents, and recordings and traces of pyfrc (.jsonl)."
 
 
 class LogError(PyfrcError):
@@ -58,7 +58,7 @@ def open_log(file: Path, height: float, name: str = "") -> OpenedLog:
         run, problem = recordings.read_recording(file, name, kind)
         return OpenedLog(run, file, _changed(file), problem)
     is_station = is_ds_log(head)
-    if is_wpilog(head):
+    if is_data_log(head, name):
         read = read_wpilog(file)
     elif is_station:
         read = _read_station(file, Path(name).suffix.lower() == ".dsevents")
