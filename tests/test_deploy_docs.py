@@ -55,7 +55,7 @@ def test_the_guides_messages_are_those_that_there_are() -> None:
                 assert part.strip() in source, part
 
 
-@pytest.mark.parametrize("command", ["deploy", "deploy-info", "undeploy", "console"])
+@pytest.mark.parametrize("command", ["deploy", "deploy-info", "undeploy", "console", "logs"])
 def test_help_waits_for_none_of_the_big_libraries(command: str) -> None:
     code = f"""
 import sys

@@ -6,7 +6,7 @@ from conftest import MakeProject
 from ports import address_without_servers
 from test_deploy_console import running, wait_for
 
-ROBOT_COMMANDS = [["deploy-info"], ["console"], ["undeploy", "--yes"], ["deploy", "--rollback"]]
+ROBOT_COMMANDS = [["deploy-info"], ["logs"], ["console"], ["undeploy", "--yes"], ["deploy", "--rollback"]]
 
 
 def test_the_console_goes_from_anywhere(make_project: MakeProject) -> None:

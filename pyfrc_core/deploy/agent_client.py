@@ -16,7 +16,7 @@ from . import recovery_hints
 from .agent import start_monitor, wire
 from .agent_stream import AgentChannel, AgentStream, TimeLimits, agent_command, agent_package
 from .errors import ConnectionFailedError, DeployError, OtherComputerError
-from .facts import Deployed, DeployRequest, Plan, RobotFacts, RolledBack, StartState, Watched
+from .facts import Deployed, DeployRequest, Plan, RobotFacts, RobotLogs, RolledBack, StartState, Watched
 from .responses import Raw, ResponseError, parse, value_of
 
 if TYPE_CHECKING:
@@ -264,6 +264,27 @@ class AgentClient:
         self._current, self._previous, self._command = back.release.number, None, _ANY
         self.recovery_hint = recovery_hints.rolled_back(back.release.number)
         return back
+
+    def logs(self) -> RobotLogs:
+        """Return the logs on the robot, the newest first."""
+        return self._request(partial(parse, RobotLogs), "logs")
+
+    def read_log(self, path: str, offset: int, count: int) -> bytes:
+        """Return a piece of a log, from `offset` on; fewer than `count` bytes at its end."""
+        self._send("read-log", path=path, offset=offset, count=count)
+        piece = self._stream.read_contents(count)
+        self._stream.read_response(lambda done: None)
+        return piece
+
+    def hash_log(self, path: str, size: int) -> tuple[str, int]:
+        """Return the SHA-256 of a log's first `size` bytes, in hexadecimal, and how many it has now."""
+        return self._request(
+            lambda done: (value_of(done, "sha256", str), value_of(done, "size", int)), "hash-log", path=path, size=size
+        )
+
+    def remove_log(self, path: str, size: int) -> None:
+        """Remove a log that has this size, and that no program writes."""
+        self._request(lambda done: None, "remove-log", path=path, size=size)
 
     def undeploy(self, on_progress: OnProgress | None = None) -> bool:
         """Stop the program and remove it with all releases. Return whether there was one."""

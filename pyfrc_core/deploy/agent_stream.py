@@ -189,12 +189,35 @@ class AgentStream:
             self.on_keep_alive(message["alive"])
         return True
 
+    def read_contents(self, longest: int) -> bytes:
+        """Return the piece of a file that the robot sends now.
+
+        :param longest: its maximum, in bytes
+        """
+        kind, body = self._kind_and_body(self.limits.silence, self._clock() + self.limits.response)
+        if kind != wire.CONTENT:
+            self._message(kind, body)  # which may be an error
+            raise self.protocol_error("it sent a message instead of a piece of a file")
+        try:
+            return wire.unpack(body, longest)
+        except wire.WireError as error:
+            raise self.protocol_error(error) from error
+
     def _frame(self, silence: float, end: float) -> dict[str, Any]:
+        return self._message(*self._kind_and_body(silence, end))
+
+    def _kind_and_body(self, silence: float, end: float) -> tuple[bytes, bytes]:
         try:
             reader = _FrameReader(self._receive, self._clock, silence, self.limits.frame, end)
-            message = parse_json(wire.unpack_message(*wire.read_frame(reader, MAX_RESPONSE_BYTES), MAX_RESPONSE_BYTES))
+            return wire.read_frame(reader, MAX_RESPONSE_BYTES)
         except wire.EndedError as error:
             raise self._ended(error) from error
+        except wire.WireError as error:
+            raise self.protocol_error(error) from error
+
+    def _message(self, kind: bytes, body: bytes) -> dict[str, Any]:
+        try:
+            message = parse_json(wire.unpack_message(kind, body, MAX_RESPONSE_BYTES))
         except (wire.WireError, ResponseError) as error:
             raise self.protocol_error(error) from error
         if "error" in message:
@@ -309,7 +332,7 @@ t.main(r)
 #: In the order of their imports. The bootstrap calls `main` of the last one.
 _MODULES = (
     "__init__ system wire activity disk imports layout robot_paths release_record console virtual carrying compiling "
-    "environment_files environments releases integrity content_index transaction start_monitor host program serve"
+    "environment_files environments releases integrity content_index transaction start_monitor host program logs serve"
 )
 
 

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 #: The image of a virtual robot, which has none.
 VIRTUAL_IMAGE = "virtual robot"
 
+#: What WPILib and AdvantageKit append to a log's name: ``_OHCL_Q12.wpilog``, ``_ohcl_q12.wpilog``.
+_MATCH = re.compile(r"[0-9]_([A-Za-z][A-Za-z0-9]*)_([PQEpqe][0-9]{1,3})\.\w+$")
+
 _TRACEBACK = re.compile(r"^Traceback \(most recent call last\):\n(?:[ \t].*\n|\n)*(?P<error>\S.*\n?)?", re.MULTILINE)
 
 #: What Python prints if C code ends it by a signal. WPILib's runner lets it do so.
@@ -49,6 +52,40 @@ class Release:
     ran: bool = False
     ended: bool = False
     damaged: bool = False
+
+
+@dataclass(frozen=True)
+class RobotLog:
+    """A log on the robot.
+
+    :param path:     its path there
+    :param name:     its path in the directory of logs
+    :param size:     in bytes
+    :param modified: when it was last written, in seconds since 1970, by the robot's clock
+    :param usb:      whether it is on a USB stick
+    :param written:  whether the program may still write it
+    """
+
+    path: Raw
+    name: Raw
+    size: int
+    modified: float
+    usb: bool
+    written: bool
+
+    @property
+    def match(self) -> str:
+        """The event and the match in its name, such as ``OHCL Q12``; empty without one."""
+        found = _MATCH.search(self.name)
+        return f"{found[1]} {found[2]}".upper() if found else ""
+
+
+@dataclass(frozen=True)
+class RobotLogs:
+    """The logs on the robot, the newest first, and the directories in which they can be."""
+
+    logs: tuple[RobotLog, ...]
+    directories: tuple[str, ...]
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ _DETAIL_WIDTH = 58
 #: Descriptions of the agent's phases.
 _WORK = {
     "check": "checking {} files",
+    "hash": "comparing",
     "link": "linking {} files",
     "copy": "copying {} files",
     "compile": "compiling {} files",
@@ -263,7 +264,7 @@ def progress_for(as_json: bool, quiet: bool = False) -> DeployProgress:
 
 
 #: A command about a robot without an option that selects the robot.
-_COMMAND = re.compile(r"\bpyfrc (?:deploy-info|deploy|undeploy|console|doctor)\b(?!-)(?! --(?:robot|team)\b)")
+_COMMAND = re.compile(r"\bpyfrc (?:deploy-info|deploy|undeploy|console|doctor|logs)\b(?!-)(?! --(?:robot|team)\b)")
 
 
 def with_robot_option(text: str, robot: str | None, team: int | None) -> str:

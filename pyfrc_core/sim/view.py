@@ -13,6 +13,7 @@ from typing import Literal
 from ..errors import ProjectError, UsageError
 from ..interruption import interruption
 from ..project import MAIN_FILE, Project, find_project, projects_below
+from ..runtime.scripts.file_kinds import LOGS
 from ..shell import quoted
 from ..wording import counted
 from .engine.field import field_of
@@ -30,8 +31,6 @@ from .what_if import WhatIf
 _LARGE = 100 << 20
 #: The most values in one page: about 100 MB in the browser.
 _MOST_ON_PAGE = 5_000_000
-#: The logs that a directory is searched for.
-_SUFFIXES = (".wpilog", ".dslog", ".dsevents")
 #: Prints to the terminal.
 Say = Callable[[str], object]
 
@@ -189,9 +188,9 @@ def _files(given: Sequence[Path]) -> list[Path]:
         if not path.is_dir():
             found.append(path)
             continue
-        logs = sorted(file for file in path.iterdir() if file.suffix.lower() in _SUFFIXES and file.is_file())
+        logs = sorted(file for file in path.iterdir() if file.suffix.lower() in LOGS and file.is_file())
         if not logs:
-            raise UsageError(f"{path} has no log", remedy=f"Logs are {', '.join(_SUFFIXES)}.")
+            raise UsageError(f"{path} has no log", remedy=f"Logs are {', '.join(LOGS)}.")
         robots = [file.name for file in logs if not file.suffix.lower().startswith(".ds")]
         if len(robots) > 1:
             raise UsageError(

@@ -67,6 +67,11 @@ class Layout(NamedTuple):
         return f"{self.home}/.pyfrc/environments"
 
     @property
+    def logs(self) -> tuple[str, ...]:
+        """Return the directories of logs: on a USB stick, where robots prefer to write them, and on the robot."""
+        return ("/u/logs", "/U/logs", f"{self.home}/logs")
+
+    @property
     def command_files(self) -> list[str]:
         """Return the names of the files with start commands."""
         return [each for each in (self.command, self.debug_command) if each]

@@ -20,6 +20,7 @@ from .host import Host, RealRobot, age_of
 from .imports import look_up
 from .integrity import different_code
 from .layout import Layout
+from .logs import RobotLogs
 from .program import Program
 from .release_record import after_watch, now
 from .releases import Releases
@@ -64,6 +65,7 @@ class Agent:
         self._paths = host.paths
         self._activity = Activity(wire.send)
         self._releases = Releases(host.paths, self._activity)
+        self._logs = RobotLogs(host.paths, self._activity)
         self._program = Program(host)
         self._hello = hello
         self._who = str(hello.get("who") or "another computer")
@@ -80,6 +82,10 @@ class Agent:
             "watch": self._watch,
             "rollback": self._roll_back,
             "info": self.facts,
+            "logs": lambda request: self._logs.named(),
+            "read-log": self._read_log,
+            "hash-log": self._logs.hashed,
+            "remove-log": self._logs.remove,
             "undeploy": lambda request: self._undeploy(),
         }
 
@@ -159,6 +165,10 @@ class Agent:
             "program_age": age_of(program),
             "remains": bool(layout.installing and list(self._paths.of(layout.installing).glob("[0-9]*.*"))),
         }
+
+    def _read_log(self, request: Message) -> Message:
+        self._wire.send_contents(self._logs.piece(request))
+        return {}
 
     def _review(self, processes: set[int]) -> None:
         """Compare the program's processes with the one that a watch has seen run, and update the release's record."""

@@ -69,14 +69,19 @@ def unpack_message(kind: bytes, body: bytes, longest: int = MAX_FRAME_BYTES) -> 
     """Return the JSON text of a message frame."""
     if kind != MESSAGE:
         raise WireError("received file contents instead of a message")
+    return unpack(body, longest)
+
+
+def unpack(body: bytes, longest: int = MAX_FRAME_BYTES) -> bytes:
+    """Return what a frame's body holds, compressed."""
     try:
         unpacking = zlib.decompressobj()
-        text = unpacking.decompress(body, longest)
+        data = unpacking.decompress(body, longest)
     except zlib.error as error:
         raise WireError(f"a frame cannot be read: {error}") from error
     if not unpacking.eof:
         raise WireError("a frame is too long, or is cut short")
-    return text
+    return data
 
 
 def parse_message(kind: bytes, body: bytes) -> Message:
@@ -138,6 +143,11 @@ class Wire:
     def send(self, **message: Any) -> None:
         """Send a message."""
         self._target.write(message_frame(message))
+        self._target.flush()
+
+    def send_contents(self, data: bytes) -> None:
+        """Send a piece of a file."""
+        self._target.write(frame(CONTENT, zlib.compress(data, 1)))
         self._target.flush()
 
     def receive(self) -> Message:

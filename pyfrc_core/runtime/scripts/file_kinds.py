@@ -15,7 +15,10 @@ from ...shell import quoted
 _HEAD = 4096
 #: The beginning of the driver station's logs: version, seconds since 1904, and their fraction.
 _DS_HEADER = Struct(">iqQ")
-_LOGS, _MOST_NAMED = (".wpilog", ".wpilogxz", ".rlog", ".dslog", ".dsevents"), 5
+#: The endings of logs that can be read.
+LOGS = (".wpilog", ".wpilogxz", ".rlog", ".dslog", ".dsevents")
+#: How many logs of a directory are named.
+_MOST_NAMED = 5
 #: Endings of logs that only their makers' tools can read, with what converts them.
 FOREIGN_LOGS = {
     ".hoot": "CTRE's format is closed. Phoenix Tuner X (Log Extractor) or CTRE's command owlet writes it as a "
@@ -116,7 +119,7 @@ def _newest_in(directory: Path) -> str:
     """Return which logs a directory and those in it have, the newest first."""
     try:
         within = (file for pattern in ("*", "*/*") for file in directory.glob(pattern))
-        files = [file for file in within if file.suffix.lower() in _LOGS]
+        files = [file for file in within if file.suffix.lower() in LOGS]
         files.sort(key=lambda file: file.stat().st_mtime, reverse=True)
     except OSError as wrong:
         return f"It cannot be read: {(wrong.strerror or str(wrong)).lower()}."
