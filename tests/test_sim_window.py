@@ -360,9 +360,7 @@ def test_devices_are_shown_and_set(user: User) -> None:
         user.press(key)
         refused = key == "Return"
         user.until(lambda refused=refused: ("write thousands without a comma" in user.window._noted) is refused)
-        user.press("Escape")
-        user.until(lambda: devices._editor is None)
-        user.until(lambda: "comma" not in user.window._noted)
+        assert devices._editor is None
     user.until(lambda: user.snapshot.values["encoder[0].count"] == 45)
     voltage = next(item for item in devices.items if item.row.paths == ("analog_in[0].voltage",))
     y = devices.center_of(voltage.row)[1]

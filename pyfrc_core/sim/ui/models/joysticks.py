@@ -59,11 +59,6 @@ class Sticks:
             self.sticks[stick].pov = angle
             self._simulation.set_pov(stick, 0, angle)
 
-    def plug(self, stick: int, plugged_in: bool) -> None:
-        """Plug a joystick in, or unplug it."""
-        self.sticks[stick].plugged = plugged_in
-        self._simulation.plug(stick, plugged_in)
-
     def adopt(self, values: Values) -> None:
         """Take over the robot's joysticks, which a script or going back in time has changed."""
         for number, stick in enumerate(self.sticks):

@@ -168,49 +168,32 @@ class DeviceView:
         editor.insert(0, text)
         editor.select_range(0, "end")
         self.canvas.create_window(place.right, place.y, anchor="e", window=editor, tags="editor")
-        for key in ("<Return>", "<KP_Enter>"):
-            editor.bind(key, lambda event: self._entered())
-        editor.bind("<Tab>", lambda event: self._end_editing())
+        for key in ("<Return>", "<KP_Enter>", "<Tab>"):
+            editor.bind(key, lambda event: self._end_editing())
         editor.bind("<FocusOut>", lambda event: self._end_editing(focused=False))
-        editor.bind("<Escape>", lambda event: self._give_up_editing())
+        editor.bind("<Escape>", lambda event: self._close_editor())
         editor.focus_set()
 
-    def _entered(self) -> None:
-        if self._take():
-            self._close_editor()
+    def _end_editing(self, focused: bool = True) -> None:
+        """Set what was typed, if it was edited and is right.
 
-    def _take(self) -> bool:
-        """Set what was typed, if it was edited, and return whether it is right."""
-        assert self._editor is not None
-        assert self._edited is not None
+        :param focused: whether the keyboard is still on it
+        """
+        if self._editor is None or self._edited is None:
+            return
         (item, before), text = self._edited, self._editor.get()
+        self._close_editor(focused)
         self.problem = ""
         if text == before:
-            return True
+            return
         try:
             value = typed_number(text)
             if item.row.kind == "number" and item.row.decimals == 0 and not value.is_integer():
                 raise ValueError(f"a whole number is needed, not {value:g}")
         except ValueError as wrong:
             self.problem = f"{item.row.label.strip()}: {wrong}."
-            self._editor.configure(highlightcolor=colors.RED)
-            return False
-        self._edited = item, text
-        self._simulation.write({item.row.paths[0]: value})
-        return True
-
-    def _give_up_editing(self) -> None:
-        self.problem = ""
-        self._close_editor()
-
-    def _end_editing(self, focused: bool = True) -> None:
-        """Set what was typed, if it is right.
-
-        :param focused: whether the keyboard is still on it
-        """
-        if self._editor is not None:
-            self._take()
-            self._close_editor(focused)
+        else:
+            self._simulation.write({item.row.paths[0]: value})
 
     def _close_editor(self, focused: bool = True) -> None:
         if self._editor is not None:

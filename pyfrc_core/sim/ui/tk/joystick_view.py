@@ -60,14 +60,7 @@ class JoystickView:
             ).pack(side="left", padx=(0, px(2)))
         source = ttk.Frame(frame, style="Card.TFrame")
         source.pack(fill="x", padx=px(10))
-        self._plugged = tk.BooleanVar(frame, True)
-        self._plug = ttk.Checkbutton(
-            source,
-            variable=self._plugged,
-            command=lambda: sticks.plug(self.chosen.get(), self._plugged.get()),
-            style="Small.Segment.Toolbutton",
-            takefocus=False,
-        )
+        self._plug = ttk.Label(source, style="CardMuted.TLabel")
         self._plug.pack(side="left")
         ttk.Label(source, text="gamepads: --ui web", style="CardMuted.TLabel").pack(side="right")
         self.canvas = tk.Canvas(frame, background=colors.CARD, highlightthickness=0, width=px(WIDTH))
@@ -178,7 +171,6 @@ class JoystickView:
     def _draw(self) -> None:
         canvas, px = self.canvas, self._theme.px
         stick = self._sticks.sticks[self.chosen.get()]
-        self._plugged.set(stick.plugged)
         self._plug.configure(text="Plugged in" if stick.plugged else "Not plugged in")
         x0, y0, x1, y1 = dict(self._parts)[("pad", 0)]
         r = px(8)

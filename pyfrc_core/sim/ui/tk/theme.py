@@ -106,7 +106,6 @@ def _style(root: tk.Tk, theme: Theme) -> None:
     root.option_add("*TCombobox*Listbox.foreground", TEXT)
     root.option_add("*TCombobox*Listbox.selectBackground", ACCENT)
     root.option_add("*TCombobox*Listbox.selectForeground", CARD)
-    root.option_add("*Menu.font", theme.body)
     style.configure(".", background=BACKGROUND, foreground=TEXT, font=theme.body, borderwidth=0, focuscolor=ACCENT)
     style.configure("TFrame", background=BACKGROUND)
     style.configure("Card.TFrame", background=CARD)
@@ -171,25 +170,7 @@ def _style(root: tk.Tk, theme: Theme) -> None:
     )
     style.configure("Wide.TCombobox", postoffset=(-px(96), 0, px(96), 0))
     style.configure("TEntry", fieldbackground=CARD, bordercolor=BORDER, lightcolor=CARD, padding=px(2))
-    for way in ("Vertical", "Horizontal"):
-        style.configure(
-            f"{way}.TScrollbar",
-            background=FAINT,
-            troughcolor=BACKGROUND,
-            bordercolor=BACKGROUND,
-            lightcolor=FAINT,
-            darkcolor=FAINT,
-            arrowsize=px(10),
-            gripcount=0,
-            width=px(10),
-        )
-        style.map(f"{way}.TScrollbar", background=[("disabled", BACKGROUND), ("active", MUTED)],
-                  lightcolor=[("disabled", BACKGROUND)], darkcolor=[("disabled", BACKGROUND)])  # fmt: skip
-        # Only the thumb, no arrows.
-        sticky = "ns" if way == "Vertical" else "ew"
-        thumb = (f"{way}.Scrollbar.thumb", {"expand": "1", "sticky": "nswe"})
-        trough = (f"{way}.Scrollbar.trough", {"sticky": sticky, "children": [thumb]})
-        style.layout(f"{way}.TScrollbar", [trough])  # type: ignore[list-item]
+    style.configure("TScrollbar", background=FAINT, troughcolor=BACKGROUND, bordercolor=BACKGROUND, arrowsize=px(10))
     style.configure("TPanedwindow", background=BACKGROUND)
     style.configure("Sash", sashthickness=px(6), gripcount=0)
 
