@@ -25,7 +25,7 @@ from pyfrc_core.sim import Field, Scene, Snapshot, Status
 from pyfrc_core.sim.engine.snapshot import Failure
 from pyfrc_core.sim.ui.models.devices import SETTABLE, Row, panels_of
 from pyfrc_core.sim.ui.models.driver_station_keys import DriverStationKeys
-from pyfrc_core.sim.ui.models.joysticks import RELEASED, Sticks, axis_labels, button_labels
+from pyfrc_core.sim.ui.models.joysticks import RELEASED, Joysticks, axis_labels, button_labels
 from pyfrc_core.sim.ui.models.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical, layout_for
 from pyfrc_core.sim.ui.models.viewport import Viewport
 from pyfrc_core.sim.ui.models.wording import (
@@ -298,9 +298,9 @@ class Told:
         return lambda *args: self.calls.append((name, *args))
 
 
-def sticks() -> tuple[Sticks, Told]:
+def sticks() -> tuple[Joysticks, Told]:
     told = Told()
-    return Sticks(told), told  # type: ignore[arg-type]
+    return Joysticks(told), told  # type: ignore[arg-type]
 
 
 def test_labels_of_joysticks() -> None:

@@ -67,7 +67,7 @@ class Job:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Report:
+class RobotReport:
     """What the robot did since the last report.
 
     :param time_us: robot time
@@ -85,7 +85,7 @@ class Report:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Replayed(Report):
+class Replayed(RobotReport):
     """How far the robot has come on its way to the moment that it goes on from. Known changes are left out."""
 
 
@@ -105,7 +105,7 @@ class Ready:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Update(Report):
+class Update(RobotReport):
     """What has changed since the last one.
 
     :param time_state: the state of time

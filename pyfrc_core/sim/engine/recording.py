@@ -19,7 +19,7 @@ from ...runtime.scripts.trace import FORMAT
 from ...runtime.scripts.trace_lines import Change, lines_of
 from ...text_files import write_whole
 from .history import History, entries
-from .messages import Report, StationState, Update
+from .messages import RobotReport, StationState, Update
 
 _AT = attrgetter("at_us")
 
@@ -46,7 +46,7 @@ class Recording:
         #: Whether another program has yet to replay the inputs, so that what it does there is not known.
         self.is_open = False
 
-    def add(self, report: Report) -> None:
+    def add(self, report: RobotReport) -> None:
         """Add what has happened since the last report."""
         for change in report.changes:
             self.changes.append(to_us(change.time), change)

@@ -22,7 +22,7 @@ from .commands import Command, PendingCommands, TimeState
 from .controls import Controls, Driver
 from .field import field_of, robot_at, start_named
 from .first_script import choices_of, first_recording, releases_after
-from .messages import Failed, Job, Message, Ready, Replayed, Report, Update
+from .messages import Failed, Job, Message, Ready, Replayed, RobotReport, Update
 from .options import SimOptions
 from .output_log import OutputCursor, OutputLog
 from .past_run import PastRun
@@ -390,7 +390,7 @@ class Simulation(Controls, SimulationSource):
         self._snapshot = self._builder.snapshot_after(update, self.field)
         self._status = status_after(self._status, update, self._recording.length_us)
 
-    def _record(self, report: Report) -> None:
+    def _record(self, report: RobotReport) -> None:
         """Add what the robot did to the recording, and pass it on to readers."""
         number, is_new_code = self._status.starts, self._recording.is_open
         self._recording.add(report)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from .joysticks import Sticks
+from .joysticks import Joysticks
 from .keyboard import Control, KeyDriver, KeyLayout, canonical, layout_for
 from .time_controls import toggle
 
@@ -28,7 +28,7 @@ class DriverStationKeys:
     :param close: closes the front end
     """
 
-    def __init__(self, simulation: Simulation, sticks: Sticks, close: Callable[[], object]) -> None:
+    def __init__(self, simulation: Simulation, sticks: Joysticks, close: Callable[[], object]) -> None:
         self._simulation, self._sticks = simulation, sticks
         self._driver = KeyDriver(layout_for(simulation.project.sim_config))
         self._axes: dict[Control, float] = {}

@@ -35,7 +35,7 @@ class Stick:
     plugged: bool = True
 
 
-class Sticks:
+class Joysticks:
     """The state of the six joysticks' controls, and the methods that move them."""
 
     def __init__(self, simulation: Simulation) -> None:

@@ -7,7 +7,16 @@ import tkinter as tk
 from tkinter import ttk
 from typing import TYPE_CHECKING
 
-from ..models.joysticks import BUTTONS, FIRST_BUTTON, JOYSTICKS, RELEASED, Sticks, axis_labels, button_labels, direction
+from ..models.joysticks import (
+    BUTTONS,
+    FIRST_BUTTON,
+    JOYSTICKS,
+    RELEASED,
+    Joysticks,
+    axis_labels,
+    button_labels,
+    direction,
+)
 from . import theme as colors
 from .theme import Theme, fitting
 from .tooltip import Tooltip
@@ -36,7 +45,7 @@ class JoystickView:
         theme: Theme,
         tooltip: Tooltip,
         config: SimConfig,
-        sticks: Sticks,
+        sticks: Joysticks,
     ) -> None:
         self._theme, self._config, self._sticks = theme, config, sticks
         self._held: tuple[_Part, bool] | None = None

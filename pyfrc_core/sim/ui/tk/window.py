@@ -16,7 +16,7 @@ from ....errors import UsageError
 from ....interruption import interruption
 from ...engine.snapshot import Snapshot, Status
 from ..models.driver_station_keys import SUMMARY, DriverStationKeys
-from ..models.joysticks import Sticks
+from ..models.joysticks import Joysticks
 from ..models.wording import status_texts
 from .center_view import CenterView
 from .column import ScrollingColumn
@@ -112,7 +112,7 @@ class Window:
         self.center.frame.pack(side="left", fill="both", expand=True, padx=gap)
         self.field, self.console = self.center.field, self.center.console
 
-        self.sticks = Sticks(simulation)
+        self.sticks = Joysticks(simulation)
         self.match = MatchView(right, theme, tooltip, simulation, self.focus_field)
         self.match.frame.pack(side="top", fill="x")
         config = simulation.project.sim_config
