@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import re
-import signal
 import socket
 import struct
-import threading
 from collections.abc import Callable, Iterator
 from importlib.metadata import version
 
 import pytest
 from at_terminal import run_at_terminal
-from conftest import sampled
 from driver_stations import deploy_on_field, driver_station
 from roborio import Proxy, Roborio, require_roborio
 from skips import missing_programs, require
@@ -147,49 +143,6 @@ def test_a_program_that_dies_is_shown_with_its_traceback_and_the_way_back(robot:
 
 
 # -- what can be wrong with a robot ------------------------------------------------------------------------------------
-
-
-@pytest.mark.slow
-def test_a_lost_connection_is_reported_and_the_next_deploy_works(robot: Roborio, make_project) -> None:
-    project = make_project(program())
-    # More than is sent before the robot has read any of it: with all of it sent, the robot may have switched.
-    (project.path / "noise.bin").write_bytes(os.urandom(3_000_000))
-    with Proxy((robot.host, robot.port), rate=200_000, cut_to_robot=60_000) as proxy:
-        result = deploy(project, proxy, "--large")
-    assert result.code == 1, result.output
-    assert "the connection to the robot was lost" in result.stderr
-    assert "run the command again" in result.stderr
-    assert "Traceback" not in result.output
-    result = deploy(project, robot, "--large")
-    assert result.code == 0, result.output
-
-
-@pytest.mark.parametrize("as_json", sampled([False, True], False))
-@pytest.mark.slow
-def test_ctrl_c_leaves_all_whole(as_json: bool, robot: Roborio, make_project) -> None:
-    project = make_project(program(1))
-    assert deploy(project, robot).code == 0
-    project.write(program(2))
-    # More than is sent before the robot has read any of it: with all of it sent, the robot may have switched.
-    (project.path / "noise.bin").write_bytes(os.urandom(3_000_000))
-    with Proxy((robot.host, robot.port), rate=25_000) as proxy:
-        where = f"{proxy.host}:{proxy.port}"
-        words = ["deploy", "--skip-tests", "--large", "--robot", where, *["--json"] * as_json]
-        with project.start(*words, apart=True) as command:
-            while proxy.bytes_to_robot < 40_000:  # until it is in the middle of it
-                assert command.poll() is None
-                threading.Event().wait(0.01)
-            command.send_signal(signal.SIGINT)
-            output, errors = command.rest()
-            assert command.wait() == 130
-    assert errors.strip() == "interrupted"
-    if as_json:
-        last = json.loads(output.splitlines()[-1])
-        assert (last["event"], last["message"], last["exit_code"]) == ("error", "interrupted", 130)
-    assert "number 1" in code_on(robot)
-    assert not (robot.home / "py/noise.bin").exists()
-    assert deploy(project, robot, "--large").code == 0
-    assert "number 2" in code_on(robot)
 
 
 def test_on_a_competition_field_nothing_is_deployed(make_project) -> None:

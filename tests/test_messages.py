@@ -93,18 +93,6 @@ def test_a_component_that_is_assigned_instead_of_declared(make_project: MakeProj
     assert first[1].strip() == "Declare a component with a colon: arm: Arm"
 
 
-def test_an_error_inside_commands2_shows_the_users_lines_only(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": COMMANDS, "tests/pyfrc_test.py": READY_MADE})
-    first, *others = blocks_of(project.run("test", "--", "-k", "autonomous or disabled"))
-    assert others
-    place = project.place("robot.py", "parallel")
-    assert first[0] == f"{place}: two commands that run at the same time both need Arm"
-    assert "andThen" in first[1]
-    assert len(first) <= 25
-    assert not any("site-packages" in line for line in first)
-    assert all(block[0].startswith(f"{place}: the same as in ") for block in others)
-
-
 def test_a_test_file_with_a_mistake_gets_the_lines_that_the_robot_gets(make_project: MakeProject) -> None:
     tests = {
         "tests/test_colon.py": "def test_it(control)\n    pass\n",
@@ -140,19 +128,6 @@ def test_test_files_that_are_never_run_are_named(tmp_path: Path) -> None:
     for sentence, (first, last) in zip(found, expected, strict=True):
         assert sentence.startswith(f"{tmp_path.name}/{first}"), sentence
         assert sentence.endswith(last), sentence
-
-
-def test_mistakes_stand_before_their_consequences(make_project: MakeProject) -> None:
-    robot = ROBOT.replace("pass", "def teleopPeriodc(self):\n            self.moved = True")
-    test = """
-        def test_it(control, robot):
-            control.set_operator_control()
-            control.run_test(lambda tm: tm < 1)
-            robot.moved
-    """
-    result = make_project({"robot.py": robot, "tests/test_it.py": test}).run("test")
-    assert result.code == 1
-    assert result.stdout.index("did you mean teleopPeriodic?") < result.stdout.index("FAILURES")
 
 
 def test_nan_and_a_can_id_used_twice_are_named(make_project: MakeProject) -> None:

@@ -339,11 +339,14 @@ def test_devices_are_shown_and_set(user: User) -> None:
     devices = user.window.devices
     assert [panel.title for panel in devices.rows.panels][:2] == ["PWM", "Digital I/O"]
     assert user.row("2  Arm").kind == "meter"
-    lamp = next(item for item in devices.items if item.row.paths == ("dio[4].value",))
-    user.until(lambda: devices.canvas.itemcget(lamp._lamp, "fill") == theme.LAMP_ON)
+
+    def lamp() -> str:
+        item = next(each for each in devices.items if each.row.paths == ("dio[4].value",))
+        return str(devices.canvas.itemcget(item._lamp, "fill"))
+
     user.click_row("3  Limit")
     user.until(lambda: user.snapshot.values["dio[4].value"] is False)
-    user.until(lambda: devices.canvas.itemcget(lamp._lamp, "fill") == theme.LAMP_OFF)
+    user.until(lambda: lamp() == theme.LAMP_OFF)
     user.until(lambda: user.snapshot.values["custom.Arm"] == "down")
     user.click_row("Encoder 0")
     user.until(lambda: user.window.root.focus_get().winfo_class() == "Entry")
@@ -373,6 +376,8 @@ def test_devices_are_shown_and_set(user: User) -> None:
     user.until(lambda: [panel.title for panel in devices.rows.panels] != titles)
     assert user.row("Analog 1").paths == ("analog_gyro[1].angle",)
     user.until(lambda: user.snapshot.values["relay[0].fwd"] is True)
+    user.click_row("3  Limit")
+    user.until(lambda: lamp() == theme.LAMP_ON)
 
     # A word of help, when the mouse rests on a row.
     user.keys(*map(str, user._to(devices.canvas, *devices.center_of(user.row("3  Limit")))))

@@ -94,7 +94,14 @@ def test_a_module_of_the_same_name_from_elsewhere_is_not_taken(make_project: Mak
         ("x = mine\n", "robot.py:1", "name 'mine' is not defined", "did you mean min?"),
         ("import broken\n", "broken.py:2", "x has no key 'key'", "There is nothing here"),
         ("input('name? ')\n", "robot.py:1", "input() waits for a keyboard", "Ask the driver station instead"),
-        (b"x = 1\ny = 'caf\xe9'\n", "robot.py:2", "this line is not UTF-8: it has the byte 0xe9", "Save it as UTF-8"),
+        (
+            b"x = 1\ny = 'caf\xe9'\n",
+            "robot.py:2",
+            "it has the byte 0xe9, probably the character 'é'",
+            "Save it as UTF-8",
+        ),
+        ("x = 1\n".encode("utf-16"), "robot.py", "this file is in UTF-16", "Save it as UTF-8"),
+        ("x = 1\n".encode("utf-16-le"), "robot.py", "this file is in UTF-16", "Save it as UTF-8"),
         (b"x = 1\nx = '\0'\n", "robot.py:2", "this file contains null bytes", "The file is damaged"),
         ("import strange\n", "strange.py:1", "this line is not UTF-8", "Save it as UTF-8"),
         ("raise ValueError('null bytes')\n", "robot.py:1", "ValueError: null bytes", "imported."),
@@ -138,15 +145,6 @@ def test_a_robot_class_of_this_file_counts_before_those_of_others(make_project: 
     elsewhere = "import wpilib\nclass Elsewhere(wpilib.TimedRobot): ...\n"
     main = "import wpilib\nfrom other import Elsewhere\nclass Here(wpilib.TimedRobot): ...\n"
     assert load_robot(make_project(main, {"other.py": elsewhere})).__name__ == "Here"
-
-
-TWO = """
-import wpilib
-
-class One(wpilib.TimedRobot): ...
-
-class Two(wpilib.TimedRobot): ...
-"""
 
 
 @pytest.mark.parametrize(
