@@ -74,7 +74,7 @@ class Command:
         @contextmanager
         def connected_agent(*_: object) -> Iterator[tuple[Any, AgentClient]]:
             with closing(robot.start(agents)) as agent:
-                yield SimpleNamespace(host="10.12.34.2"), agent
+                yield SimpleNamespace(host="10.12.34.2", controller=robot.controller), agent
 
         monkeypatch.setattr(logs, "connected_agent", connected_agent)
 
@@ -99,12 +99,12 @@ def command(robot: LocalRobot, agents: Agents, monkeypatch: pytest.MonkeyPatch, 
 
 
 def log_of(agent: AgentClient, name: str) -> RobotLog:
-    (found,) = (each for each in agent.logs().logs if each.name == name)
+    (found,) = (each for each in agent.logs() if each.name == name)
     return found
 
 
 def names_in(directory: str) -> list[str]:
-    return sorted(each.name for each in Path(directory).iterdir())
+    return sorted(each.name for each in Path(directory).iterdir() if each.name != ".gitignore")
 
 
 def no_progress(done: int, total: int) -> None:
@@ -127,8 +127,8 @@ def test_the_newest_come_first_with_match_and_place(command: Command, robot: Loc
 def test_a_robot_without_logs_says_where_they_would_be(command: Command, robot: LocalRobot) -> None:
     shutil.rmtree(robot.root / "u")
     shutil.rmtree(robot.home / "logs")
-    printed = command(answer="")
-    assert f"there are no logs in /u/logs, /U/logs (a USB stick) and {robot.controller.layout.home}/logs" in printed
+    printed = command(answer="1")
+    assert f"There are no logs in /u/logs, /U/logs (a USB stick) and {robot.controller.layout.home}/logs" in printed
     assert "wpilib.DataLogManager.start()" in printed
     assert command.asked == []
     with pytest.raises(UsageError, match=r"no log on the robot has 'Q12' in its name\n  The newest: there are none\."):
@@ -138,6 +138,8 @@ def test_a_robot_without_logs_says_where_they_would_be(command: Command, robot: 
 def test_words_and_numbers_choose(command: Command) -> None:
     assert f"pyfrc view {Path('logs', Q9)}" in command("q9")
     assert names_in("logs") == [Q9]
+    command(answer="0", into=Path("here"))
+    assert not Path("here").exists()
     command(answer="1 ohcl", into=Path("here"))
     assert names_in("here") == sorted([Q12, Q9, KIT])
     assert Path("here", Q12).read_bytes() == CONTENT
@@ -170,7 +172,7 @@ def test_a_cut_says_that_the_next_command_goes_on(command: Command, robot: Local
     robot.start = lambda agents: start(agents, cut_from_robot=900_000)  # type: ignore[method-assign]
     with pytest.raises(ConnectionFailedError, match="it goes on where this one has ended"):
         command("Q12")
-    assert names_in("logs") == [f"{Q12}.part"]
+    assert names_in("logs") == [f".{Q12}.part"]
 
 
 @pytest.mark.parametrize("robot", [ROBORIO], indirect=True)
@@ -237,7 +239,7 @@ def test_another_file_of_the_name_stays_and_another_part_does_not(command: Comma
     with pytest.raises(RefusedError, match=r"there is another file of this name, not the robot's log\n.*--into"):
         command("Q9")
     assert Path("logs", Q9).read_bytes() == b"mine"
-    Path("logs", f"{Q12}.part").write_bytes(b"of another log")
+    Path("logs", f".{Q12}.part").write_bytes(b"of another log")
     command("Q12")
     assert Path("logs", Q12).read_bytes() == CONTENT
 
@@ -246,7 +248,7 @@ def test_another_file_of_the_name_stays_and_another_part_does_not(command: Comma
 def test_a_full_disk_here(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     if Path("/dev/full").exists():
         Path("logs").mkdir()
-        Path("logs", f"{Q12}.part").symlink_to("/dev/full")
+        Path("logs", f".{Q12}.part").symlink_to("/dev/full")
         monkeypatch.setattr(logs, "_begun", lambda *_: 0)
         with pytest.raises(
             DeployError, match=r"this computer's disk is full\n  Make room on it, or .* it goes on where"
@@ -300,8 +302,8 @@ def test_over_a_real_connection_that_is_cut(make_project: MakeProject) -> None:
             cut = project.run("logs", "Q12", "--robot", f"{computer.host}:{proxy.port}")
             assert (cut.code, proxy.has_cut) == (1, True), cut.output
         assert "it goes on where this one has ended" in cut.output
-        (part,) = (project.path / "logs").iterdir()
-        assert (part.name, part.stat().st_size > 0) == (f"{Q12}.part", True)
+        (part,) = (project.path / "logs").glob(".*.part")
+        assert (part.name, part.stat().st_size > 0) == (f".{Q12}.part", True)
         done = project.run("logs", "Q12", "--robot", computer.where, "--delete", "--yes")
         assert done.code == 0, done.output
         assert (project.path / "logs" / Q12).read_bytes() == CONTENT
@@ -317,7 +319,7 @@ def test_a_real_connection_to_a_systemcore_that_is_cut(tmp_path: Path) -> None:
             with pytest.raises(ConnectionFailedError), agent_on(computer, proxy.host, proxy.port) as agent:
                 fetch_log(agent, log_of(agent, Q12), tmp_path / Q12, no_progress)
             assert proxy.has_cut
-        begun = (tmp_path / f"{Q12}.part").stat().st_size
+        begun = (tmp_path / f".{Q12}.part").stat().st_size
         seen: list[int] = []
         with agent_on(computer, computer.host, computer.port) as agent:
             fetch_log(agent, log := log_of(agent, Q12), tmp_path / Q12, lambda done, total: seen.append(done))

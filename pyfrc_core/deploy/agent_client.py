@@ -16,7 +16,7 @@ from . import recovery_hints
 from .agent import start_monitor, wire
 from .agent_stream import AgentChannel, AgentStream, TimeLimits, agent_command, agent_package
 from .errors import ConnectionFailedError, DeployError, OtherComputerError
-from .facts import Deployed, DeployRequest, Plan, RobotFacts, RobotLogs, RolledBack, StartState, Watched
+from .facts import Deployed, DeployRequest, Plan, RobotFacts, RobotLog, RolledBack, StartState, Watched
 from .responses import Raw, ResponseError, parse, value_of
 
 if TYPE_CHECKING:
@@ -265,9 +265,9 @@ class AgentClient:
         self.recovery_hint = recovery_hints.rolled_back(back.release.number)
         return back
 
-    def logs(self) -> RobotLogs:
+    def logs(self) -> tuple[RobotLog, ...]:
         """Return the logs on the robot, the newest first."""
-        return self._request(partial(parse, RobotLogs), "logs")
+        return self._request(lambda done: value_of(done, "logs", tuple[RobotLog, ...]), "logs")
 
     def read_log(self, path: str, offset: int, count: int) -> bytes:
         """Return a piece of a log, from `offset` on; fewer than `count` bytes at its end."""

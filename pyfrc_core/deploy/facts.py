@@ -81,14 +81,6 @@ class RobotLog:
 
 
 @dataclass(frozen=True)
-class RobotLogs:
-    """The logs on the robot, the newest first, and the directories in which they can be."""
-
-    logs: tuple[RobotLog, ...]
-    directories: tuple[str, ...]
-
-
-@dataclass(frozen=True)
 class RobotFacts:
     """The facts that the agent reports about the robot.
 

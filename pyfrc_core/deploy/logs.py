@@ -1,6 +1,6 @@
 """`pyfrc logs`: the logs on the robot, listed, fetched and removed.
 
-A log is fetched piece by piece into ``NAME.part``, which a later command continues if the robot's log begins with it.
+A log is fetched piece by piece into ``.NAME.part``, which a later command continues if the robot's log begins with it.
 It gets its name when the robot has the same hash.
 """
 
@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 from ..errors import UsageError
 from ..project import Project
 from ..shell import quoted
+from ..text_files import keep_out_of_version_control
 from ..wording import counted, from_here, size_text, table
 from .errors import ConnectionFailedError, DeployError, RefusedError
 from .progress import DeployProgress, UserInterface
@@ -28,12 +29,13 @@ from .team import RobotChoice, choose_target
 
 if TYPE_CHECKING:
     from .agent_client import AgentClient
-    from .facts import RobotLog, RobotLogs
+    from .facts import RobotLog
 
 #: Where logs are written, in the project or the current directory.
 LOGS = "logs"
 _PIECE_BYTES = 1 << 19
 _READ_BYTES = 1 << 20
+_HOW_TO_LOG = "Robots write them after wpilib.DataLogManager.start()."
 _GOES_ON = "Run the command again: it goes on where this one has ended."
 
 
@@ -63,33 +65,32 @@ def fetch_logs(project: Project | None, choice: RobotChoice, request: LogRequest
         raise UsageError("--delete needs the names of logs, which are fetched first", remedy="List them: pyfrc logs")
     if request.delete and not request.confirmed and talk.ask is None:
         raise UsageError("confirmation needed: the logs will be removed from the robot", remedy="Confirm with --yes.")
-    into = request.into or (Path.cwd() if project is None else project.root) / LOGS
+    own = (Path.cwd() if project is None else project.root) / LOGS
+    into = request.into or own
     target, progress = choose_target(project, choice, talk.ask), talk.progress
     with connected_agent(target, choice, progress) as (connection, robot):
         with progress.phase("logs") as phase:
             there = robot.logs()
-            phase.detail = counted(len(there.logs), "log")
-        if not there.logs:
-            _say_where_logs_would_be(there, progress)
+            phase.detail = counted(len(there), "log")
         wanted = request.wanted
         if not wanted:
-            listed = {"host": connection.host, "logs": [{**asdict(each), "match": each.match} for each in there.logs]}
-            progress.result(listed, "\n".join(_lines(there.logs)), requested=True)
-            if there.logs and talk.ask is not None:
-                wanted = talk.ask.text("Fetch which ones? Numbers, or words in their names; Enter: none").split()
+            listed = {"host": connection.host, "logs": [{**asdict(each), "match": each.match} for each in there]}
+            *usb, in_home = connection.controller.layout.logs
+            none = f"There are no logs in {', '.join(usb)} (a USB stick) and {in_home}. {_HOW_TO_LOG}"
+            progress.result(listed, "\n".join(_lines(there)) or none, requested=True)
+            if there and talk.ask is not None:
+                answer = talk.ask.text("Fetch which ones? Numbers, or words in their names; 0: none")
+                wanted = [word for word in answer.split() if word != "0"]
         if not wanted:
             return
-        chosen = _chosen(there.logs, wanted, by_number=not request.wanted)
+        chosen = _chosen(there, wanted, by_number=not request.wanted)
+        if into == own:
+            keep_out_of_version_control(own)
         fetched = _fetch_all(robot, chosen, into, progress)
         removed = _removed(robot, chosen, request, talk) if request.delete else []
         files = [str(file) for file in fetched]
-        text = f"To look at it: pyfrc view {' '.join(quoted(from_here(file)) for file in fetched[:1])}"
+        text = f"To look at it: pyfrc view {quoted(from_here(fetched[0]))}"
         progress.result({"host": connection.host, "fetched": files, "removed": removed}, text)
-
-
-def _say_where_logs_would_be(there: RobotLogs, progress: DeployProgress) -> None:
-    places = f"{', '.join(there.directories[:-1])} (a USB stick) and {there.directories[-1]}"
-    progress.note(f"  there are no logs in {places}; robots write them after wpilib.DataLogManager.start()")
 
 
 def _lines(logs: Sequence[RobotLog]) -> list[str]:
@@ -169,7 +170,7 @@ def fetch_log(robot: AgentClient, log: RobotLog, file: Path, on_bytes: Callable[
     :raises DeployError: if it is not the same as on the robot, or the disk is full
     """
     file.parent.mkdir(parents=True, exist_ok=True)
-    part = file.with_name(f"{file.name}.part")
+    part = file.with_name(f".{file.name}.part")  # hidden: no deploy uploads it
     try:
         done = _begun(robot, log, file, part)
         if done == log.size and file.exists() and not part.exists():

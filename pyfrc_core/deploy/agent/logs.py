@@ -28,7 +28,7 @@ class RobotLogs:
         self._activity = activity
 
     def named(self) -> Message:
-        """Return all logs, the newest first, and the directories in which they can be."""
+        """Return all logs, the newest first."""
         found: dict[tuple[int, int], Message] = {}
         for directory in self._paths.layout.logs:
             for name, entry in files_below(self._paths.of(directory)):
@@ -44,7 +44,7 @@ class RobotLogs:
                             "written": self._is_written(state.st_mtime),
                         }
         logs = sorted(found.values(), key=lambda log: log["modified"], reverse=True)
-        return {"logs": logs[:_MOST], "directories": list(self._paths.layout.logs)}
+        return {"logs": logs[:_MOST]}
 
     def piece(self, request: Message) -> bytes:
         """Return a piece of a log, ``count`` bytes from ``offset`` on; fewer at its end."""
