@@ -1057,7 +1057,20 @@ BY_HAND = {
         "        self.do().getRate()  # here\n",
         "What do is, a parameter of A.__init__ (robot.py:2), is not known",
     ),
-    "a motor of unknown type": ("def stop(motor):\n    motor.set(0)  # here\n", "or write set_throttle."),
+    "a motor of unknown type": (
+        "def stop(motor):\n    motor.set(0)  # here\n",
+        "or write set_throttle if it is a motor.",
+    ),
+    "a part of an object of unknown type, whose names say nothing of the object": (
+        "class Container:\n    def __init__(self, timer):\n        self.timer = timer\nclass A:\n"
+        "    def __init__(self, container):\n        self.container = container\n    def go(self):\n"
+        "        return self.container.timer.get()  # here\n",
+        "container: Container. It could also be",
+    ),
+    "an object that can be of three types": (
+        "def go(sensor):\n    return sensor.getRate() + sensor.getDistance()  # here\n",
+        "sensor: wpilib.Encoder. It could also be wpilib.simulation.EncoderSim or wpilib.Counter.",
+    ),
     "a constructor that calls before the rest of another": (
         "import wpilib\nclass Base(wpilib.TimedRobot):\n    def __init__(self):\n        super().__init__()\n"
         "    def robotInit(self):\n        pass\nclass Robot(Base):\n    def __init__(self):\n"

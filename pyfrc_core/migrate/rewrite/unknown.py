@@ -23,14 +23,17 @@ _CALLED = (
 #: Names that are spelled alike in both seasons, but stand for another one of a motor's: with how many arguments.
 _MOTOR = {"set": (1, "set_throttle"), "get": (0, "get_throttle")}
 _SHOWN = 5
-#: So many types that an object can be, according to the names that are used of it, are worth to name the first of.
+#: So many types that an object can be, according to the names that are used of it, are worth to name.
 _TYPES = 3
 
 
 @dataclass
 class _Uses:
+    """:param own: the names that are asked of the object itself, not of a part of it"""
+
     cause: Cause
     places: set[tuple[str, int, str]] = field(default_factory=set)
+    own: set[str] = field(default_factory=set)
 
 
 class Unknown:
@@ -90,21 +93,28 @@ class Unknown:
         key = (cause.kind, cause.name, cause.imported if cause.kind == "package" else cause.node)
         uses = self._uses.setdefault(key, _Uses(cause))
         uses.places.add((file.name_in_report, file.line(node), name))
+        of_a_part = cause.kind in ("parameter", "attribute", "variable") and isinstance(node, cst.Attribute)
+        if not of_a_part or (isinstance(node, cst.Attribute) and dotted(node.value).rpartition(".")[2] == cause.name):
+            uses.own.add(name)
 
     def report(self, report: Report, files: Mapping[Module, FileRewriter]) -> None:
         """Report each cause with all its places."""
         for uses in self._uses.values():
             cause, names = uses.cause, sorted({name for _, _, name in uses.places})
-            types = self._types(cause, {*names, *self._names_used(cause)})
+            used = {*self._names_used(cause)}
+            types = self._types(cause, {*names, *used})
             if types is None:
                 continue
+            its_own = types if uses.own == {*names} else self._types(cause, uses.own | used) or []
             home = files[cause.module]
             where = f"{home.name_in_report}:{home.line(cause.node)}"
             more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-            new = [_MOTOR[each][1] if each in _MOTOR else self._new(each, types) for each in names[:_SHOWN]]
+            new = [self._new(each, types) for each in names[:_SHOWN] if each not in _MOTOR]
+            new += [f"{_MOTOR[each][1]} if it is a motor" for each in names[:_SHOWN] if each in _MOTOR]
             what = f"{_subject(cause, where)} not known, so these names stay: {', '.join(names[:_SHOWN])}{more}."
-            type_ = types[0] if 0 < len(types) <= _TYPES else ""
-            hint = _hint(cause, self._table.new_path(type_) or type_)
+            could_be = [self._table.new_path(each) or each for each in its_own[: _TYPES + 1]]
+            first, *others = could_be if 0 < len(could_be) <= _TYPES else [""]
+            hint = _hint(cause, first) + (f"It could also be {' or '.join(others)}. " if others else "")
             remedy = f"{hint}Migrate again; or write {', '.join(new)}{more}."
             for file, line, _ in uses.places:
                 report.add(file, line, what, remedy)
