@@ -57,6 +57,15 @@ CODE = {
         -         return self.pose().X()
         +         return self.pose().x
     """,
+    "private modules, from which editors import": """
+        - from wpimath.kinematics._kinematics import SwerveModuleState
+        - from wpimath._controls._controls.controller import PIDController
+        - from wpilib._wpilib import Encoder as Sensor
+        + from wpimath import PIDController, SwerveModuleVelocity
+        + from wpilib import Encoder as Sensor
+        - print(SwerveModuleState().speed, PIDController(1, 0, 0).getP(), Sensor(0, 1).getRate())
+        + print(SwerveModuleVelocity().velocity, PIDController(1, 0, 0).get_p(), Sensor(0, 1).get_rate())
+    """,
     "a protocol": """
           import typing
           import wpilib

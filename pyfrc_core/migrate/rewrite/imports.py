@@ -228,7 +228,7 @@ class Imports:
             return self._import_star(node, source)
         kept: dict[str, list[cst.ImportAlias]] = {}
         modules: list[cst.BaseSmallStatement] = []
-        changed = False
+        changed = source != dotted(node.module)
         for alias in node.names:
             name = dotted(alias.name)
             path = f"{source}.{name}"

@@ -402,11 +402,20 @@ def _loops(first: cst.CompFor) -> Iterator[cst.CompFor]:
         each = each.inner_for_in
 
 
+#: The packages of WPILib, and REV's, that have private modules.
+_BINDINGS = {"hal", "ntcore", "rev", "robotpy_apriltag", "wpilib", "wpimath", "wpinet", "wpiutil"}
+
+
 def import_source(node: cst.ImportFrom, module: Module) -> str:
-    """Return the module of a `from` import; a relative one as the project's modules import it."""
+    """Return the module of a `from` import; a relative one as the project's modules import it.
+
+    Editors import names of WPILib from its private modules, such as ``wpimath.geometry._geometry``: the public one has
+    them, too.
+    """
     source = dotted(node.module) if node.module is not None else ""
     if not node.relative:
-        return source
+        parts = source.split(".")
+        return ".".join(part for part in parts if part[:1] != "_") if parts[0] in _BINDINGS else source
     parts = module.name.split(".")
     cut = len(node.relative) - (1 if module.path.name == "__init__.py" else 0)
     parts = parts[: len(parts) - cut] if cut else parts
