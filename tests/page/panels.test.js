@@ -9,6 +9,7 @@ const { connect } = await import("#js/connection.js");
 const { PlotButton, Select, Switch, TextBox } = await import("#js/controls.js");
 const { Dock } = await import("#js/layout/dock.js");
 const { FirstDifference } = await import("#js/panels/differences.js");
+const { frontOf } = await import("#js/layout/open.js");
 const { MatchPanel } = await import("#js/panels/match.js");
 const { playback } = await import("#js/playback.js");
 const { driveOn } = await import("#js/past.js");
@@ -99,6 +100,8 @@ test("a difference is plotted and found in its panel, and the next one takes its
     [["battery", "pwm[1].value"], 3, "devices", "differences"],
     [["battery"], 4, "devices", "differences"],
   ]);
+  // On a narrow screen, in other tabs.
+  assert.deepEqual([["field", "plot:1"], ["devices", "differences"], ["match"]].map(frontOf), ["plot:1", "differences", undefined]);
 });
 
 test("what could not be compared comes before the result, and nothing is the same that was not compared", () => {

@@ -3,6 +3,7 @@ import { model } from "#js/model.js";
 import { PANELS, panelTitle } from "#js/panels/all.js";
 import { settings } from "#js/settings.js";
 import { Component, Icon, Live, classes, createRef, html } from "#js/view.js";
+import { bringToFront, frontOf } from "#js/layout/open.js";
 import { stacked } from "#js/layout/presets.js";
 import { activate, close, put, resize } from "#js/layout/tree.js";
 
@@ -24,12 +25,10 @@ export class Dock extends Live {
   }
 }
 
-// On a narrow screen the arrangement is made from the chosen one; only the tabs in front are remembered, here.
-const fronts = {};
-
+// On a narrow screen the arrangement is made from the chosen one.
 function stackedTree() {
   const tree = stacked(settings.tree, innerHeight <= LOW);
-  const choose = (node) => (node.panels.includes(fronts[node.panels[0]]) ? { ...node, active: fronts[node.panels[0]] } : node);
+  const choose = (node) => ({ ...node, active: frontOf(node.panels) ?? node.active });
   return tree.kind === "tabs" ? choose(tree) : { ...tree, children: tree.children.map(choose) };
 }
 
@@ -121,7 +120,7 @@ class Tabs extends Component {
   front(panel) {
     if (!this.props.narrow) settings.tree = activate(settings.tree, this.props.place, panel);
     else {
-      fronts[this.props.node.panels[0]] = panel;
+      bringToFront(panel);
       model.announce("settings");
     }
   }

@@ -22,8 +22,8 @@ export function showDifferences() {
 }
 
 function show(path, t) {
-  showDifferences();
   showPanel(path.startsWith("nt:") ? "networktables" : "devices");
+  showDifferences();
   plotFound(path, t);
   goTo(t);
 }
