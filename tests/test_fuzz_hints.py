@@ -96,6 +96,17 @@ def test_a_thread_that_does_not_end_with_the_robot_program(isolation: str, make_
     assert hint.startswith(f"hint: {line}: the thread 'camera' does not end with the robot program (5 matches)")
 
 
+def test_threads_without_names_of_their_own_are_one_hint_a_line() -> None:
+    campaign = CampaignHints()
+    for number in range(2, 7):
+        each = f"Thread-{number} (measure)"
+        campaign.add(MatchHints(threads=(("robot.py:9", each), ("robot.py:9", f"Thread-{number + 1} (measure)"))))
+    assert list(campaign.texts()) == [
+        "robot.py:9: the thread 'Thread (measure)' does not end with the robot program (5 matches): "
+        "end it in endCompetition, or make it a daemon"
+    ]
+
+
 def growths_of(sizes: list[int]) -> list[Growth]:
     attributes: dict[str, object] = {"log": []}
     growths = Growths(lambda: {"arm.log": (attributes, "log")})

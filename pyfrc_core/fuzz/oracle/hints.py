@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import time
 from collections import Counter
@@ -143,7 +144,7 @@ class CampaignHints:
         self._unfinished: dict[str, list[int]] = {}
         self._finished: set[str] = set()
         self._slow: list[MatchHints] = []
-        self._threads: dict[tuple[str, str], int] = {}
+        self._threads: Counter[tuple[str, str]] = Counter()
         #: The places that set an output in each disabled loop.
         self.always_set: list[str] = []
         #: How many starts of the robot there were, how many failed by each cause, and the failures that did not repeat.
@@ -159,8 +160,8 @@ class CampaignHints:
         for name, ran_us in hints.unfinished.items():
             self._unfinished.setdefault(name, []).append(ran_us)
         self._finished |= hints.finished
-        for thread in hints.threads:
-            self._threads[thread] = self._threads.get(thread, 0) + 1
+        # One that has no name of its own is numbered: another number in each match, for the same line.
+        self._threads.update({(place, re.sub(r"^Thread-\d+", "Thread", name)) for place, name in hints.threads})
         if hints.loop_seconds > hints.period:
             self._slow.append(hints)
 
