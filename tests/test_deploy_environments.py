@@ -273,7 +273,6 @@ def test_while_another_computer_installs_it_is_named(directory: Path, packages: 
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="it reads the memory of a process as Linux shows it")
-@pytest.mark.slow
 def test_memory(directory: Path, packages: Packages) -> None:
     """A wheel of 20 MB: under 40 MB at the highest. What needs more to be compiled is left to the program."""
     robot, table = new_robot(directory / "robot", ROBORIO), "TABLE = [\n" + '    ["a", 1.5, "b"],\n' * 100_000 + "]\n"

@@ -208,7 +208,6 @@ def test_a_full_disk(kind: Kind, tmp_path: Path) -> None:
             assert "this is small" in started(robot).output
 
 
-@pytest.mark.slow
 def test_after_a_crash_loop_the_next_program_starts(systemcore: Systemcore, tmp_path: Path) -> None:
     """systemd refuses to start a service again that was started five times within ten seconds."""
     with agent(systemcore) as robot:

@@ -151,7 +151,6 @@ def test_whatever_a_test_does_is_recorded(make_project) -> None:
     )
 
 
-@pytest.mark.slow
 def test_structs_that_a_test_publishes_are_recorded(make_project) -> None:
     """Such as the pose from a camera; what the robot publishes itself is not an input."""
     robot = """

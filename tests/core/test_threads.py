@@ -8,7 +8,7 @@ import pytest
 
 from pyfrc_core.runtime.clock import PACKET, PHYSICS, ROBOT_LOOP, WAKE_UP
 from pyfrc_core.runtime.exceptions import TestEnded
-from pyfrc_core.runtime.threads import cooperative
+from pyfrc_core.runtime.threads import cooperative, fork_obstacles
 from pyfrc_core.runtime.threads import robot_threads as threads
 from pyfrc_core.runtime.threads.robot_threads import RobotThread
 
@@ -347,3 +347,9 @@ def test_threads_started_before_a_run_begin_with_it(timeline: Timeline) -> None:
     cooperative.begin_waiting_threads()
     assert scope.waiting_to_begin == []
     assert timeline.run_until(10) == ["5 runs"]
+
+
+def test_devices_that_an_import_makes_are_a_reason_not_to_fork(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fork_obstacles, "devices_exist", lambda: True)
+    monkeypatch.setattr(fork_obstacles, "existing_devices", lambda: ["pwm[3]", "dio[0]"])
+    assert "devices are made: pwm[3], dio[0]" in fork_obstacles.reasons_not_to_fork()
