@@ -24,7 +24,6 @@ _COLOURS = {"problem": "red", "hint": "cyan", "ok": "green"}
 @robot_option
 @team_option
 @click.option("--no-robot", is_flag=True, help="Do not check the robot.")
-@click.option("--extras", is_flag=True, help="Also show which optional packages are not installed.")
 @click.option("--json", "as_json", is_flag=True, help="For tools: print all results as one JSON object.")
 def command(
     directory: Path | None,
@@ -33,7 +32,6 @@ def command(
     robot: str | None,
     team: int | None,
     no_robot: bool,
-    extras: bool,
     as_json: bool,
 ) -> None:
     """Check this computer, your project and the robot for problems, and show how to solve them.
@@ -54,7 +52,7 @@ def command(
 
     findings = [
         replace(each, remedy=each.remedy and with_robot_option(each.remedy, robot, team))
-        for each in examine(DoctorOptions(directory, main, robot_class, not no_robot, robot, team, extras or as_json))
+        for each in examine(DoctorOptions(directory, main, robot_class, not no_robot, robot, team))
     ]
     for finding in sorted(findings, key=lambda each: (each.topic == NEXT_STEP, tuple(_COLOURS).index(each.status))):
         if not as_json and (finding.status == "problem" or not verbosity().quiet):

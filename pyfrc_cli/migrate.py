@@ -21,11 +21,9 @@ if TYPE_CHECKING:
 @click.command("migrate")
 @project_option
 @click.option("--check", is_flag=True, help="Write nothing: report what would change, and what you must do.")
-@click.option("--diff", is_flag=True, help="Write nothing: print the changes.")
-@click.option("--comments", is_flag=True, help="Write what you must do into the files, too, as comments: # 2027: ...")
 @click.option("--uncommitted", is_flag=True, help="Go on although Git has changes that are in no commit.")
 @click.option("--json", "as_json", is_flag=True, help="For tools: print the report as one JSON object.")
-def command(directory: Path | None, check: bool, diff: bool, comments: bool, uncommitted: bool, as_json: bool) -> None:
+def command(directory: Path | None, check: bool, uncommitted: bool, as_json: bool) -> None:
     """Rewrite a robot project of 2026 for WPILib 2027.
 
     In all its Python files, pyproject.toml, requirements.txt and GitHub's workflows, it changes names, imports, and
@@ -44,19 +42,16 @@ def command(directory: Path | None, check: bool, diff: bool, comments: bool, unc
 
     project = find_project(directory)
     root = project.pyproject.parent if project.pyproject.is_file() else project.root
-    writes = not (check or diff)
-    if writes and not uncommitted:
+    if not (check or uncommitted):
         refuse_uncommitted(root)
     progress = _show_progress if _on_terminal(as_json) else _no_progress
-    done = migrate(root, code=project.root, progress=progress, comments=comments)
-    if writes:
+    done = migrate(root, code=project.root, progress=progress)
+    if not check:
         done.write()
     if as_json:
         click.echo(json.dumps(_as_json(done), indent=2))
-    elif diff:
-        click.echo("".join(done.diff()), nl=False)
     else:
-        _print(done, writes)
+        _print(done, written=not check)
     sys.exit(1 if done.report.by_hand() or (check and done.after) else 0)
 
 

@@ -24,7 +24,6 @@ from pyfrc_core.doctor.examine import (
     _project,
     _season_settings,
     check_downloads,
-    check_extras,
     check_window,
 )
 from pyfrc_core.doctor.installed import Installed, Package, find_installed
@@ -369,15 +368,6 @@ def test_the_next_step_is_named_with_its_number() -> None:
         "drive.",
     ]
     assert first_missing(None, (Step.PACKAGES, "x")).remedy == "x"
-
-
-def test_extras_that_are_installed_or_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    extras = {"one": ("json", "this"), "two": ("no_such_module", "that")}
-    monkeypatch.setattr(sys.modules[check_extras.__module__], "EXTRAS", extras)
-    there, missing = check_extras()
-    assert (there.status, there.text) == ("ok", "this: installed")
-    assert (missing.status, missing.text) == ("hint", "that: not installed")
-    assert "pyfrc[two]" in str(missing.remedy)
 
 
 def test_a_project_that_is_not_there_is_a_problem_only_if_it_was_named(

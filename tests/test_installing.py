@@ -46,7 +46,7 @@ def test_what_is_asked_for_is_this_pyfrc_and_not_the_older_program_of_its_name()
         assert needed.name == "pyfrc"
         assert needed.specifier.contains(__version__)
         assert not needed.specifier.contains(OLD)
-    assert Requirement(requirement("profile")).extras == {"profile"}
+    assert Requirement(requirement("cluster")).extras == {"cluster"}
 
 
 def test_every_line_that_installs_pyfrc_by_name_asks_for_it_in_quotes_with_its_version() -> None:

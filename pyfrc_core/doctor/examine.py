@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 
-from .._version import requirement
 from ..browser import why_no_browser
 from ..config.robotpy import load_season_settings
 from ..display import WITHOUT_DISPLAY, has_display, has_tkinter
@@ -25,13 +23,6 @@ from .packages import check_imports, check_pyfrc, check_python, check_wpilib
 from .robot import RobotSearch
 from .robot_project import check_project, problem_from_error
 from .steps import first_missing
-
-#: Each of pyfrc's extras with its module and its purpose.
-EXTRAS = {
-    "cluster": ("distributed", "pyfrc fuzz --scheduler"),
-    "wpilib-window": ("halsim_gui", "pyfrc sim --ui wpilib"),
-}
-
 
 _SYNC, _MAX_NAMED = "sync", 3
 
@@ -58,15 +49,6 @@ def check_window() -> Iterator[CheckResult]:
         yield ok("window", "there is a display, and tkinter")
 
 
-def check_extras() -> Iterator[CheckResult]:
-    """Check which extras are installed."""
-    for extra, (module, use) in EXTRAS.items():
-        if find_spec(module) is None:
-            yield hint("extras", f"{use}: not installed", f'To install it: pip install "{requirement(extra)}"')
-        else:
-            yield ok("extras", f"{use}: installed")
-
-
 @dataclass(frozen=True)
 class DoctorOptions:
     """The options of `pyfrc doctor`.
@@ -77,7 +59,6 @@ class DoctorOptions:
     :param look_for_robot: whether to check the robot as well
     :param robot:      the robot's address, if the user specifies it
     :param team:       the team number, if the user specifies it
-    :param extras:     whether to report optional packages that are not installed
     """
 
     directory: Path | None = None
@@ -86,7 +67,6 @@ class DoctorOptions:
     look_for_robot: bool = True
     robot: str | None = None
     team: int | None = None
-    extras: bool = False
 
 
 def examine(wanted: DoctorOptions) -> Iterator[CheckResult]:
@@ -102,8 +82,6 @@ def examine(wanted: DoctorOptions) -> Iterator[CheckResult]:
     yield from check_imports(installed)
     yield from check_browser()
     yield from check_window()
-    if wanted.extras:
-        yield from check_extras()
     if about_project is not None:
         yield about_project
     downloads: list[CheckResult] = []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import shutil
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -38,15 +37,6 @@ class Migration:
     report: Report
     files: int
 
-    def diff(self) -> Iterator[str]:
-        """Return the changes as a unified diff, by lines; whatever the files' lines end in, these end in LF."""
-        for name, new in sorted(self.after.items()):
-            old = self.before.get(name, b"").decode(errors="replace").splitlines()
-            lines = difflib.unified_diff(
-                old, new.decode(errors="replace").splitlines(), f"a/{name}", f"b/{name}", lineterm=""
-            )
-            yield from (f"{line}\n" for line in lines)
-
     def write(self) -> None:
         """Replace the files, after all of them have been written beside the old ones.
 
@@ -75,13 +65,11 @@ def migrate(
     *,
     code: Path | None = None,
     progress: Progress = lambda doing, done, of: None,
-    comments: bool = False,
 ) -> Migration:
     """Return what a project of 2026 becomes in 2027. Nothing is written.
 
     :param code: where robot.py is, if it is in a directory of its own
     :param progress: called with what is done, how many files of it, and of how many
-    :param comments: write what must be changed by hand into the files, too
     :raises UsageError: when pyproject.toml is wrong
     """
     report = Report()
@@ -108,9 +96,7 @@ def migrate(
             report.add(file.relative_to(root).as_posix(), 0, what, "Change its names by hand.")
     home = "" if code is None or code == root else code.relative_to(root).as_posix() + "/"
     rewritten = with_deep_stack(
-        lambda: rewrite_all(
-            sources, names, report, home=home, first_time=first_time, progress=progress, comments=comments
-        )
+        lambda: rewrite_all(sources, names, report, home=home, first_time=first_time, progress=progress)
     )
     after = dict(rewritten.files)
     before = {each.name: each.text for each in sources if each.name in after}

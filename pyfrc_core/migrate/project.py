@@ -64,14 +64,12 @@ def rewrite_all(
     home: str = "",
     first_time: bool,
     progress: Progress = lambda doing, done, of: None,
-    comments: bool = False,
 ) -> Rewritten:
     """Return what becomes of the files.
 
     :param home: the directory with robot.py, whose modules import each other, with a `/`; "" for the project's own
     :param first_time: the project is still one of 2026
     :param progress: called with what is done, and how much of it
-    :param comments: write what must be changed by hand into the files, too
     """
     modules: dict[str, Module] = {}
     for position, source in enumerate(sources):
@@ -99,7 +97,7 @@ def rewrite_all(
         progress("rewriting", position, len(modules))
         old = module.tree.bytes
         try:
-            new = _rewrite(files[module], project, comments=comments).encode(module.tree.encoding)
+            new = _rewrite(files[module], project).encode(module.tree.encoding)
             invalid = new != old and why_invalid(new) is not None and why_invalid(old) is None
             failed = "it would be no valid Python" if invalid else ""
         except Exception as error:
@@ -173,7 +171,7 @@ def _report_taken_names(modules: Mapping[str, Module], table: Table, report: Rep
             report.add(name, 1, what, f"Give this one another name, such as robot_{first}, in your imports, too.")
 
 
-def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
+def _rewrite(file: FileRewriter, project: _Project) -> str:
     calls = Calls(file, project.dashboard_reads, Arguments(file, project.led_lists, project.ports))
     hal_data = HalData(file, project.gamepads)
     leftovers = Leftovers(file)
@@ -219,7 +217,7 @@ def _rewrite(file: FileRewriter, project: _Project, *, comments: bool) -> str:
             file.import_from(node, scope)
         if isinstance(node, cst.Import | cst.ImportFrom):
             leftovers.imports(node)
-    return new_text(file, comments=comments)
+    return new_text(file)
 
 
 def _module_name(name: str) -> str:

@@ -7,7 +7,7 @@ from typing import cast
 import libcst as cst
 
 from ..types.scopes import Scope
-from .edits import Apply, changed, commented
+from .edits import Apply, changed
 from .file import FileRewriter
 
 
@@ -32,16 +32,11 @@ def rewrite_annotation(file: FileRewriter, node: cst.SimpleString, scope: Scope)
         file.edit(node, changed(value=f"{node.prefix}{node.quote}{code}{node.quote}"))
 
 
-def new_text(file: FileRewriter, *, comments: bool) -> str:
-    """Return the file's new text.
-
-    :param comments: with what must be changed by hand, as comments
-    """
+def new_text(file: FileRewriter) -> str:
+    """Return the file's new text."""
     statements = file.imports.plan()
     statements |= {each: [] for each in file.removed}
     file.replaced = frozenset(statements)
-    if comments:
-        _comment(file)
     tree = file.module.tree.visit(Apply(file.edits, statements))
     assert isinstance(tree, cst.Module)
     if file.imports.at_top:
@@ -50,20 +45,6 @@ def new_text(file: FileRewriter, *, comments: bool) -> str:
         tree = tree.with_changes(body=[*tree.body[:index], *lines, *tree.body[index:]])
     # A form feed in front of the first indentation of a file would be in each new block, and end the one around it.
     return tree.with_changes(default_indent=tree.default_indent.replace("\f", "")).code
-
-
-def _comment(file: FileRewriter) -> None:
-    by_line: dict[int, list[str]] = {}
-    for remark in file.report.by_hand():
-        for place in remark.places:
-            if place.file == file.name_in_report:
-                by_line.setdefault(place.line, []).append(f"# 2027: {' '.join(remark.text().split())}")
-    lines = [node for node in file.positions if isinstance(node, cst.SimpleStatementLine | cst.BaseCompoundStatement)]
-    for line, texts in by_line.items():
-        around = [each for each in lines if file.positions[each].start.line <= line <= file.positions[each].end.line]
-        if around:
-            innermost = max(around, key=lambda each: file.positions[each].start.line)
-            file.edit(innermost, commented(texts))
 
 
 class _Parts(cst.CSTVisitor):
