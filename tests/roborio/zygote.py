@@ -14,7 +14,7 @@ import sys
 import tempfile
 import traceback
 import zlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 from pyfrc_core.deploy.agent import (
@@ -43,9 +43,9 @@ class Calls:
         self.count = 0
         wait = compiling.Compiler._wait
 
-        def wait_for_all(compiler: compiling.Compiler, activity: Activity) -> Sequence[str]:
+        def wait_for_all(compiler: compiling.Compiler, activity: Activity) -> None:
             self._uncounted(wait_for_end)(compiler)  # all that was compiled is read at once then
-            return wait(compiler, activity)
+            wait(compiler, activity)
 
         compiling.Compiler._wait = wait_for_all  # type: ignore[method-assign]
         wire.Wire._read = self._uncounted(wire.Wire._read)  # type: ignore[method-assign]  # as many reads as come

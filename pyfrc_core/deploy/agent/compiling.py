@@ -24,16 +24,14 @@ from .system import KILL, end_with_parent
 _MEMORY = 38_000_000
 #: Memory that it may always allocate, in bytes.
 _LEAST_MEMORY = 8_000_000
-#: How often a killed process is replaced.
-_MAX_RESTARTS = 4
 
 
 class Compiler:
     """Compiles sources in a separate process, with memory of its own, while other files are received.
 
-    A source that needs too much memory is skipped: the program compiles it when it imports it. If the system kills the
-    process, another one continues; a source at which two processes were killed is skipped as well. On systems without
-    ``fork``, which only virtual robots have, the agent itself compiles.
+    A source that needs too much memory is skipped: the program compiles it when it imports it. So are the sources that
+    are left if the system kills the process. On systems without ``fork``, which only virtual robots have, the agent
+    itself compiles.
 
     :param directory: contains the sources
     :param names:     relative paths, in the order in which the files become available
@@ -58,10 +56,6 @@ class Compiler:
         self._failure: list[Any] = []
         self._available = 0
         self._child: int | None = None
-        self._names: Sequence[str] = ()
-        self._begin(names)
-
-    def _begin(self, names: Sequence[str]) -> None:
         self._names = names
         if not names or not hasattr(os, "fork"):
             return
@@ -92,7 +86,7 @@ class Compiler:
             self._compile(self._names[self._available])
             self._available += 1
             return
-        with suppress(BrokenPipeError):  # the process was killed; `finish` starts another
+        with suppress(BrokenPipeError):  # the process was killed
             os.write(self._to_child, b".")
 
     def finish(self, activity: Activity) -> None:
@@ -100,17 +94,7 @@ class Compiler:
 
         :raises Refusal: if this Python cannot compile one of the program's files
         """
-        killed_at = ""
-        for restarts_left in reversed(range(_MAX_RESTARTS + 1)):
-            left = self._wait(activity)
-            if left and left[0] == killed_at:
-                left = left[1:]
-            if not left or not restarts_left:
-                break
-            killed_at = left[0]
-            self._begin(left)
-            for _ in left:
-                self.add_next()
+        self._wait(activity)
         if self._failure:
             path, line, message = self._failure
             version = ".".join(map(str, sys.version_info[:2]))
@@ -120,12 +104,12 @@ class Compiler:
                 "The robot still has its old program. Correct the line, or use syntax of that Python version.",
             )
 
-    def _wait(self, activity: Activity) -> Sequence[str]:
-        """Wait for the process. Return the sources that it has not compiled if it was killed."""
+    def _wait(self, activity: Activity) -> None:
+        """Wait for the process."""
         if self._child is None:
-            return ()
+            return
         activity.begin("compile", len(self._names))
-        end, failure, done = b"", b"", 0
+        end, failure = b"", b""
         while True:
             # A robot compiles about ten sources in a second; a large one takes longer.
             if not select.select([self._compiled], [], [], 1.0)[0]:
@@ -137,13 +121,10 @@ class Compiler:
             if not end:
                 compiled, end, piece = piece.partition(b"\0")
                 activity.step(len(compiled))
-                done += len(compiled)
             failure += piece
         self._end()
-        if not end:
-            return self._names[done:]
-        self._failure = json.loads(failure)
-        return ()
+        if end:
+            self._failure = json.loads(failure)
 
     def __enter__(self) -> Compiler:
         return self
