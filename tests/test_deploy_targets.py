@@ -50,8 +50,7 @@ LAYOUTS = [*(each.layout for each in CONTROLLERS), ONE_USER]
 def test_no_other_module_names_a_controller() -> None:
     directory = Path(pyfrc_core.deploy.__file__).parent
     names = re.compile(r"roborio|systemcore|lvuser|frcKillRobot|natinst|/usr/local/frc|/home/", re.IGNORECASE)
-    # `.deploy_cfg` of pyfrc 2019 has names of roboRIOs; the room's description names its controllers.
-    allowed = {directory / "team.py", directory / "__init__.py"}
+    allowed = {directory / "__init__.py"}  # the room's description names its controllers
     modules = [file for file in directory.rglob("*.py") if file not in allowed and "targets" not in file.parts]
     assert [file.name for file in modules if names.search(file.read_text("utf-8"))] == []
 

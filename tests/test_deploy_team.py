@@ -18,7 +18,6 @@ PREFERENCES = ".wpilib/wpilib_preferences.json"
 PLACES = {
     "pyproject.toml": "[tool.pyfrc]\nteam = 1\n\n[tool.robotpy]\nteam_number = 3\n",
     PREFERENCES: '{"teamNumber": 2, "currentLanguage": "python"}',
-    ".deploy_cfg": "[auth]\nhostname = roboRIO-4-FRC.local\n",
 }
 
 
@@ -37,15 +36,13 @@ def target_of(make_project):
     return target_of
 
 
-@pytest.mark.parametrize("first", range(4))
+@pytest.mark.parametrize("first", range(3))
 def test_places_count_in_their_order(first: int, target_of) -> None:
     files = dict(PLACES)
     if first >= 1:
         files["pyproject.toml"] = "[tool.robotpy]\nteam_number = 3\n"
     if first >= 2:
         del files[PREFERENCES]
-    if first >= 3:
-        del files["pyproject.toml"]
     assert target_of(files, ask=never).team == first + 1
 
 
@@ -59,27 +56,13 @@ def test_a_robots_address_counts_most_of_all(target_of) -> None:
     assert (target.team, target.robot, target.project_team) == (None, "10.0.0.2:2222", 1)
 
 
-@pytest.mark.parametrize(
-    ("hostname", "team", "robot"),
-    [
-        ("1234", 1234, None),
-        ("roboRIO-1234-FRC", 1234, None),
-        ("roborio-25599-frc.lan", 25599, None),
-        ("10.12.34.2", None, "10.12.34.2"),
-    ],
-)
-def test_the_older_file_names_a_team_or_a_robot(hostname: str, team, robot, target_of) -> None:
-    target = target_of({".deploy_cfg": f"[auth]\nhostname={hostname}\n"})
-    assert (target.team, target.robot) == (team, robot)
-
-
 def test_preferences_may_name_the_robot(target_of) -> None:
     assert target_of({PREFERENCES: '{"robotHostname": "practice.local", "teamNumber": 9}'}).robot == "practice.local"
 
 
 @pytest.mark.parametrize("none", [0, -1])
 def test_an_editors_word_for_no_team_is_none(none: int, target_of) -> None:
-    files = {PREFERENCES: json.dumps({"teamNumber": none}), ".deploy_cfg": "[auth]\nhostname = 5\n"}
+    files = {PREFERENCES: json.dumps({"teamNumber": none}), "pyproject.toml": "[tool.robotpy]\nteam_number = 5\n"}
     assert target_of(files).team == 5
 
 
@@ -126,8 +109,6 @@ def test_without_a_terminal_the_error_names_the_setting(target_of) -> None:
         (PREFERENCES, '{"robotHostname": 7}', PREFERENCES, "robotHostname = 7"),
         (PREFERENCES, "{", PREFERENCES, "not valid JSON"),
         (PREFERENCES, "[]", PREFERENCES, "an object"),
-        (".deploy_cfg", "[auth]\nhostname = 99999\n", ".deploy_cfg", "hostname = 99999"),
-        (".deploy_cfg", "hostname = 1\n", ".deploy_cfg", "not a valid INI file"),
     ],
 )
 def test_an_invalid_value_is_reported_with_its_file_and_key(

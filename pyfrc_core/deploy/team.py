@@ -21,7 +21,6 @@ from .progress import Questions
 from .targets import MAX_TEAM, ControllerKind, controller_of, team_of_host
 
 PREFERENCES = Path(".wpilib", "wpilib_preferences.json")
-_OLD_FILE = ".deploy_cfg"
 _RANGE = f"a team number is from 1 to {MAX_TEAM}"
 
 
@@ -148,7 +147,6 @@ def _targets_in_files(project: Project) -> Iterator[RobotTarget]:
         yield RobotTarget(_in_range(team, where), source=where)
     yield from _targets_in_preferences(_preferences_file(project))
     yield from _targets_in_robotpy(project.pyproject)
-    yield from _targets_in_old_file(project.root / _OLD_FILE)
 
 
 def _preferences_file(project: Project) -> Path:
@@ -193,27 +191,6 @@ def _targets_in_robotpy(pyproject: Path) -> Iterator[RobotTarget]:
     if team is not None:
         where = file.place_of("tool", "robotpy", "team_number")
         yield RobotTarget(_number(team, where, "team_number"), source=f"{pyproject.name}: [tool.robotpy] team_number")
-
-
-def _targets_in_old_file(file: Path) -> Iterator[RobotTarget]:
-    if not file.is_file():
-        return
-    import configparser
-
-    parser = configparser.ConfigParser(interpolation=None)
-    try:
-        parser.read_string(file.read_text("utf-8-sig"))
-    except (configparser.Error, UnicodeDecodeError) as malformed:
-        what = " ".join(str(malformed).split())
-        raise SettingsError(f"not a valid INI file: {what}", where=_OLD_FILE) from None
-    host = parser.get("auth", "hostname", fallback="").strip()
-    source = f"{_OLD_FILE}: hostname"
-    if re.fullmatch(r"[0-9]+", host):
-        yield RobotTarget(_number(int(host), _OLD_FILE, "hostname"), source=source)
-    elif named := re.fullmatch(r"roborio-([0-9]{1,5})-frc(\..*)?", host, re.IGNORECASE):
-        yield RobotTarget(_number(int(named[1]), _OLD_FILE, "hostname"), source=source)
-    elif host:
-        yield RobotTarget(robot=host, source=source)
 
 
 def _number(value: object, where: str, key: str) -> int:
