@@ -1061,6 +1061,10 @@ BY_HAND = {
         "from wpimath.system import LinearSystemId as made\nit = made.identifyDrivetrainSystem(1, 2, 3, 4)  # here\n",
         "so these names stay: identifyDrivetrainSystem.",
     ),
+    "an enumeration that is elsewhere since 2026": (
+        "import rev\nmode = rev.SparkMax.PersistMode.kPersistParameters  # here\n",
+        "Write rev.PersistMode.PERSIST_PARAMETERS.",
+    ),
     "what a callable returns, of unknown type": (
         "class A:\n    def __init__(self, do):\n        self.do = do\n    def go(self):\n"
         "        self.do().getRate()  # here\n",

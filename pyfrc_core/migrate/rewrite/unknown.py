@@ -116,6 +116,9 @@ class Unknown:
             first, *others = could_be if 0 < len(could_be) <= _TYPES else [""]
             hint = _hint(cause, first) + (f"It could also be {' or '.join(others)}. " if others else "")
             remedy = f"{hint}Migrate again; or write {', '.join(new)}{more}."
+            if cause.kind == "missing" and first:
+                also = f" It could also be of {' or '.join(others)}." if others else ""
+                remedy = f"Write {', '.join(f'{first}.{each}' for each in new)}{more}.{also}"
             for file, line, _ in uses.places:
                 report.add(file, line, what, remedy)
 
@@ -126,7 +129,7 @@ class Unknown:
 
     def _names_used(self, cause: Cause) -> Iterator[str]:
         """Return the names of all attributes that the project asks of what has the cause's name."""
-        if cause.kind in ("package", "python", "result"):
+        if cause.kind in ("package", "python", "missing", "result"):
             return
         for node, scope in (site for module in self._modules.values() for site in module.sites):
             named = isinstance(node, cst.Attribute) and dotted(node.value).rpartition(".")[2] == cause.name
@@ -164,7 +167,7 @@ def _subject(cause: Cause, where: str) -> str:
         return f"What {cause.name} is, a parameter of {cause.inside} ({where}), is"
     if cause.kind == "result":
         return f"What {cause.name} returns ({where}) is"
-    if cause.kind == "python":
+    if cause.kind in ("python", "missing"):
         return f"What {cause.imported or cause.name} gives here is"
     return f"What {f'{cause.inside}.' if cause.inside else ''}{cause.name} is ({where}) is"
 
@@ -181,7 +184,7 @@ def _hint(cause: Cause, type_: str) -> str:
         )
     if cause.kind == "package":
         return f"Migrate {name}, too. If an object of it is WPILib's, write its type where you take it (it: {named}). "
-    if cause.kind == "python":
+    if cause.kind in ("python", "missing"):
         return f"Give it a name with a type first: it: {named} = ... "
     if cause.kind == "result":
         return f"Write what it returns there: def {name}(...) -> {named}: ... "

@@ -30,8 +30,8 @@ _ANYTHING = {"Any", "object", "type", "Callable", "TypeVar"}
 class Cause:
     """Where a type hint is missing.
 
-    :param kind: `package`, `parameter`, `attribute`, `variable`, `result`, or `python` for what a function of Python's
-                 passes on, or for a name that WPILib 2026 has not
+    :param kind: `package`, `parameter`, `attribute`, `variable`, `result`, `python` for what a function of Python's
+                 passes on, or `missing` for a name that the library of 2026 has not there
     :param name: of the parameter, attribute, variable or function; of the package
     :param node: where it is; of a package, the import
     :param inside: the function of a parameter, the class of an attribute; else ""
@@ -117,7 +117,7 @@ class Causes:
                 missing = Cause("attribute", name, owner.own.scope.module, owner.own.node, owner.own.name)
                 return self.of_base(owner.own) or missing
             if isinstance(owner, Ref | Obj):  # WPILib 2026 has no such name
-                return Cause("python", name, scope.module, node)
+                return Cause("missing", name, scope.module, node)
         return None
 
     def _call(self, node: cst.Call, scope: Scope, seen: set[object]) -> Cause | None:
@@ -162,7 +162,7 @@ class Causes:
             elif each.kind in ("value", "element", "enter", "item"):
                 found = self._expression(each.node, each.scope, seen)
                 is_element = each.kind == "element" and self._inference.infer(each.node, each.scope)
-                if (found is None and is_element) or (found is not None and found.kind == "python"):
+                if (found is None and is_element) or (found is not None and found.kind in ("python", "missing")):
                     found = here
             if found is not None:
                 return found
