@@ -7,7 +7,7 @@ const { model } = await import("#js/model.js");
 const { Timeline } = await import("#js/timeline.js");
 const { connect } = await import("#js/connection.js");
 
-serve();
+const sent = serve();
 connect(() => {}, () => {});
 
 let timeline;
@@ -47,6 +47,18 @@ test("keys look at other packets, and at the present again", async () => {
     seen.push(model.past && Number(model.past.t.toFixed(2)));
   }
   assert.deepEqual(seen, [0, 0.02, 1.02, 2.02, 2, null]);
+});
+
+test("a panel that opens while a moment is on its way gets its values", async () => {
+  drawFrame();
+  sent.length = 0;
+  press("Home");
+  model.announce("needs"); // as when its rows are bound
+  drawFrame();
+  await settled();
+  const asked = () => sent.filter(({ type }) => type === "show" || type === "values").map(({ type }) => type);
+  assert.equal(asked().at(-1), "values");
+  assert.ok(asked().includes("show") && asked().indexOf("show") < asked().lastIndexOf("values"));
 });
 
 test("before what is known, the first known packet is shown, and a sentence says why", async () => {
