@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import lzma
+import math
 import struct
 from contextlib import suppress
 from pathlib import Path
@@ -130,7 +131,13 @@ def test_each_type_of_revision_1(tmp_path: Path) -> None:
     assert [(r.at_us, r.name, r.type_name, r.value) for r in values_in(file)] == [
         (500_000, "/value", type_name, value) for _, _, type_name, value in given_values
     ]
-    for after, problem in ((b"\2\0\0\x0b", "damaged at byte {}: a type is wrong"), (b"\2\0\0\5\0", "cut at byte {}")):
+    wrong = {
+        b"\2\0\0\x0b": "damaged at byte {}: a type is wrong",
+        b"\2\0\0\5\0": "cut at byte {}",
+        b"\3": "damaged at byte {}",
+        **{b"\0" + struct.pack(">d", each): "damaged at byte {}: a time is wrong" for each in (math.nan, -1.0, 1e300)},
+    }
+    for after, problem in wrong.items():
         file.write_bytes(rlog.data + after)
         assert problem.format(f"{len(rlog.data):,}") in read_data_log(file).problem
 

@@ -271,6 +271,9 @@ def test_logs_are_removed_only_if_asked_and_confirmed(command: Command, robot: L
     assert f"removed from the robot: /u/logs/{Q12}" in command("Q12", delete=True, answer=True)
     assert not on_robot.exists()
     assert Path("logs", Q12).read_bytes() == CONTENT
+    (robot.root / "u/logs" / KIT).touch()  # by the program that is still running
+    assert "is still being written on the robot, so it was not removed" in command("P1", delete=True, answer=True)
+    assert (robot.root / "u/logs" / KIT).exists()
 
 
 @pytest.mark.parametrize("robot", [ROBORIO], indirect=True)
