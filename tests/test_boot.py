@@ -137,7 +137,9 @@ TESTS = """
 """
 
 
-@pytest.mark.parametrize("robot", [TIMED, OWN_LOOP, MAGIC], ids=["TimedRobot", "RobotBase", "MagicRobot"])
+@pytest.mark.parametrize(
+    "robot", sampled([TIMED, OWN_LOOP, MAGIC], TIMED, MAGIC), ids=["TimedRobot", "RobotBase", "MagicRobot"]
+)
 def test_the_first_packet_brings_what_is_configured(robot: str, make_project: MakeProject) -> None:
     project = make_project({"robot.py": robot, "seen.py": SEEN, "tests/test_boot.py": TESTS})
     result = project.run("test", *(["--no-isolation"] if robot is not MAGIC else []))

@@ -54,7 +54,7 @@ TESTS = """
 """
 
 
-EACH_ISOLATION = ["reuse", pytest.param("fork", marks=only_forked)]
+EACH_ISOLATION = [pytest.param("reuse", marks=pytest.mark.slow), pytest.param("fork", marks=only_forked)]
 
 
 @pytest.mark.parametrize("isolation", EACH_ISOLATION)

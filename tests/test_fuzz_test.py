@@ -210,7 +210,7 @@ def test_modes_come_as_from_a_driver_station(matches: list[Written]) -> None:
 @pytest.mark.parametrize(
     "where",
     [
-        "self.stick = wpilib.Joystick(3)",
+        pytest.param("self.stick = wpilib.Joystick(3)", marks=pytest.mark.slow),
         pytest.param("self.held = {'sticks': [wpilib.Joystick(3)]}", marks=pytest.mark.slow),
         pytest.param("stick = wpilib.Joystick(3); self.read = lambda: stick.getY()", marks=pytest.mark.slow),
         "import commands2.button; self.stick = commands2.button.CommandXboxController(3)",

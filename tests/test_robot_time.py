@@ -6,6 +6,7 @@ Each project here is run once; its tests are the assertions.
 from __future__ import annotations
 
 import pytest
+from conftest import sampled
 
 from pyfrc_core.processes.fork import FORK_IS_SAFE
 
@@ -405,7 +406,11 @@ LOOPS = {
 
 
 @pytest.mark.parametrize(
-    "loop", [*(loop for loop in LOOPS if loop != OWN_BODY), pytest.param(OWN_BODY, marks=pytest.mark.season_2026)]
+    "loop",
+    [
+        *sampled([loop for loop in LOOPS if loop != OWN_BODY], "wpilib's", "its own"),
+        pytest.param(OWN_BODY, marks=[pytest.mark.season_2026, pytest.mark.slow]),
+    ],
 )
 def test_whose_loop_it_is_shows_nowhere_outside(loop: str, make_project) -> None:
     passes(make_project, STEPPED_IN_BOTH_STYLES, LOOPS[loop])

@@ -14,7 +14,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
-from conftest import RobotProject
+from conftest import RobotProject, sampled
 from sim_robots import FILES, PATIENCE, wait
 from started_commands import StartedCommand
 
@@ -72,7 +72,7 @@ def running(project: RobotProject, *arguments: str) -> Iterator[Running]:
         yield Running(command)
 
 
-@pytest.mark.parametrize("classes", [0, 2])
+@pytest.mark.parametrize("classes", sampled([0, 2], 2))
 def test_not_one_robot_class(classes: int, make_project) -> None:
     robot = "".join(f"class MyRobot{number}(wpilib.TimedRobot): pass\n" for number in range(classes))
     made = make_project({"robot.py": f"import wpilib\n{robot}"})

@@ -183,7 +183,7 @@ def connect(
     :param accepted_key: the fingerprint of a changed host key that the user accepts
     :param robot_name: a name to store with the robot's key
     :param pin: whether to pin a new key
-    :param credentials: the user's own keys, for a robot that requires one
+    :param credentials: how to log in
     :raises HostKeyError: if the robot's key is not a known one
     :raises ConnectionFailedError: if the login fails
     :raises RefusedError: if the robot has another controller
