@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .file_options import WrittenDirectory, check_outputs
 from .project_options import project_option
 from .robot_options import errors_shown, json_option, project_if_any, robot_options, user_interface
 from .shared_options import yes_option
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 @robot_options
 @click.option(
     "--into",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=WrittenDirectory(file_okay=False),
     metavar="DIRECTORY",
     help="Write them into this directory. Default: logs, in the project.",
 )
@@ -49,4 +50,6 @@ def command(
         from pyfrc_core.deploy.logs import LogRequest, fetch_logs
 
         request = LogRequest(wanted, into, delete, yes)
-        fetch_logs(project_if_any(directory, choice), choice, request, user_interface(choice, as_json))
+        project = project_if_any(directory, choice)
+        check_outputs(click.get_current_context(), project)
+        fetch_logs(project, choice, request, user_interface(choice, as_json))

@@ -118,7 +118,7 @@ def a_run(network: Values, hal: Values, compared: Comparison | None = None) -> P
 
 
 def report(tmp_path: Path, here: PastRun, log: PastRun) -> list[str]:
-    source = LogSource(Project(tmp_path / "robot.py"), OpenedLog(here), (log,))
+    source = LogSource(Project(tmp_path / "robot.py"), OpenedLog(here, tmp_path / "q.wpilog"), (log,))
     return list(LogReport(source, LogRun(InputScript((), 20_000_000), log)).lines())
 
 

@@ -34,6 +34,7 @@ FILES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 DIRECTORIES: dict[str, tuple[str, ...]] = {
     "coverage --html": ("coverage", "{}", "test"),
     "fuzz --pages": ("fuzz", "{}", "--runs", "1"),
+    "logs --into": ("logs", "--robot", "127.0.0.1:1", "{}"),
     "test --coverage-html": ("test", "{}"),
     "test --record": ("test", "{}"),
     "test --trace": ("test", "{}"),

@@ -153,12 +153,12 @@ def test_same(control, hal_data, robot, physics_controller):
 
     with control.run_robot():
         control.step_timing(seconds=1.5, autonomous=True, enabled=True)
-        is_at(9.627, 0.49, -0.49, 1543)
+        is_at(16.629, 0.49, -0.49, 1543)
         control.step_timing(seconds=0.5, autonomous=True, enabled=False)
         for stick in range(2):
             hal_data["joysticks"][stick]["axes"][1] = -0.7
         control.step_timing(seconds=1, autonomous=False, enabled=True)
-        is_at(14.413, 0.482, -0.482, 2657)
+        is_at(21.415, 0.482, -0.482, 2657)
 """
 
 
