@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     metavar="DIRECTORY",
     help="Write them into this directory. Default: logs, in the project.",
 )
-@click.option("--delete", is_flag=True, help="Remove them from the robot after that, unless they are still written.")
+@click.option("--delete", is_flag=True, help="Remove them from the robot after that, but none of the last 30 s.")
 @yes_option
 @json_option
 @click.argument("wanted", nargs=-1, metavar="[NAME]...")

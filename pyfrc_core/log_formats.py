@@ -25,6 +25,13 @@ _LATEST = 1e9
 _CODES = {"int64": "q", "int": "q", "float": "f", "double": "d"}
 #: Of revision 1: the types by their numbers, with the bytes of one value. Each is followed by that of its arrays.
 _TYPES = {1: ("boolean", 1), 3: ("int64", 4), 5: ("double", 8), 7: ("string", 0), 9: ("raw", 1)}
+#: Endings of logs that only their makers' tools can read, with what converts them.
+FOREIGN_LOGS = {
+    ".hoot": "CTRE's format is closed. Phoenix Tuner X (Log Extractor) or CTRE's command owlet writes it as a "
+    ".wpilog: owlet -f wpilog FILE.hoot FILE.wpilog",
+    ".revlog": "REV's format is not read here. REV's revlog-converter (github.com/REVrobotics/node-revlog-converter) "
+    "writes it as a .wpilog: revlog-converter FILE.revlog -o FILE.wpilog",
+}
 
 
 class _DamagedError(Exception):

@@ -44,7 +44,7 @@ def check_writable(option: str, path: Path, is_directory: bool = False) -> None:
 
 def cannot_write(option: str, file: Path, why: str | None) -> UsageError:
     """Return the error for a file that an option names."""
-    return UsageError(f"{option} {file} cannot be written: {why}", remedy="Choose a file in another place.")
+    return UsageError(f"{option} {file} cannot be written: {why}", remedy="Choose another place.")
 
 
 def keep_out_of_version_control(directory: Path) -> None:

@@ -99,7 +99,7 @@ def command(robot: LocalRobot, agents: Agents, monkeypatch: pytest.MonkeyPatch, 
 
 
 def log_of(agent: AgentClient, name: str) -> RobotLog:
-    (found,) = (each for each in agent.logs() if each.name == name)
+    (found,) = (each for each in agent.logs()[0] if each.name == name)
     return found
 
 
@@ -122,6 +122,21 @@ def test_the_newest_come_first_with_match_and_place(command: Command, robot: Loc
     assert lines[0].endswith("USB stick")
     assert lines[1].endswith("robot")
     assert not Path("logs").exists()
+
+
+@pytest.mark.parametrize("robot", [ROBORIO], indirect=True)
+def test_of_more_than_two_thousand_the_oldest_are_only_counted(command: Command, robot: LocalRobot) -> None:
+    for number in range(2000):
+        put(robot, "/u/logs", f"FRC_{number}.wpilog", b"", hours=2)
+    printed = command()
+    assert "2,000 logs, and 4 older ones that are not listed" in printed
+    assert [name in printed for name in (Q12, Q9)] == [True, False]
+
+
+@pytest.mark.parametrize("robot", [ROBORIO], indirect=True)
+def test_what_to_do_with_a_log_that_only_its_maker_can_read(command: Command) -> None:
+    assert command("hoot").endswith("owlet -f wpilog FILE.hoot FILE.wpilog\n")
+    assert "To look at it: pyfrc view logs" in command("hoot", "Q9")
 
 
 def test_a_robot_without_logs_says_where_they_would_be(command: Command, robot: LocalRobot) -> None:
@@ -193,9 +208,9 @@ def test_a_log_that_grows_is_fetched_as_it_was_and_later_its_rest(
     finally:
         logs.fetch_log = fetched
     assert f"the robot is still writing {Q12}: fetch it again later for the rest" in printed
-    assert "is still being written on the robot, so it was not removed" in printed
+    assert "has just been written on the robot, so it was not removed" in printed
     assert (file.read_bytes(), source.exists()) == (CONTENT, True)
-    assert "being written" in command()
+    assert "just written" in command()
     command("Q12")
     assert file.read_bytes() == CONTENT + b"more"
     with closing(robot.start(agents)) as agent:
@@ -255,7 +270,9 @@ def test_a_full_disk_here(command: Command, monkeypatch: pytest.MonkeyPatch) -> 
         ):
             command("Q12")
     monkeypatch.setattr(shutil, "disk_usage", lambda path: SimpleNamespace(free=1_000))
-    with pytest.raises(RefusedError, match="this computer's disk is full: 1300 kB are needed, 1000 bytes are free"):
+    with pytest.raises(
+        RefusedError, match="this computer's disk has too little room: 1300 kB are missing, 1000 bytes are free"
+    ):
         command("Q12")
 
 
@@ -272,7 +289,7 @@ def test_logs_are_removed_only_if_asked_and_confirmed(command: Command, robot: L
     assert not on_robot.exists()
     assert Path("logs", Q12).read_bytes() == CONTENT
     (robot.root / "u/logs" / KIT).touch()  # by the program that is still running
-    assert "is still being written on the robot, so it was not removed" in command("P1", delete=True, answer=True)
+    assert "has just been written on the robot, so it was not removed" in command("P1", delete=True, answer=True)
     assert (robot.root / "u/logs" / KIT).exists()
 
 

@@ -132,7 +132,7 @@ def test_how_sure_an_alignment_is_is_said(tmp_path: Path) -> None:
     assert "so another match would fit, too" in without_clock.how
     disabled = align(robots_log(tmp_path / "d.wpilog", (), 180.0), stations_log(tmp_path / "e.dslog", (), 50.0))
     assert disabled == Alignment(
-        0.0, "by the time of day alone, which may be some seconds wrong: no enabling says more"
+        0.0, "by the time of day alone, which may be up to 60 s wrong: no enabling says more"
     )
 
 

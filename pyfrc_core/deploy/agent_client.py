@@ -265,9 +265,11 @@ class AgentClient:
         self.recovery_hint = recovery_hints.rolled_back(back.release.number)
         return back
 
-    def logs(self) -> tuple[RobotLog, ...]:
-        """Return the logs on the robot, the newest first."""
-        return self._request(lambda done: value_of(done, "logs", tuple[RobotLog, ...]), "logs")
+    def logs(self) -> tuple[tuple[RobotLog, ...], int]:
+        """Return the logs on the robot, the newest first, and how many older ones are not named."""
+        return self._request(
+            lambda done: (value_of(done, "logs", tuple[RobotLog, ...]), value_of(done, "older", int)), "logs"
+        )
 
     def read_log(self, path: str, offset: int, count: int) -> bytes:
         """Return a piece of a log, from `offset` on; fewer than `count` bytes at its end."""

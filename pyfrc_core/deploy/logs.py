@@ -7,7 +7,6 @@ It gets its name when the robot has the same hash.
 from __future__ import annotations
 
 import errno
-import hashlib
 import os
 import re
 import shutil
@@ -18,6 +17,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import UsageError
+from ..file_hash import hash_file
+from ..log_formats import FOREIGN_LOGS
 from ..project import Project
 from ..shell import quoted
 from ..text_files import keep_out_of_version_control
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 #: Where logs are written, in the project or the current directory.
 LOGS = "logs"
 _PIECE_BYTES = 1 << 19
-_READ_BYTES = 1 << 20
 _HOW_TO_LOG = "Robots write them after wpilib.DataLogManager.start()."
 _GOES_ON = "Run the command again: it goes on where this one has ended."
 
@@ -70,8 +70,8 @@ def fetch_logs(project: Project | None, choice: RobotChoice, request: LogRequest
     target, progress = choose_target(project, choice, talk.ask), talk.progress
     with connected_agent(target, choice, progress) as (connection, robot):
         with progress.phase("logs") as phase:
-            there = robot.logs()
-            phase.detail = counted(len(there), "log")
+            there, older = robot.logs()
+            phase.detail = counted(len(there), "log") + f", and {older} older ones that are not listed" * bool(older)
         wanted = request.wanted
         if not wanted:
             listed = {"host": connection.host, "logs": [{**asdict(each), "match": each.match} for each in there]}
@@ -89,7 +89,9 @@ def fetch_logs(project: Project | None, choice: RobotChoice, request: LogRequest
         fetched = _fetch_all(robot, chosen, into, progress)
         removed = _removed(robot, chosen, request, talk) if request.delete else []
         files = [str(file) for file in fetched]
-        text = f"To look at it: pyfrc view {quoted(from_here(fetched[0]))}"
+        file = min(fetched, key=lambda each: each.suffix.lower() in FOREIGN_LOGS)
+        view = f"To look at it: pyfrc view {quoted(from_here(file))}"
+        text = FOREIGN_LOGS.get(file.suffix.lower(), view)
         progress.result({"host": connection.host, "fetched": files, "removed": removed}, text)
 
 
@@ -103,7 +105,7 @@ def _lines(logs: Sequence[RobotLog]) -> list[str]:
             size_text(log.size),
             datetime.fromtimestamp(min(log.modified, 4e9)).strftime("%Y-%m-%d %H:%M"),
             "USB stick" if log.usb else "robot",
-            "being written" if log.written else "",
+            "just written" if log.written else "",
         )
         for number, log in enumerate(logs, 1)
     ]
@@ -137,9 +139,9 @@ def _chosen(logs: Sequence[RobotLog], wanted: Sequence[str], by_number: bool) ->
 
 def _fetch_all(robot: AgentClient, chosen: list[RobotLog], into: Path, progress: DeployProgress) -> list[Path]:
     into.mkdir(parents=True, exist_ok=True)
-    needed, free = sum(log.size for log in chosen), shutil.disk_usage(into).free
+    needed, free = sum(_missing(log, into / _local_name(log.name)) for log in chosen), shutil.disk_usage(into).free
     if needed > free:
-        what = f"this computer's disk is full: {size_text(needed)} are needed, {size_text(free)} are free"
+        what = f"this computer's disk has too little room: {size_text(needed)} are missing, {size_text(free)} are free"
         raise RefusedError(what, where=str(into), remedy="Fetch fewer logs, or choose another disk: --into DIRECTORY")
     fetched = []
     for log in chosen:
@@ -157,6 +159,16 @@ def _fetch_all(robot: AgentClient, chosen: list[RobotLog], into: Path, progress:
     return fetched
 
 
+def _missing(log: RobotLog, file: Path) -> int:
+    """Return how many bytes of a log are not here."""
+    here = [each.stat().st_size for each in (file, _part_of(file)) if each.exists()]
+    return max(0, log.size - max(here, default=0))
+
+
+def _part_of(file: Path) -> Path:
+    return file.with_name(f".{file.name}.part")  # hidden: no deploy uploads it
+
+
 def _local_name(name: str) -> Path:
     """Return a log's path on this computer: without letters that no file may have here, and below its directory."""
     return Path(*(re.sub(r"[^\w.+ -]", "_", part).strip(". ") or "_" for part in name.split("/")))
@@ -170,7 +182,7 @@ def fetch_log(robot: AgentClient, log: RobotLog, file: Path, on_bytes: Callable[
     :raises DeployError: if it is not the same as on the robot, or the disk is full
     """
     file.parent.mkdir(parents=True, exist_ok=True)
-    part = file.with_name(f".{file.name}.part")  # hidden: no deploy uploads it
+    part = _part_of(file)
     try:
         done = _begun(robot, log, file, part)
         if done == log.size and file.exists() and not part.exists():
@@ -191,7 +203,7 @@ def fetch_log(robot: AgentClient, log: RobotLog, file: Path, on_bytes: Callable[
         remedy = f"Make room on it, or choose another one: --into DIRECTORY. {_GOES_ON}"
         raise DeployError("this computer's disk is full", where=str(part), remedy=remedy) from error
     sha256, size = robot.hash_log(log.path, log.size)
-    if _sha256(part) != sha256:
+    if hash_file(part)[0] != sha256:
         part.unlink()
         what = f"{_ascii(log.name)} was changed on the robot meanwhile, or was damaged on its way"
         raise DeployError(what, remedy="Fetch it again.")
@@ -203,7 +215,7 @@ def _begun(robot: AgentClient, log: RobotLog, file: Path, part: Path) -> int:
     """Return how many bytes of a log are in its part, which an earlier command, or an earlier log, may have begun."""
     for kept in (part, file):
         size = kept.stat().st_size if kept.exists() else None
-        if size is not None and size <= log.size and robot.hash_log(log.path, size)[0] == _sha256(kept):
+        if size is not None and size <= log.size and robot.hash_log(log.path, size)[0] == hash_file(kept)[0]:
             if kept is file and size < log.size:
                 shutil.copyfile(file, part)
             return size
@@ -213,14 +225,6 @@ def _begun(robot: AgentClient, log: RobotLog, file: Path, part: Path) -> int:
         remedy = "Rename it, or fetch into another directory: --into DIRECTORY"
         raise RefusedError("there is another file of this name, not the robot's log", where=file, remedy=remedy)
     return 0
-
-
-def _sha256(file: Path) -> str:
-    digest = hashlib.sha256()
-    with file.open("rb") as stream:
-        while block := stream.read(_READ_BYTES):
-            digest.update(block)
-    return digest.hexdigest()
 
 
 def _removed(robot: AgentClient, chosen: list[RobotLog], request: LogRequest, talk: UserInterface) -> list[str]:

@@ -28,7 +28,7 @@ class RobotLogs:
         self._activity = activity
 
     def named(self) -> Message:
-        """Return all logs, the newest first."""
+        """Return the logs, the newest first, and how many older ones are not named."""
         found: dict[tuple[int, int], Message] = {}
         for directory in self._paths.layout.logs:
             for name, entry in files_below(self._paths.of(directory)):
@@ -44,7 +44,7 @@ class RobotLogs:
                             "written": self._is_written(state.st_mtime),
                         }
         logs = sorted(found.values(), key=lambda log: log["modified"], reverse=True)
-        return {"logs": logs[:_MOST]}
+        return {"logs": logs[:_MOST], "older": len(logs[_MOST:])}
 
     def piece(self, request: Message) -> bytes:
         """Return a piece of a log, ``count`` bytes from ``offset`` on; fewer at its end."""
@@ -71,7 +71,7 @@ class RobotLogs:
         with self._opened(request):  # it is there
             state = self._file(request).stat()
         if state.st_size != request["size"] or self._is_written(state.st_mtime):
-            raise Refusal("log", f"{request['path']} is still being written on the robot, so it was not removed")
+            raise Refusal("log", f"{request['path']} has just been written on the robot, so it was not removed")
         self._file(request).unlink()
         return {}
 

@@ -142,7 +142,9 @@ class InputGenerator:
                 found |= without(self.left_out, model.writes(port))
             # What tells a team's robots from each other.
             for row in () if self._from_us else all_rows():
-                texts = [text for text in self._constants.texts if len(text) <= row.field.kind.max_bytes]
+                # Any other text could have more bytes than letters, or be refused.
+                ascii_texts = [text for text in self._constants.texts if text.isascii() and text.isprintable()]
+                texts = [text for text in ascii_texts if len(text) <= row.field.kind.max_bytes]
                 if row.asked_by and texts and self._constants.asks(row.asked_by) and self._rng.random() < 0.5:
                     found[join(row.kind.name, row.field.name)] = self._rng.choice(texts)
             if not self._from_us and self._constants.asks("DigitalInput"):

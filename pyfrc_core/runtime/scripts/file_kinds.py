@@ -19,13 +19,6 @@ _DS_HEADER = Struct(">iqQ")
 LOGS = (".wpilog", ".wpilogxz", ".rlog", ".dslog", ".dsevents")
 #: How many logs of a directory are named.
 _MOST_NAMED = 5
-#: Endings of logs that only their makers' tools can read, with what converts them.
-FOREIGN_LOGS = {
-    ".hoot": "CTRE's format is closed. Phoenix Tuner X (Log Extractor) or CTRE's command owlet writes it as a "
-    ".wpilog: owlet -f wpilog FILE.hoot FILE.wpilog",
-    ".revlog": "REV's format is not read here. REV's revlog-converter (github.com/REVrobotics/node-revlog-converter) "
-    "writes it as a .wpilog: revlog-converter FILE.revlog -o FILE.wpilog",
-}
 #: How JSON begins; tables of TOML begin with a bracket, too.
 _JSON = re.compile(rb"\{|\[(\s*\[)*\s*([\"{\]\d-]|true\b|false\b|null\b)")
 _UNPACK = "Unpack it first."

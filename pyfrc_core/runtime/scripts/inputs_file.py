@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
+from ...log_formats import FOREIGN_LOGS
 from ...season import CURRENT
 from ...wording import from_here
-from .file_kinds import FOREIGN_LOGS, described, is_ds_log, read_head
+from .file_kinds import described, is_ds_log, read_head
 from .file_kinds import is_data_log as begins_as_data_log
 from .script import InputScript, ScriptError, load_script, script_beside
 

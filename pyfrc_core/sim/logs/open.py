@@ -7,7 +7,8 @@ from datetime import datetime
 from pathlib import Path
 
 from ...errors import PyfrcError
-from ...runtime.scripts.file_kinds import FOREIGN_LOGS, described, is_data_log, is_ds_log, read_head
+from ...log_formats import FOREIGN_LOGS
+from ...runtime.scripts.file_kinds import described, is_data_log, is_ds_log, read_head
 from ..engine.past_run import PastRun
 from . import recordings
 from .columns import ReadLog

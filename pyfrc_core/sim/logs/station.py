@@ -2,7 +2,8 @@
 
 Their clocks have nothing in common but the time of day, which a robot gets from the driver station's computer. But both
 say when the robot was enabled and disabled, to about a packet. All matches last equally long, so that alone does not
-tell one match from another: where both have the time of day, it must agree, too. Nothing is ever aligned by a guess.
+tell one match from another: where both have the time of day, it must agree, too. What is known by
+the time of day alone is called that.
 """
 
 from __future__ import annotations
@@ -87,9 +88,12 @@ def _by_clocks(robot: PastRun, station: PastRun, clocks: float, ways: list[_Way]
     if clocks > robot.end or clocks + station.end < 0:
         apart = timedelta(seconds=round(clocks - robot.end if clocks > 0 else -clocks - station.end))
         return Alignment(None, f"by the time of day, there are {apart} between them")
+    several = "its enablings fit in several places"
     if not _agrees(robot, station, _Way(clocks, 1, 0.0)):
-        return Alignment(None, "at the same time of day, the robot is enabled in one of them and disabled in the other")
-    return Alignment(clocks, "by the time of day alone, which may be some seconds wrong: no enabling says more")
+        unlike = "at the same time of day, the robot is enabled in one of them and disabled in the other"
+        return Alignment(None, unlike if best is None else f"{several} near the same time of day")
+    why = "no enabling says more" if best is None else several
+    return Alignment(clocks, f"by the time of day alone, which may be up to {_SAME_TIME:.0f} s wrong: {why}")
 
 
 def _is_ambiguous(best: _Way, ways: list[_Way]) -> bool:
