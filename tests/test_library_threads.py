@@ -88,6 +88,14 @@ def test_a_robot_with_urcl_is_told_where_to_import_it(make_project: MakeProject)
     assert "`import urcl` makes a notifier. Do that in robotInit." in explained[0]
 
 
+def test_a_device_beside_urcl_is_named_too(make_project: MakeProject) -> None:
+    robot = ROBOT.replace("    bus.start()\n", "    import urcl\n    motor = wpilib.PWMSparkMax(3)\n")
+    robot = robot.replace("assert bus.ask(1) == 2", "pass")
+    explained, _ = run(make_project({"robot.py": robot, "tests/test_a.py": TESTS}), "test")
+    assert "`import urcl` makes a notifier" in explained[0]
+    assert "pwm[3]" in explained[0]
+
+
 @pytest.mark.slow
 def test_fuzz_imports_such_a_robot_in_each_match(make_project: MakeProject) -> None:
     _, output = run(make_project({"robot.py": ROBOT}), "fuzz", "--seed", "1", "--time", "2")

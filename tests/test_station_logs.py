@@ -131,9 +131,7 @@ def test_how_sure_an_alignment_is_is_said(tmp_path: Path) -> None:
     assert without_clock.offset == pytest.approx(10.02)
     assert "so another match would fit, too" in without_clock.how
     disabled = align(robots_log(tmp_path / "d.wpilog", (), 180.0), stations_log(tmp_path / "e.dslog", (), 50.0))
-    assert disabled == Alignment(
-        0.0, "by the time of day alone, which may be up to 60 s wrong: no enabling says more"
-    )
+    assert disabled == Alignment(0.0, "by the time of day alone, which may be up to 60 s wrong: no enabling says more")
 
 
 def test_a_connection_that_is_lost_contradicts_nothing(tmp_path: Path) -> None:

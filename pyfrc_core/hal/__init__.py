@@ -44,7 +44,11 @@ if TYPE_CHECKING:
 #: The modules of each season's package.
 _OF_A_SEASON = ("accessors", "counters", "device_table", "driver_station", "pneumatics")
 
+#: Among `existing_devices`: all notifiers, which have no numbers.
+NOTIFIER = "a notifier"
+
 __all__ = [
+    "NOTIFIER",
     "Choice",
     "HalData",
     "LiveDict",

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from ..wpi import timing
-from . import device_table
+from . import NOTIFIER, device_table
 from .containers import LiveDict, Slot
 from .created_devices import CreatedDevices
 from .fields import DeviceKind
@@ -85,4 +85,4 @@ class RobotDevices:
         names = [name for name, slot in zip(self._names, self._slots, strict=True) if slot.get()]
         if self._can.signature():
             names += [join("CAN", name) for name in sorted(self._can)]
-        return names + ["a notifier"] * (timing.count_notifiers() > 0)
+        return names + [NOTIFIER] * (timing.count_notifiers() > 0)

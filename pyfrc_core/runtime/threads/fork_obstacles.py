@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 from ...compat.cpython_private import bare_threads, target_of
-from ...hal import devices_exist, existing_devices
+from ...hal import NOTIFIER, devices_exist, existing_devices
 from ...wording import counted
 from .cooperative import threads_of_the_project
 
@@ -62,12 +62,14 @@ library_threads = _LibraryThreads()
 def reasons_not_to_fork() -> list[str]:
     """Return what the project's code has made in this process and a fork of it would lack: threads and devices."""
     reasons = [f"{line} starts {_described(thread)}" for thread, line in threads_of_the_project()]
-    if devices_exist() and "urcl" in sys.modules:
-        reasons.append("`import urcl` makes a notifier")
-    elif devices_exist():
-        devices = existing_devices()
-        more = f" and {len(devices) - _NAMED_DEVICES} more" if len(devices) > _NAMED_DEVICES else ""
-        reasons.append(f"devices are made: {', '.join(devices[:_NAMED_DEVICES])}{more}")
+    if devices_exist():
+        devices, urcl = existing_devices(), "urcl" in sys.modules
+        if urcl:
+            reasons.append("`import urcl` makes a notifier")
+            devices = [each for each in devices if each != NOTIFIER]
+        if devices or not urcl:
+            more = f" and {len(devices) - _NAMED_DEVICES} more" if len(devices) > _NAMED_DEVICES else ""
+            reasons.append(f"devices are made: {', '.join(devices[:_NAMED_DEVICES])}{more}")
     if not reasons and (count := library_threads.count()) > 0:
         reasons.append(f"libraries start {counted(count, 'thread')}")
     return reasons
