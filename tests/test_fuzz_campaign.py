@@ -54,7 +54,8 @@ def test_the_same_campaign_writes_the_same_files_in_however_many_processes(make_
         result = project.run("fuzz", "--seed", "7", "--runs", "34", "-j", processes)
         assert result.code == 1, result.output
         found.append((result.stdout.splitlines()[-1], kept(project)))
-        shutil.rmtree(project.path)
+        for each in (project.path, project.temporary, project.home):
+            shutil.rmtree(each)
     assert found[0] == found[1]
     assert "fuzz/indexerror-robot-pull.jsonl" in found[0][1]
 

@@ -201,7 +201,7 @@ def test_a_branch_that_is_longer_than_the_present_is_shown_whole(person: Seen) -
     assert (present, end) == (pytest.approx(1.0), pytest.approx(long))
     # The pointer is at a moment that only the branch has, and the plot's own curve has no value there.
     page.locator("[data-panel='plot:1'] .u-over").hover(position={"x": 200, "y": 20})
-    expect(page.locator("[data-panel='plot:1'] .legend b")).to_have_text("\N{EN DASH}")
+    expect(page.locator("[data-panel='plot:1'] .legend b").first).to_have_text("\N{EN DASH}")
 
 
 @BROWSER
