@@ -149,7 +149,10 @@ def test_what_robots_read_publish_and_log_is_as_in_wpilibs_loop(make_project: Ma
 
 
 def records(file: Path) -> dict[str, list[Any]]:
-    """Of each entry of a log: its type and metadata; time and value of each record."""
+    """Of each entry of a log: its type and metadata; time and value of each record.
+
+    A schema has no time here: a thread of WPILib writes it, before or after the next packet.
+    """
     reader = DataLogReader(str(file))
     assert reader.is_valid(), file
     names: dict[int, str] = {}
@@ -163,7 +166,7 @@ def records(file: Path) -> dict[str, list[Any]]:
             found[names[record.get_entry()]].append((record.get_timestamp(), bytes(record.get_raw())))
     began = found["/own"][1][0]
     return {
-        name: [first, *((time - began, value) for time, value in rest)]
+        name: [first, *((0 if name.startswith("/.schema/") else time - began, value) for time, value in rest)]
         for name, (first, *rest) in found.items()
         if not OTHERWISE.fullmatch(name)
     }
