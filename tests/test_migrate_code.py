@@ -46,6 +46,14 @@ CODE = {
         - print(made(True).getRate(), Fake().getRate())
         + print(made(True).get_rate(), Fake().get_rate())
     """,
+    "a class that is not called": """
+          import wpilib
+          class Swerve:
+        -     gyro: wpilib.ADXRS450_Gyro
+        +     gyro: wpilib.OnboardIMU
+        - print(isinstance(Swerve.gyro, wpilib.ADXRS450_Gyro))
+        + print(isinstance(Swerve.gyro, wpilib.OnboardIMU))
+    """,
     "what a callable returns": """
           from typing import Callable
         - from wpimath.geometry import Pose2d

@@ -94,8 +94,9 @@ class FileRewriter:
         for each in found:
             self._say_note(node, each.path)
         first, target = found[0], new.pop()
-        template = self.table.corrections["templates"].get(first.path)
-        if isinstance(template, str) and node not in self.module.called:
+        template, known = self.table.corrections["templates"].get(first.path), self.table.name(first.path)
+        is_class = known is not None and known.is_class  # as an annotation, a base, or of isinstance
+        if isinstance(template, str) and node not in self.module.called and not is_class:
             self._as_function(node, scope, template)
         elif target is None:
             self._say_gone(node, first)
