@@ -81,7 +81,9 @@ class Commands(click.Group):
                 from pyfrc_core.config.packages import install_line
 
                 hint = f" {OTHER_NAMES[args[0]].format(robotpy=install_line('robotpy'))}"
-            if args[0].lower().endswith((".wpilog", ".wpilogxz", ".rlog", ".dslog", ".dsevents")):
+            from pyfrc_core.log_formats import LOGS
+
+            if args[0].lower().endswith(LOGS):
                 hint = " To look at a log: pyfrc view FILE"
             if args[0].endswith(".py"):
                 hint = " pyfrc finds the robot's file by itself, for example: pyfrc sim"

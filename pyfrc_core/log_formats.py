@@ -25,6 +25,9 @@ _LATEST = 1e9
 _CODES = {"int64": "q", "int": "q", "float": "f", "double": "d"}
 #: Of revision 1: the types by their numbers, with the bytes of one value. Each is followed by that of its arrays.
 _TYPES = {1: ("boolean", 1), 3: ("int64", 4), 5: ("double", 8), 7: ("string", 0), 9: ("raw", 1)}
+#: The endings of robots' logs that can be read, and of these with the driver station's.
+ROBOT_LOGS = (".wpilog", ".wpilogxz", _RLOG)
+LOGS = (*ROBOT_LOGS, ".dslog", ".dsevents")
 #: Endings of logs that only their makers' tools can read, with what converts them.
 FOREIGN_LOGS = {
     ".hoot": "CTRE's format is closed. Phoenix Tuner X (Log Extractor) or CTRE's command owlet writes it as a "

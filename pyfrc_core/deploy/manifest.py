@@ -12,6 +12,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from ..file_hash import hash_file
+from ..log_formats import FOREIGN_LOGS, ROBOT_LOGS
 from ..project.environments import is_environment
 from ..sync.lock import LOCK_FILE
 from .errors import RefusedError
@@ -42,7 +43,7 @@ _KEY_FILE = re.compile(r"id_(?:rsa|dsa|ecdsa|ed25519)(?:_sk)?|.+\.(?:env|key|pem
 
 #: Other tools exclude these as well.
 _DIRECTORIES_LEFT_OUT = {"__pycache__", "venv", "ctre_sim"}
-_SUFFIXES_LEFT_OUT = (".pyc", ".whl", ".ipk", ".zip", ".gz", ".wpilog", ".wpilogxz", ".rlog", ".hoot", ".revlog")
+_SUFFIXES_LEFT_OUT = (".pyc", ".whl", ".ipk", ".zip", ".gz", *ROBOT_LOGS, *FOREIGN_LOGS)
 #: Each deploy writes the first on the robot: in a project it can only be a copy. The other is for this computer.
 _FILES_LEFT_OUT = {"deploy.json", LOCK_FILE}
 

@@ -120,9 +120,9 @@ class RobotSearch:
         try:
             robot = AgentClient.start(connection, python=connection.python())
         except NoPythonError:
-            obstacles = list(RobotWithoutPython(connection).obstacles())
-            self._next = (Step.PACKAGES if len(obstacles) == 1 else Step.CONTROLLER), obstacles[0].remedy
-            yield from (problem(_TOPIC, each.text, each.remedy) for each in obstacles)
+            without_python = list(RobotWithoutPython(connection).obstacles())
+            self._next = (Step.PACKAGES if len(without_python) == 1 else Step.CONTROLLER), without_python[0].remedy
+            yield from (problem(_TOPIC, each.text, each.remedy) for each in without_python)
         else:
             with closing(robot):
                 found = list(check_robot_facts(robot.facts, connection.controller, project))

@@ -12,8 +12,8 @@ from typing import Literal
 
 from ..errors import ProjectError, UsageError
 from ..interruption import interruption
+from ..log_formats import LOGS
 from ..project import MAIN_FILE, Project, find_project, projects_below
-from ..runtime.scripts.file_kinds import LOGS
 from ..shell import quoted
 from ..wording import counted
 from .engine.field import field_of

@@ -8,15 +8,13 @@ from pathlib import Path
 from struct import Struct
 
 from ...errors import PyfrcError, UsageError
-from ...log_formats import is_other_form
+from ...log_formats import LOGS, is_other_form
 from ...shell import quoted
 
 #: How much of a file shows what it is, in bytes.
 _HEAD = 4096
 #: The beginning of the driver station's logs: version, seconds since 1904, and their fraction.
 _DS_HEADER = Struct(">iqQ")
-#: The endings of logs that can be read.
-LOGS = (".wpilog", ".wpilogxz", ".rlog", ".dslog", ".dsevents")
 #: How many logs of a directory are named.
 _MOST_NAMED = 5
 #: How JSON begins; tables of TOML begin with a bracket, too.

@@ -2,8 +2,8 @@
 
 Their clocks have nothing in common but the time of day, which a robot gets from the driver station's computer. But both
 say when the robot was enabled and disabled, to about a packet. All matches last equally long, so that alone does not
-tell one match from another: where both have the time of day, it must agree, too. What is known by
-the time of day alone is called that.
+tell one match from another: where both have the time of day, it must agree, too. What is known by the time of day alone
+is called that.
 """
 
 from __future__ import annotations
