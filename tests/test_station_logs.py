@@ -10,12 +10,15 @@ from pathlib import Path
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from web_pages import send_log, served_source
 from written_logs import SECOND, Written
 
 from pyfrc_core.errors import UsageError
+from pyfrc_core.project import Project
 from pyfrc_core.sim.engine.value_history import MISSING
 from pyfrc_core.sim.logs import open_log
 from pyfrc_core.sim.logs.open import OpenedLog
+from pyfrc_core.sim.logs.source import LogSource
 from pyfrc_core.sim.logs.station import Alignment, align, join
 from pyfrc_core.sim.view import ViewRequest, view
 
@@ -181,3 +184,20 @@ def test_a_directory_of_a_match_is_shown_on_one_line(tmp_path: Path) -> None:
     said.clear()
     view(ViewRequest((tmp_path / "z.wpilog", tmp_path / "a.dslog"), offsets=(17.0,), page=page), said.append)
     assert said[0] == "a.dslog is on the time line of z.wpilog: you have given --offset.\n"
+
+
+def test_a_log_that_is_dropped_on_a_page_is_put_where_pyfrc_view_puts_it(tmp_path: Path) -> None:
+    """The driver station's log begins later, so the first enabling of each is another one."""
+    robot = robots_log(tmp_path / "a.wpilog", (2.0, 4.0, *MATCH), 180.0)
+    station = stations_log(tmp_path / "b.dslog", shifted(MATCH, -10.0), 170.0, NOON + timedelta(seconds=12))
+    for shown, dropped, name, offset in ((robot, station, "b.dslog", 10.0), (station, robot, "a.wpilog", -10.0)):
+        source = LogSource(Project(tmp_path / "robot.py"), shown)
+        with served_source(source) as server, server.page() as page:
+            _, answer = send_log(server, name, dropped.file.read_bytes())
+            page.until(lambda page=page: page.parts.get("branches"))
+            assert page.parts["branches"][0]["offset"] == pytest.approx(offset, abs=0.03)
+        assert "aligned where they agree: 4 enablings and disablings agree within 0.0" in answer["text"]
+    elsewhere = stations_log(tmp_path / "c.dslog", shifted(MATCH, -10.0), 170.0, NOON + timedelta(days=1))
+    with served_source(LogSource(Project(tmp_path / "robot.py"), robot)) as server:
+        _, answer = send_log(server, "c.dslog", elsewhere.file.read_bytes())
+    assert "aligned at their start: by the time of day, there are 23:57:00 between them" in answer["text"]

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import http.client
 import json
 import struct
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote, urlsplit
+from urllib.parse import urlsplit
 
 import pytest
 from browser_pages import missing_browser, shared_browser  # noqa: F401 - `browser`
 from recorded_pages import run_in
 from sim_robots import PATIENCE
 from skips import require
-from web_pages import Page, Served, served_source
+from web_pages import Page, send_log, served_source
 from websockets.sync.client import connect
 from written_logs import Written, a_match
 
@@ -36,19 +35,6 @@ def practice() -> Written:
     log.values("DS:enabled", "boolean", "?", (0, False), (5, True), (9, False))
     log.values("NT:/SmartDashboard/speed", "double", "d", *((step / 10, step / 2) for step in range(100)))
     return log
-
-
-def send(server: Served, name: str, data: bytes, token: str = "") -> tuple[int, dict[str, Any]]:
-    """Send a log as a page does on which it was dropped."""
-    parts = urlsplit(server.address)
-    connection = http.client.HTTPConnection(parts.netloc, timeout=PATIENCE)
-    try:
-        connection.request("POST", f"/log?{token or parts.query}&name={quote(name)}", data)
-        response = connection.getresponse()
-        text = response.read()
-        return response.status, json.loads(text) if response.status == 200 else {}
-    finally:
-        connection.close()
 
 
 def source_of(directory: Path) -> LogSource:
@@ -155,7 +141,7 @@ def test_the_page_says_that_the_project_is_below_the_current_directory(make_proj
 def test_a_log_that_is_dropped_on_the_page_becomes_a_branch(tmp_path: Path) -> None:
     with served_source(source_of(tmp_path)) as server, server.page() as page:
         assert page.values["nt:/SmartDashboard/speed"] == pytest.approx(199 / 7)
-        status, answer = send(server, "C:\\logs\\practice.wpilog", practice().data)
+        status, answer = send_log(server, "C:\\logs\\practice.wpilog", practice().data)
         assert (status, "practice.wpilog is shown beside this" in answer["text"]) == (200, True)
         page.until(lambda: page.parts.get("branches"))
         (branch,) = page.parts["branches"]
@@ -163,10 +149,10 @@ def test_a_log_that_is_dropped_on_the_page_becomes_a_branch(tmp_path: Path) -> N
         asked = {"paths": ["nt:/SmartDashboard/speed"], "from": 2.0, "to": 2.5, "points": 99, "branch": branch["id"]}
         assert page.ask(type="plot", **asked)["series"]["nt:/SmartDashboard/speed"]["v"][0] == 25.0
         for name, data in (("photo.png", b"PNG"), ("empty.wpilog", b""), ("a.hoot", b"x")):
-            status, answer = send(server, name, data)
+            status, answer = send_log(server, name, data)
             assert (status, "branch" in answer) == (200, False)
             assert answer["text"].startswith(name)
-        send(server, "practice.wpilog", practice().data)  # of another directory, which a browser does not tell
+        send_log(server, "practice.wpilog", practice().data)  # of another directory, which a browser does not tell
         page.until(lambda: len(page.parts["branches"]) == 2)
         assert [each["name"] for each in page.parts["branches"]] == ["practice.wpilog", "practice (2).wpilog"]
 
@@ -192,7 +178,7 @@ def test_only_who_may_drive_can_drop_a_log(tmp_path: Path) -> None:
     with served_source(source_of(tmp_path)) as server:
         viewing = urlsplit(server.viewing_address).query
         for token in (viewing, "token=wrong"):
-            assert send(server, "practice.wpilog", practice().data, token)[0] == 403
+            assert send_log(server, "practice.wpilog", practice().data, token)[0] == 403
 
 
 def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from time import monotonic
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import quote, urlsplit
 
 from sim_robots import PATIENCE
 from websockets.sync.client import ClientConnection, connect
@@ -186,3 +186,16 @@ def served_source(source: Any, share: Share | None = None, allowed_hosts: tuple[
         front_end.close()
         thread.join(PATIENCE)
     assert codes == [0]
+
+
+def send_log(server: Served, name: str, data: bytes, token: str = "") -> tuple[int, dict[str, Any]]:
+    """Send a log as a page does on which it was dropped."""
+    parts = urlsplit(server.address)
+    connection = http.client.HTTPConnection(parts.netloc, timeout=PATIENCE)
+    try:
+        connection.request("POST", f"/log?{token or parts.query}&name={quote(name)}", data)
+        response = connection.getresponse()
+        text = response.read()
+        return response.status, json.loads(text) if response.status == 200 else {}
+    finally:
+        connection.close()

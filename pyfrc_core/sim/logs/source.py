@@ -42,6 +42,7 @@ class LogSource:
         branches: tuple[PastRun, ...] = (),
         what_if: Callable[[], str] | None = None,
     ) -> None:
+        self.log = log
         self.abilities, self.what_if = Abilities("log", over=True, replays=what_if is not None), what_if
         self.project, self.recorded, self.branches = project, log.run, branches
         self.title, self.when = log.run.name, log.when

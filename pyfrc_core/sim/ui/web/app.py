@@ -74,7 +74,7 @@ class WebApp:
         self._clients: dict[int, PageClient] = {}
         self._count = 0
         self._executor = ThreadPoolExecutor(1, "pyfrc sim: web commands")
-        self._sent_logs = SentLogs(collector)
+        self._sent_logs = SentLogs(source, collector)
         for ending, kind in _TYPES.items():
             mimetypes.add_type(kind, ending)
         routes = [

@@ -15,10 +15,13 @@ from starlette.requests import ClientDisconnect, Request
 from ....errors import PyfrcError
 from ....shell import quoted
 from ....temporary import temporary_directory
-from ...logs import open_log
+from ...logs import OpenedLog, open_log
 from ...logs.align import offset_of
+from ...logs.source import LogSource
+from ...logs.station import align
 
 if TYPE_CHECKING:
+    from ...engine.source import Source
     from .collector import Collector
 
 #: The largest log that a page may send, and all of them together, in bytes.
@@ -27,10 +30,14 @@ _LONGEST_NAME = 200
 
 
 class SentLogs:
-    """The logs that pages have sent, in files of their own as long as the page is served."""
+    """The logs that pages have sent, in files of their own as long as the page is served.
 
-    def __init__(self, collector: Collector) -> None:
+    :param source: what they are shown beside
+    """
+
+    def __init__(self, source: Source, collector: Collector) -> None:
         self._collector = collector
+        self._log = source.log if isinstance(source, LogSource) else None
         self._directory: tempfile.TemporaryDirectory[str] | None = None
         self._count = self._size = 0
 
@@ -68,14 +75,26 @@ class SentLogs:
         collector = self._collector
         name = _untaken(name, {branch.name for branch in collector.runs.branches})
         opened = open_log(file, collector.state.field.height, name)
-        offset = offset_of(opened.run.histories["network"], collector.runs.network, "enabled")
+        offset, how = self._alignment(opened)
         branch = collector.runs.add_branch(replace(opened.run, offset=offset or 0.0))
-        how = "where the robots were first enabled" if offset is not None else "at their start, since one says no mode"
         problem = f" But {opened.problem}." if opened.problem else ""
-        if opened.is_station:
-            problem += f" On one time line with the robot's log, pyfrc view shows it: pyfrc view LOG {quoted(name)}"
+        if opened.is_station and offset is not None:
+            problem += f" With the robot's log as one, pyfrc view shows it: pyfrc view LOG {quoted(name)}"
         collector.announce(f"{name} is a branch, aligned {how}.")
         return {"branch": branch, "text": f"{name} is shown beside this, aligned {how}.{problem}"}
+
+    def _alignment(self, opened: OpenedLog) -> tuple[float | None, str]:
+        """Return what is added to a log's times, and where that puts it; as `pyfrc view` does, where it knows."""
+        log = self._log
+        if log is not None and log.is_station != opened.is_station:
+            robot, station = (log, opened) if opened.is_station else (opened, log)
+            offset, how = align(robot, station)
+            if offset is None:
+                return None, f"at their start: {how}"
+            return offset if opened.is_station else -offset, f"where they agree: {how}"
+        offset = offset_of(opened.run.histories["network"], self._collector.runs.network, "enabled")
+        how = "where the robots were first enabled" if offset is not None else "at their start, since one says no mode"
+        return offset, how
 
 
 def _untaken(name: str, taken: set[str]) -> str:
