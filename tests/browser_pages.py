@@ -201,6 +201,11 @@ class Seen:
         assert self.simulation.snapshot is not None
         return self.simulation.snapshot.values.get(path)
 
+    def written(self, name: str) -> list[Any]:
+        """Return what the robot has been sent for a value of SmartDashboard."""
+        path = f"nt:/SmartDashboard/{name}"
+        return [step.writes[path] for step in self.simulation.script().steps if path in step.writes]
+
     def button(self, name: str) -> Locator:
         return self.page.get_by_role("button", name=name, exact=True)
 

@@ -36,12 +36,6 @@ def with_widgets(file: Path, *given: dict[str, Any], name: str = "Drive") -> Non
     file.write_text(json.dumps({"dashboards": {name: {"widgets": places}}}, indent=1), "utf-8")
 
 
-def written(person: Seen, name: str) -> list[Any]:
-    """Return what the robot has been sent for a value."""
-    path = f"nt:{TABLE}{name}"
-    return [step.writes[path] for step in person.simulation.script().steps if path in step.writes]
-
-
 def put(person: Seen, row: Locator, grid: Locator, place: tuple[float, float]) -> None:
     """Drag a row of NetworkTables to a place on the grid, where the pointer must move twice to be over it."""
     row.hover()
@@ -102,10 +96,10 @@ def test_a_team_makes_a_dashboard(file: Path, person: Seen) -> None:
     assert page.locator(".dashboard .panel-tools").count() == 0
     shown(person, "number").get_by_text("0.50").wait_for()
     shown(person, "switch").locator("label.switch").click()
-    person.until(lambda: written(person, "flag") == [True])
+    person.until(lambda: person.written("flag") == [True])
     box = shown(person, "pid").get_by_label("p", exact=True)
     person.set_number(box, "3.5")
-    person.until(lambda: written(person, "Turn/p") == [3.5])
+    person.until(lambda: person.written("Turn/p") == [3.5])
     person.button("Leave the full screen").click()
     # Cancelling brings back what was saved.
     person.button("Arrange").click()

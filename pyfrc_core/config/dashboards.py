@@ -29,6 +29,10 @@ Kind = Literal[
     "lamp",
     "switch",
     "gauge",
+    "slider",
+    "gyro",
+    "power",
+    "color",
     "graph",
     "chooser",
     "pid",
@@ -66,17 +70,25 @@ class Widget(_DashboardPart):
         "NetworkTables, or a path into hal_data.",
     )
     more: Annotated[tuple[_Text, ...], Array()] = Field(
-        default=(), description="Further topics: of a graph its other curves; of a swerve drive what is wanted."
+        default=(),
+        description="Further topics: of a graph its other curves; of a swerve drive what is wanted; of a table of "
+        "values all of them.",
     )
     title: _Text = Field(default="", description="Its title. Default: the last part of the topic.")
     x: _Cell = Field(description="Its first column, from 0.")
     y: _Cell = Field(description="Its first row, from 0.")
     w: _Cells = Field(description="Its width, in columns.")
     h: _Cells = Field(description="Its height, in rows.")
-    min: Number | None = Field(default=None, description="The lowest value of a gauge or a graph.")
+    min: Number | None = Field(default=None, description="The lowest value of a gauge, a slider or a graph.")
     max: Number | None = Field(
         default=None,
-        description="The highest value of a gauge or a graph; of a swerve drive its highest speed, in m/s.",
+        description="The highest value of a gauge, a slider or a graph; of a swerve drive its highest speed, in m/s.",
+    )
+    step: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)] | None = Field(
+        default=None, description="The steps of a slider. Default: about a hundredth of its range."
+    )
+    counterclockwise: Annotated[bool, Field(strict=True)] | None = Field(
+        default=None, description="Whether the angle of a gyro is positive counterclockwise. Default: clockwise."
     )
     decimals: Annotated[int, Field(strict=True, ge=0, le=8)] | None = Field(
         default=None, description="The digits behind the point. Default: as many as the values need."

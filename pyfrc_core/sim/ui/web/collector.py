@@ -93,6 +93,13 @@ class Collector:
         """The project's directory."""
         return self._source.project.root
 
+    @property
+    def robot(self) -> str | None:
+        """The host of the robot elsewhere that is shown; None where there is none."""
+        if self._source.abilities.kind != "robot":
+            return None
+        return (self._source.status.network_address or "").rpartition(":")[0]
+
     def start(self) -> None:
         """Begin to follow it."""
         self._thread.start()

@@ -118,6 +118,10 @@ class PageClient:
                 return await asyncio.to_thread(self._dashboards.found, known)
             case "save_dashboard":
                 return await self._in_order(lambda commands: self._dashboards.save(message))
+            case "elastic_layout":
+                if self._commands is None:
+                    raise CommandError(_READ_ONLY)
+                return await asyncio.to_thread(self._dashboards.elastic_layout, self._collector.robot)
             case "values":
                 return await asyncio.to_thread(self._values, message)
             case "plot":

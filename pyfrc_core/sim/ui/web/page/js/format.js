@@ -65,6 +65,23 @@ export function quoted(text) {
   return `“${text.length > 40 ? `${text.slice(0, 40)}…` : text}”`;
 }
 
+// The decimals that a hundredth of a range has.
+export function stepDecimals(range) {
+  return range > 0 ? Math.min(Math.max(2 - Math.floor(Math.log10(range)), 0), 8) : 2;
+}
+
+// The same angle in degrees, above -180 and up to 180.
+export function wrapped(degrees) {
+  const turned = degrees % 360;
+  return turned > 180 ? turned - 360 : turned <= -180 ? turned + 360 : turned;
+}
+
+// The colours that a value is: "#RRGGBB", or a list of these; none for others.
+export function colorsIn(value) {
+  const found = Array.isArray(value) ? value : [value];
+  return found.every((each) => /^#[0-9a-f]{6}$/i.test(each)) ? found : [];
+}
+
 // Any value in one line.
 export function valueText(value) {
   const simple = plain(value);

@@ -126,6 +126,23 @@ class Dashboards {
     if (await this.#write(dashboard, null)) this.#record(dashboard, null);
   }
 
+  // Take over a layout for Elastic, of the robot or of the project: each of its tabs becomes a dashboard.
+  async takeLayout() {
+    const found = await ask("elastic_layout").catch((error) => model.set("problem", error.message));
+    if (!found) return;
+    const taken = [];
+    for (const [name, content] of Object.entries(found.dashboards)) {
+      const [before, after] = [this.inFile(name), { ...content, name }];
+      if (before && !same(before, after) && !(await askWhether(`There is a dashboard “${name}” already. Replace it? Undo brings it back.`, "Replace it"))) continue;
+      if (!(await this.#write(before, after))) return;
+      this.#record(before, after);
+      taken.push(name);
+    }
+    if (taken.length) this.choose(taken[0]);
+    const missing = found.missing.length ? ` Not shown, since there is no such widget here: ${found.missing.join("; ")}.` : "";
+    model.set("problem", `From ${found.from}: ${taken.join(", ") || "nothing"}.${missing}`);
+  }
+
   // -- steps
 
   // Undo a step, or do the next one again: in the draft while one is arranged, otherwise in the file.

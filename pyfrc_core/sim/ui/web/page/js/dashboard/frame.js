@@ -66,7 +66,7 @@ export class WidgetFrame extends Component {
     const kind = KINDS[widget.kind];
     if (!kind) return html`<p class="missing"><span>This page cannot show “${widget.kind}”.</span></p>`;
     const path = pathOf(widget.topic ?? "");
-    if (!widget.topic && !kind.alone) return html`<p class="missing"><span>No topic is chosen: “Arrange”, then the settings of this widget.</span></p>`;
+    if (!widget.topic && !widget.more?.length && !kind.alone) return html`<p class="missing"><span>No topic is chosen: “Arrange”, then the settings of this widget.</span></p>`;
     if (widget.topic && !isPublished(path)) return html`<p class="missing"><span>Not published: <code>${widget.topic}</code></span></p>`;
     return html`<${kind.component} key=${widget.kind} id=${`widget ${index}`} widget=${widget} path=${path} title=${title} />`;
   }

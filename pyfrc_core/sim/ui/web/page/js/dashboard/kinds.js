@@ -4,9 +4,10 @@ import {
   AlertsWidget, CameraWidget, ChooserWidget, CommandWidget, FieldWidget, GraphWidget, MatchTime, MechanismWidget, PidWidget,
   RobotState, SwerveWidget, ValuesWidget,
 } from "#js/dashboard/panel_widgets.js";
+import { ColorWidget, GyroWidget, PowerWidget, SliderWidget } from "#js/dashboard/instruments.js";
 import { Gauge, InputBox, Lamp, NumberText, SwitchWidget, Text } from "#js/dashboard/value_widgets.js";
 import { typeOf } from "#js/dashboard/topics.js";
-import { plain } from "#js/format.js";
+import { colorsIn, plain } from "#js/format.js";
 import { model } from "#js/model.js";
 import { CAMERAS, cameraNames } from "#js/panels/cameras.js";
 import { valueIn } from "#js/parts.js";
@@ -19,10 +20,14 @@ export const KINDS = {
   lamp: { title: "Lamp", size: [1, 1], component: Lamp },
   switch: { title: "Switch", size: [2, 1], component: SwitchWidget },
   gauge: { title: "Gauge", size: [2, 2], component: Gauge, settings: ["min", "max", "unit", "decimals"] },
+  slider: { title: "Slider", size: [3, 1], component: SliderWidget, settings: ["min", "max", "step", "unit", "decimals"] },
+  gyro: { title: "Gyro", size: [2, 2], component: GyroWidget, settings: ["counterclockwise"] },
+  power: { title: "Power distribution", size: [4, 4], component: PowerWidget },
+  color: { title: "Colour", size: [1, 1], component: ColorWidget },
   graph: { title: "Graph", size: [4, 3], component: GraphWidget, settings: ["more", "seconds", "min", "max"] },
   chooser: { title: "Chooser", size: [3, 1], component: ChooserWidget },
   pid: { title: "PID controller", size: [3, 3], component: PidWidget },
-  values: { title: "Table of values", size: [3, 3], component: ValuesWidget },
+  values: { title: "Table of values", size: [3, 3], component: ValuesWidget, settings: ["more"] },
   field: { title: "Field", size: [6, 4], component: FieldWidget, alone: true },
   mechanism: { title: "Mechanism", size: [3, 3], component: MechanismWidget, alone: true },
   swerve: { title: "Swerve drive", size: [3, 4], component: SwerveWidget, settings: ["more", "max"], alone: true },
@@ -42,6 +47,8 @@ const BY_TYPE = {
   Field2d: ["field"],
   Mechanism2d: ["mechanism"],
   SwerveDrive: ["swerve", "values"],
+  Gyro: ["gyro", "values"],
+  PowerDistribution: ["power", "values"],
   Alerts: ["alerts"],
   Command: ["command"],
 };
@@ -64,7 +71,8 @@ export function kindsFor(path) {
   const value = plain(valueIn(model.shown.values, path));
   const type = typeOf(path);
   if (typeof value === "boolean") return ["lamp", "switch", "graph", "text"];
-  if (typeof value === "number") return /match ?_?time/i.test(path) ? ["time", "number", "gauge"] : ["number", "gauge", "graph", "input", "time"];
+  if (typeof value === "number") return /match ?_?time/i.test(path) ? ["time", "number", "gauge"] : ["number", "gauge", "graph", "slider", "input", "gyro", "time"];
+  if (colorsIn(value).length) return ["color", "text", "input"];
   if (typeof value === "string") return ["text", "input", "graph"];
   if (value !== undefined) return ["text", "input"];
   if (CAMERA.test(path)) return ["camera"];
@@ -74,9 +82,9 @@ export function kindsFor(path) {
   return Object.keys(KINDS);
 }
 
-// The settings of a new gauge: limits of which its value is inside.
+// The settings of a new gauge or slider: limits of which its value is inside.
 export function firstSettings(kind, path) {
-  if (kind !== "gauge") return {};
+  if (kind !== "gauge" && kind !== "slider") return {};
   const value = plain(valueIn(model.shown.values, path));
   const size = Math.abs(typeof value === "number" && Number.isFinite(value) ? value : 0);
   const max = size <= 1 ? 1 : 10 ** Math.ceil(Math.log10(size + 1e-9));

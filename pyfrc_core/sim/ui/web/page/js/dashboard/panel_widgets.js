@@ -1,7 +1,7 @@
 // Widgets that show more than one value: the page's own panels without their tools, and cards of what robot code publishes.
 import { command, write } from "#js/connection.js";
 import { Select } from "#js/controls.js";
-import { boundPath, pathOf, topicOf, typeOf } from "#js/dashboard/topics.js";
+import { boundPath, pathOf, topicOf, typeOf, valuesIn } from "#js/dashboard/topics.js";
 import { countdown, plain } from "#js/format.js";
 import { robotState } from "#js/link.js";
 import { model } from "#js/model.js";
@@ -77,23 +77,25 @@ export function SwerveWidget({ widget }) {
 
 // -- tables
 
-// A widget that `content({ path, name, type }, values)` renders whenever a value of its table has changed.
+// A widget that `content({ path, name, type }, values, listed)` renders whenever a value of its table has changed, or of its
+// list of paths.
 const tableWidget = (content) =>
   class extends Live {
     parts = ["values", "paths", "shown", "hello", "choosers"];
     interval = 80;
 
-    render({ path, title }) {
-      model.need(this, [`${path}/`]);
-      return content({ path, name: title, type: typeOf(path) }, model.shown.values);
+    render({ path, title, widget }) {
+      const listed = widget.more?.length ? widget.more.map(pathOf) : null;
+      model.need(this, listed ?? [`${path}/`]);
+      return content({ path, name: title, type: typeOf(path) }, model.shown.values, listed);
     }
   };
 
 // From 2027 on, a ProfiledPIDController has most of them in a table of its own.
 const GAINS = ["p", "i", "d", "f", "setpoint", "goal", "measurement", "error"].flatMap((name) => [name, `controller/${name}`]);
 
-export const ValuesWidget = tableWidget((folder, values) => html`<${ValuesCard} folder=${folder} values=${values} />`);
-export const PidWidget = tableWidget((folder, values) => html`<${ValuesCard} folder=${folder} values=${values} only=${GAINS} />`);
+export const ValuesWidget = tableWidget((folder, values, listed) => html`<${ValuesCard} folder=${folder} values=${values} paths=${listed} />`);
+export const PidWidget = tableWidget((folder, values) => html`<${ValuesCard} folder=${folder} values=${values} paths=${valuesIn(folder.path, GAINS)} />`);
 export const AlertsWidget = tableWidget((folder, values) => html`<${Alerts} folder=${folder} values=${values} />`);
 export const CommandWidget = tableWidget((folder, values) => html`<${CommandCard} folder=${folder} values=${values} />`);
 export const ChooserWidget = tableWidget(({ path, name }, values) => {

@@ -24,6 +24,11 @@ export function isPublished(path) {
   return false;
 }
 
+// The paths of those values of a table that are published.
+export function valuesIn(path, names) {
+  return names.map((name) => `${path}/${name}`).filter((each) => model.shown.values.has(each));
+}
+
 // The type of a table that robot code has published, such as "PIDController", or of a topic; otherwise "".
 export function typeOf(path) {
   const type = model.shown.values.get(`${path}/.type`);

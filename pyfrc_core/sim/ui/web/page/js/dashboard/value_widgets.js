@@ -10,7 +10,7 @@ import { ValueBox } from "#js/value_box.js";
 import { Bound, html } from "#js/view.js";
 
 // Renders again whenever its value changes.
-class ValueWidget extends Bound {
+export class ValueWidget extends Bound {
   get boundPath() {
     return boundPath(this.props.path);
   }

@@ -1,25 +1,28 @@
 // The settings of a widget: what it shows, and how.
-import { Select, TextBox } from "#js/controls.js";
-import { KINDS, kindsFor } from "#js/dashboard/kinds.js";
+import { Select, Switch, TextBox } from "#js/controls.js";
+import { KINDS, firstSettings, kindsFor } from "#js/dashboard/kinds.js";
 import { pathOf, topicOf } from "#js/dashboard/topics.js";
 import { typedNumber } from "#js/format.js";
 import { model } from "#js/model.js";
 import { html } from "#js/view.js";
 
 const MOST_OFFERED = 500;
-const NUMBERS = { min: "Minimum", max: "Maximum", decimals: "Decimals", seconds: "Seconds" };
+const NUMBERS = { min: "Minimum", max: "Maximum", step: "Step", decimals: "Decimals", seconds: "Seconds" };
 
 export function WidgetSettings({ widget, change }) {
-  const kinds = [...new Set([widget.kind, ...kindsFor(pathOf(widget.topic ?? ""))])].filter((kind) => KINDS[kind]);
+  const path = pathOf(widget.topic ?? "");
+  const kinds = [...new Set([widget.kind, ...kindsFor(path)])].filter((kind) => KINDS[kind]);
   const settings = KINDS[widget.kind]?.settings ?? [];
   return html`<div class="form  widget-settings">
-    <label>Show as <${Select} value=${widget.kind} options=${kinds.map((kind) => [kind, KINDS[kind].title])} set=${(kind) => change({ kind })} /></label>
+    <label>Show as <${Select} value=${widget.kind} options=${kinds.map((kind) => [kind, KINDS[kind].title])} set=${(kind) => change({ ...firstSettings(kind, path), ...widget, kind })} /></label>
     <${TextSetting} label="Title" text=${widget.title} set=${(title) => change({ title })} />
     <${TextSetting} label="Topic" text=${widget.topic} list="topics" set=${(topic) => change({ topic })} />
     ${settings.includes("more") && html`<${TextSetting} label=${widget.kind === "graph" ? "Further curves" : "Further topics"} text=${(widget.more ?? []).join(", ")}
       set=${(text) => change({ more: text.split(",").map((each) => each.trim()).filter(Boolean) })} />`}
     ${settings.includes("unit") && html`<${TextSetting} label="Unit" text=${widget.unit} set=${(unit) => change({ unit: unit.slice(0, 20) })} />`}
     ${Object.keys(NUMBERS).filter((name) => settings.includes(name)).map((name) => html`<${NumberSetting} key=${name} name=${name} value=${widget[name]} change=${change} />`)}
+    ${settings.includes("counterclockwise") && html`<label>CCW positive
+      <${Switch} label="Angles are positive counterclockwise" on=${Boolean(widget.counterclockwise)} set=${(on) => change({ counterclockwise: on || undefined })} /></label>`}
     <datalist id="topics">${offered().map((topic) => html`<option key=${topic} value=${topic}></option>`)}</datalist>
   </div>`;
 }

@@ -106,6 +106,7 @@ export class DashboardPanel extends Live {
     const items = names.map((each) => ({ text: each, checked: each === name, act: () => dashboards.choose(each) }));
     if (items.length) items.push({ separator: true });
     items.push({ text: "New dashboard…", act: createDashboard, disabled });
+    items.push({ text: "From a layout of Elastic", note: robotsLayout(), act: () => dashboards.takeLayout(), disabled });
     if (!name) return items;
     const copy = async () => {
       const given = await askName(`A copy of “${name}” is called`, `${name} 2`);
@@ -123,7 +124,8 @@ export class DashboardPanel extends Live {
   nothing() {
     if (model.readonly) return html`<p class="empty">This project has no dashboards. Who can drive the robot can make one.</p>`;
     return html`<div class="empty"><p>A dashboard has widgets, arranged as your team wants them. It is kept in <code>sim/dashboards.json</code>, beside the code.</p>
-      <p><button class="primary" onClick=${createDashboard}>New dashboard…</button></p></div>`;
+      <p><button class="primary" onClick=${createDashboard}>New dashboard…</button>
+        <button class="quiet" title=${robotsLayout()} onClick=${() => dashboards.takeLayout()}>From a layout of Elastic</button></p></div>`;
   }
 
   board(shown) {
@@ -232,6 +234,11 @@ export class DashboardPanel extends Live {
   escape = (event) => {
     if (event.key === "Escape" && this.state.full) this.leaveFull();
   };
+}
+
+// Where the layout for Elastic is that becomes dashboards.
+function robotsLayout() {
+  return model.hello.source.kind === "robot" ? "the robot's" : "deploy/elastic-layout.json";
 }
 
 // Drivers must not take what they see for the present when it is not: the rest of the page does not say so in the full screen.

@@ -146,21 +146,22 @@ class Text extends Painted {
   }
 }
 
-class Toggle extends Painted {
+export class Toggle extends Painted {
   paint(value) {
     this.element.current.checked = Boolean(value);
   }
 
   render({ row, label }) {
-    return html`<${Switch} elementRef=${this.element} label=${label} disabled=${!model.mayDrive} set=${(on) => write({ [row.paths[0]]: on })} />`;
+    return html`<${Switch} elementRef=${this.element} label=${label} disabled=${!model.mayWrite} set=${(on) => write({ [row.paths[0]]: on })} />`;
   }
 }
 
 function NumberBox({ row, label }) {
-  return html`<span class="number-box"><${ValueBox} class="number" inputmode="decimal" path=${row.paths[0]} label=${label} disabled=${!model.mayDrive} /><span class="unit">${row.unit}</span></span>`;
+  return html`<span class="number-box"><${ValueBox} class="number" inputmode="decimal" path=${row.paths[0]} label=${label} /><span class="unit">${row.unit}</span></span>`;
 }
 
-class Slider extends Painted {
+// row: { paths, low, high, decimals, unit, step: any without it }
+export class Slider extends Painted {
   paint(value) {
     const slider = this.element.current.firstElementChild;
     if (!this.dragging) slider.value = String(value ?? 0);
@@ -170,9 +171,9 @@ class Slider extends Painted {
 
   render({ row, label }) {
     return html`<span class="slider flex" ref=${this.element}>
-      <input type="range" min=${row.low} max=${row.high} step="any" aria-label=${label} disabled=${!model.mayDrive}
+      <input type="range" min=${row.low} max=${row.high} step=${row.step ?? "any"} aria-label=${label} disabled=${!model.mayWrite}
         onPointerDown=${() => (this.dragging = true)} onPointerUp=${() => (this.dragging = false)} onInput=${this.slide} />
-      <${ValueBox} class="number" inputmode="decimal" path=${row.paths[0]} label=${`${label}, as a number`} disabled=${!model.mayDrive} />
+      <${ValueBox} class="number" inputmode="decimal" path=${row.paths[0]} label=${`${label}, as a number`} />
       <span class="unit">${row.unit}</span></span>`;
   }
 

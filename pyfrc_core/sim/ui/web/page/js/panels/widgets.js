@@ -56,13 +56,11 @@ export function CommandCard({ folder, values }) {
     <button class=${running ? "stop" : "go"} disabled=${!model.mayWrite} onClick=${() => write({ [`${folder.path}/running`]: !running })}>${running ? "Cancel" : "Run"}</button></div>`;
 }
 
-// only: the names of the values to show, in this order; all without it
-export function ValuesCard({ folder, values, only = null }) {
-  const rows = only
-    ? only.map((name) => [`${folder.path}/${name}`, values.get(`${folder.path}/${name}`)]).filter(([, value]) => value !== undefined)
-    : [...values].filter(([path]) => path.startsWith(`${folder.path}/`) && !path.slice(folder.path.length).includes("/."));
+// paths: those of the values to show, in this order; without it, all of the table
+export function ValuesCard({ folder, values, paths = null }) {
+  const shown = paths ?? [...values.keys()].filter((path) => path.startsWith(`${folder.path}/`) && !path.slice(folder.path.length).includes("/."));
   return html`<div class="card"><h4>${folder.name}<span class="chip">${folder.type}</span></h4>
-    ${rows.map(([path, value]) => html`<${ValueRow} key=${path} path=${path} name=${only ? path.split("/").pop() : path.slice(folder.path.length + 1)} value=${plain(value)} />`)}</div>`;
+    ${shown.map((path) => html`<${ValueRow} key=${path} path=${path} name=${paths ? path.split("/").pop() : path.slice(folder.path.length + 1)} value=${plain(values.get(path))} />`)}</div>`;
 }
 
 function ValueRow({ path, name, value }) {
