@@ -5,9 +5,11 @@ from __future__ import annotations
 import faulthandler
 import importlib
 import os
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Sequence
 from contextlib import suppress
+from itertools import chain
 from pathlib import Path
+from typing import TypeVar
 
 import pytest
 
@@ -17,17 +19,25 @@ from pyfrc_core.season import CURRENT
 #: Seconds that one test may take by day and at night, its fixtures included: only a test that hangs takes so long.
 TEST_LIMIT, SLOW_TEST_LIMIT = 120.0, 900.0
 
-#: The files with the longest tests, which start first: no worker is left with one of them at the end.
+#: The files with the longest tests, by day and at night.
 LONGEST = {
-    *("test_deploy_command", "test_deploy_installs", "test_deploy_over_ssh", "test_docs", "test_fuzz_campaign"),
-    *(
-        "test_remembered_passes",
-        "test_sim_session",
-        "test_sim_web_page_journey",
-        "test_sim_window",
-        "test_virtual_robot",
-    ),
+    "test_create_physics",
+    "test_deploy_command",
+    "test_deploy_installs",
+    "test_deploy_over_ssh",
+    "test_docs",
+    "test_fuzz_campaign",
+    "test_migrate_odd_projects",
+    "test_remembered_passes",
+    "test_sim_log",
+    "test_sim_log_competition",
+    "test_sim_session",
+    "test_sim_web_page_journey",
+    "test_sim_window",
+    "test_virtual_robot",
 }
+
+Test = TypeVar("Test")
 
 _STDERR = pytest.StashKey[int]()
 
@@ -39,21 +49,43 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--run-slow", action="store_true", help="run the tests that are marked as slow, too")
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Let the longest start first; leave out the slow ones, unless they are asked for: all of them, or one by its name.
+@pytest.hookimpl(wrapper=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Generator[None, object, object]:
+    """Leave out the slow ones, unless they are asked for: all of them, or one by its name. The longest start first.
 
     Tests with a browser are slow, but for the one with the mark ``journey``.
     """
-    items.sort(key=lambda item: item.path.stem not in LONGEST)
     for item in items:
         if "browser" in getattr(item, "fixturenames", ()) and not item.get_closest_marker("journey"):
             item.add_marker("slow")
-    if config.getoption("run_slow") or any("::" in each for each in config.args):
-        return
-    slow = [item for item in items if item.get_closest_marker("slow")]
-    if slow:
+    if not config.getoption("run_slow") and not any("::" in each for each in config.args):
+        slow = [item for item in items if item.get_closest_marker("slow")]
         config.hook.pytest_deselected(items=slow)
         items[:] = [item for item in items if not item.get_closest_marker("slow")]
+    result = yield  # `-m` and others leave out more
+    workers = getattr(config, "workerinput", {"workercount": 1})["workercount"]
+    items[:] = longest_first(items, lambda item: item.path.stem, workers)
+    return result
+
+
+def longest_first(tests: Sequence[Test], file_of: Callable[[Test], str], workers: int) -> list[Test]:
+    """Return the tests so that each worker begins with some of the `LONGEST` files, all tests of a file with one.
+
+    pytest-xdist gives each worker a part of the list, one after the other, and those that have ended their parts take
+    over the ends of others.
+    """
+    files: dict[str, list[Test]] = {}
+    for test in tests:
+        files.setdefault(file_of(test), []).append(test)
+    longest = [files.pop(name) for name in list(files) if name in LONGEST]
+    others, ordered = list(chain.from_iterable(files.values())), list[Test]()
+    for number in range(workers):
+        share = (len(tests) - len(ordered)) // (workers - number)
+        first = list(chain.from_iterable(longest[number::workers]))
+        rest = max(share - len(first), 0)
+        ordered += first + others[:rest]
+        del others[:rest]
+    return ordered + others
 
 
 def pytest_configure(config: pytest.Config) -> None:

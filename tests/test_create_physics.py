@@ -400,13 +400,6 @@ EMPTY = {
 }
 
 
-@pytest.mark.slow
-def test_a_robot_with_nothing_at_all(make_project: MakeProject) -> None:
-    project = make_project(EMPTY)
-    assert "no drivetrain recognised" in create(project)
-    run_tests(project, "--builtin", "--", "-k", "operator")
-
-
 def test_existing_files_are_left_alone(make_project: MakeProject) -> None:
     project = make_project(EMPTY | {"physics.py": "# mine\n"})
     assert create(project).startswith("no drivetrain recognised\nunchanged: physics.py (exists)\nwrote sim/config.json")
@@ -428,7 +421,7 @@ IN_THE_WAY = {
 @pytest.mark.parametrize(("file", "message"), IN_THE_WAY.values(), ids=IN_THE_WAY.keys())
 def test_something_else_in_the_place_of_a_file(make_project: MakeProject, file: str, message: str) -> None:
     project = make_project(EMPTY | {file: "# mine\n"})
-    result = project.run("create-physics")
+    result = project.run_here("create-physics")
     assert (result.code, result.stdout) == (2, "")
     assert result.first_error == message
     assert not any((project.path / name).is_file() for name in FILES)

@@ -38,7 +38,7 @@ def files_in(directory: Path) -> dict[str, bytes]:
 
 def test_the_list_tells_each_template_and_what_it_needs(make_project: MakeProject) -> None:
     project = make_project({})
-    shown = project.run("init", "--list")
+    shown = project.run_here("init", "--list")
     assert shown.code == 0
     listed = re.findall(r"^(\S+)  +(\S.*)$", shown.stdout, re.MULTILINE)
     assert [name for name, _ in listed] == list(TEMPLATES)
@@ -51,14 +51,14 @@ def test_the_list_tells_each_template_and_what_it_needs(make_project: MakeProjec
 
 def test_without_a_template_it_is_the_default(make_project: MakeProject) -> None:
     project = make_project({})
-    assert project.run("init", "one").code == 0
-    assert project.run("init", "two", "--template", DEFAULT).code == 0
+    assert project.run_here("init", "one").code == 0
+    assert project.run_here("init", "two", "--template", DEFAULT).code == 0
     assert files_in(project.path / "one") == files_in(project.path / "two")
 
 
 def test_a_template_that_there_is_not_is_told_with_those_there_are(make_project: MakeProject) -> None:
     project = make_project({})
-    result = project.run("init", "--template", "tnak")
+    result = project.run_here("init", "--template", "tnak")
     assert result.code == 2
     assert all(name in result.stderr for name in TEMPLATES)
     assert files_in(project.path) == {}
@@ -113,7 +113,7 @@ def test_the_teams_number_is_where_deploys_and_todays_tools_look(make_project: M
     from pyfrc_core.project import find_project
 
     project = make_project({})
-    assert project.run("init", "--team", str(team)).code == 0
+    assert project.run_here("init", "--team", str(team)).code == 0
     project_settings = tomllib.loads((project.path / "pyproject.toml").read_text("utf-8"))
     assert project_settings["tool"]["robotpy"]["team_number"] == team
     assert find_target(find_project(project.path)).team == team
@@ -124,7 +124,7 @@ def test_without_a_number_nothing_claims_one(make_project: MakeProject) -> None:
     from pyfrc_core.project import find_project
 
     project = make_project({})
-    assert project.run("init").code == 0
+    assert project.run_here("init").code == 0
     with pytest.raises(UsageError, match="no team number"):
         find_target(find_project(project.path))
 
@@ -132,7 +132,7 @@ def test_without_a_number_nothing_claims_one(make_project: MakeProject) -> None:
 @pytest.mark.parametrize("team", ["0", "-3", "25600"])
 def test_a_number_that_no_team_can_have_is_refused(make_project: MakeProject, team: str) -> None:
     project = make_project({})
-    result = project.run("init", f"--team={team}")
+    result = project.run_here("init", f"--team={team}")
     assert result.code == 2
     assert result.first_error == f"--team: {team} is no team number: one is from 1 to 25599"
     assert files_in(project.path) == {}
@@ -144,7 +144,7 @@ def test_a_number_that_no_team_can_have_is_refused(make_project: MakeProject, te
 @pytest.mark.parametrize("name", ["a:b", "what?", "con", "LPT1.txt", "robot.", "robot ", "a\tb", 'a"b', "a|b"])
 def test_a_name_that_not_every_computer_can_have_is_refused(make_project: MakeProject, name: str) -> None:
     project = make_project({})
-    result = project.run("init", name)
+    result = project.run_here("init", name)
     assert result.code == 2
     assert f"{name!r} is no name for a directory" in result.first_error
     assert list(project.path.iterdir()) == []
@@ -152,7 +152,7 @@ def test_a_name_that_not_every_computer_can_have_is_refused(make_project: MakePr
 
 def test_a_name_that_looks_like_an_option_is_refused(make_project: MakeProject) -> None:
     project = make_project({})
-    assert project.run("init", "--", "-robot").code == 2
+    assert project.run_here("init", "--", "-robot").code == 2
     assert list(project.path.iterdir()) == []
 
 
@@ -185,7 +185,7 @@ def test_a_name_is_taken_or_refused_and_nothing_of_it_is_left(name: str) -> None
 def test_a_file_where_a_directory_has_to_be_is_in_the_way(make_project: MakeProject, place: str) -> None:
     project = make_project({place: "mine\n"})
     before = files_in(project.path)
-    result = project.run("init")
+    result = project.run_here("init")
     assert result.code == 2
     assert f"nothing was written: {place} exists already" in result.stderr
     assert files_in(project.path) == before
@@ -194,7 +194,7 @@ def test_a_file_where_a_directory_has_to_be_is_in_the_way(make_project: MakeProj
 def test_other_files_in_the_directory_are_left_alone(make_project: MakeProject) -> None:
     project = make_project({"notes.txt": "mine\n", "tests/notes.txt": "mine too\n"})
     before = files_in(project.path)
-    result = project.run("init", "--template", "timed", "--yes")
+    result = project.run_here("init", "--template", "timed", "--yes")
     assert result.code == 0, result.output
     assert before.items() <= files_in(project.path).items()
 
@@ -202,14 +202,14 @@ def test_other_files_in_the_directory_are_left_alone(make_project: MakeProject) 
 def test_beside_other_files_it_writes_nothing_where_it_cannot_ask(make_project: MakeProject) -> None:
     project = make_project({"b.txt": "mine\n", "letters/a.txt": "", "1.txt": "", "2.txt": ""})
     before = files_in(project.path)
-    result = project.run("init")
+    result = project.run_here("init")
     assert result.code == 2
     assert result.first_error == (
         f"nothing was written: {project.path} has other files: 1.txt, 2.txt, b.txt and 1 more"
     )
     assert "pyfrc init my-robot. To create the project beside them, add --yes." in result.stderr
     assert files_in(project.path) == before
-    assert project.run("init", "new").code == 0
+    assert project.run_here("init", "new").code == 0
 
 
 @pytest.mark.parametrize(("typed", "written"), [("y\n", True), ("n\n", False)])
@@ -226,13 +226,13 @@ def test_beside_other_files_it_asks(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 def test_hidden_files_and_environments_are_no_other_files(make_project: MakeProject) -> None:
     project = make_project({".git/config": "", ".wpilib/x.json": "{}", "venv/pyvenv.cfg": ""})
-    assert project.run("init").code == 0
+    assert project.run_here("init").code == 0
 
 
 def test_every_file_that_is_there_is_named(make_project: MakeProject) -> None:
     project = make_project({"physics.py": "", "sim/config.json": "{}", ".gitignore": ""})
     before = files_in(project.path)
-    result = project.run("init")
+    result = project.run_here("init")
     assert result.code == 2
     assert ".gitignore, physics.py, sim/config.json exist already" in result.stderr
     assert files_in(project.path) == before
@@ -258,7 +258,7 @@ def test_add_tests_writes_the_documented_file_once(make_project: MakeProject, co
 
 def test_the_added_tests_run_the_robot(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT})
-    assert project.run("add-tests").code == 0
+    assert project.run_here("add-tests").code == 0
     result = project.run("test", "--", "-v")
     assert result.code == 0, result.output
     assert {"test_autonomous", "test_disabled", "test_operator_control", "test_practice", "test_fuzz"} == {
@@ -275,7 +275,7 @@ def test_add_tests_goes_where_the_tests_are(make_project: MakeProject) -> None:
 
 def test_add_tests_does_not_take_a_file_for_a_directory(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, "tests": "a file\n"})
-    result = project.run("add-tests")
+    result = project.run_here("add-tests")
     assert result.code == 2
     assert "tests is a file" in result.first_error
     assert (project.path / "tests").read_text() == "a file\n"
@@ -283,7 +283,7 @@ def test_add_tests_does_not_take_a_file_for_a_directory(make_project: MakeProjec
 
 def test_add_tests_needs_a_project(make_project: MakeProject) -> None:
     project = make_project({})
-    result = project.run("add-tests")
+    result = project.run_here("add-tests")
     assert result.code == 2
     assert "no robot project found" in result.first_error
     assert list(project.path.iterdir()) == []

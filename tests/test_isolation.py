@@ -680,15 +680,6 @@ def test_an_error_in_the_teardown_of_a_shared_fixture_is_told(make_project: Make
 # -- where tests are ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
-def test_plain_pytest_in_a_robot_project_has_the_fixtures(few: RobotProject) -> None:
-    in_project = few.pytest("-v", "-k", "one or four")
-    assert in_project.code == 0, in_project.output
-    from_above = few.pytest("-v", few.path / "tests" / "test_few.py", "-k", "one or four", cwd=few.path.parent)
-    assert from_above.code == 0, from_above.output
-    assert "2 passed" in from_above.stdout
-
-
 def test_plain_pytest_elsewhere_is_left_alone(make_project: MakeProject) -> None:
     tests = """
         import sys
@@ -727,89 +718,6 @@ def test_tests_beside_the_robots_directory_are_found(make_project: MakeProject) 
     assert list(result.outcomes().values()) == ["PASSED", "FAILED"]
     line = project.line("tests/test_a.py", "assert False")
     assert re.match(rf"(\.\./)?tests/test_a\.py:{line}: AssertionError: as it should", result.blocks()["test_fails"])
-
-
-# -- coverage -------------------------------------------------------------------------------------------------------
-
-MEASURED_ROBOT = """
-    import threading
-
-    import wpilib
-
-    import arm
-
-
-    class MyRobot(wpilib.TimedRobot):
-        def robotInit(self):
-            self.arm = arm.Arm()
-            self.thread = threading.Thread(target=self.in_the_thread, daemon=True)
-
-        def teleopInit(self):
-            self.thread.start()
-
-        def teleopPeriodic(self):
-            self.arm.move()
-
-        def in_the_thread(self):
-            wpilib.wait(0.5)
-            self.arm.rest()
-"""
-
-ARM = """
-    class Arm:
-        def move(self):
-            self.moves = True
-
-        def rest(self):
-            self.moves = False
-"""
-
-# Devices made when the module is imported: its tests cannot be forked from what has imported it.
-ROBOT_WITH_DEVICE_IN_CLASS = MEASURED_ROBOT.replace(
-    "def robotInit", "motor = wpilib.PWMSparkMax(0)\n\n        def robotInit", 1
-)
-
-MEASURED_TESTS = """
-    def test_teleop(control):
-        control.set_operator_control(enabled=True)
-        control.run_test(lambda tm: tm < 1)
-
-
-    def test_disabled(control):
-        control.run_test(lambda tm: tm < 1)
-
-
-    def not_called():
-        return 1
-"""
-
-MEASURED = {"robot.py": MEASURED_ROBOT, "arm.py": ARM, "tests/test_a.py": MEASURED_TESTS}
-
-
-def covered(result: Result) -> dict[str, str]:
-    """Each file's percentage in coverage's table."""
-    return dict(re.findall(r"^(\S+) +\d+ +\d+ +(\d+%)", result.stdout, re.MULTILINE))
-
-
-@pytest.mark.parametrize(
-    ("isolation", "robot"),
-    [
-        pytest.param("fork", MEASURED_ROBOT, marks=needs_fork, id="fork"),
-        pytest.param("auto", ROBOT_WITH_DEVICE_IN_CLASS, id="device-in-class", marks=pytest.mark.slow),
-        pytest.param("reuse", MEASURED_ROBOT, id="reuse", marks=pytest.mark.slow),
-        pytest.param("none", MEASURED_ROBOT, id="none", marks=pytest.mark.slow),
-    ],
-)
-def test_coverage_counts_lines_of_the_robot_wherever_they_run(
-    make_project: MakeProject, isolation: str, robot: str
-) -> None:
-    project = make_project({**MEASURED, "robot.py": robot})
-    result = project.run("test", "--coverage", "-j", "2", "--isolation", isolation)
-    assert result.code == 0, result.output
-    assert result.complaints == ""
-    assert covered(result) == {"robot.py": "100%", "arm.py": "100%", "TOTAL": "100%"}
-    assert list(project.path.rglob(".coverage*")) == []
-    assert [path.name for path in project.temporary.iterdir() if not path.name.startswith("pytest-of-")] == []
 
 
 @pytest.mark.slow

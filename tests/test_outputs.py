@@ -138,14 +138,14 @@ def test_a_file_is_no_directory_to_write_into(name: str, project: RobotProject) 
     words = [
         word for each in DIRECTORIES[name] for word in ((name.split(" ")[1], "robot.py") if each == "{}" else (each,))
     ]
-    result = project.run(*words)
+    result = project.run_here(*words)
     assert (result.code, "robot.py" in result.stderr) == (2, True), result.output
     assert contents(project) == before
 
 
 def test_a_virtual_robot_does_not_live_in_a_project(project: RobotProject) -> None:
     before = contents(project)
-    result = project.run("virtual-robot", "--fresh", "--directory", ".")
+    result = project.run_here("virtual-robot", "--fresh", "--directory", ".")
     assert result.code == 2
     assert "this directory has files that are not from a virtual robot" in result.first_error
     assert contents(project) == before
@@ -154,7 +154,7 @@ def test_a_virtual_robot_does_not_live_in_a_project(project: RobotProject) -> No
 def test_earlier_recordings_are_outputs_too(project: RobotProject) -> None:
     (project.path / "in-1.jsonl").write_bytes((project.path / "in.jsonl").read_bytes())
     (project.path / "in.jsonl").unlink()
-    result = project.run("sim", "--ui", "none", "--script", "in-1.jsonl", "--record", "in.jsonl")
+    result = project.run_here("sim", "--ui", "none", "--script", "in-1.jsonl", "--record", "in.jsonl")
     assert result.first_error == "--record in-1.jsonl cannot be written: this command reads it"
 
 
@@ -166,7 +166,7 @@ def test_earlier_recordings_are_outputs_too(project: RobotProject) -> None:
     ],
 )
 def test_two_outputs_are_two_files(arguments: tuple[str, ...], error: str, project: RobotProject) -> None:
-    result = project.run("sim", "--ui", "none", "--script", "in.jsonl", *arguments)
+    result = project.run_here("sim", "--ui", "none", "--script", "in.jsonl", *arguments)
     assert result.code == 2
     assert error in result.first_error
     assert not (project.path / "a.png").exists()

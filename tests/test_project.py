@@ -1,12 +1,16 @@
-"""Where the robot is: found from anywhere in the project, chosen by options or settings, created by `pyfrc init`."""
+"""Where the robot is: found from anywhere in the project, chosen by options or settings."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from conftest import MakeProject, RobotProject
+from loops import for_each
 
 from pyfrc import __version__
+from pyfrc_core.errors import ProjectError
+from pyfrc_core.project import find_project
 
 ROBOT = """
     import wpilib
@@ -29,14 +33,61 @@ def assert_finds_it(project: RobotProject, *args: str | Path, cwd: Path | None =
     assert "1 passed" in result.stdout
 
 
-def test_a_project_is_found_from_a_directory_in_it(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": ROBOT, "tests/test_a.py": FINDS_IT, "deploy/paths/one.txt": "left\n"})
-    assert_finds_it(project, cwd=project.path / "deploy" / "paths")
+NAMED = '[tool.pyfrc]\nmain = "src/practice.py"\n'
 
 
-def test_a_project_is_found_where_an_option_says(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": ROBOT, "tests/test_a.py": FINDS_IT})
-    assert_finds_it(project, "--project", project.path, cwd=project.temporary)
+@for_each(
+    "files, here, options, found",
+    [
+        ({"robot.py": ""}, "deploy/paths", {}, "robot.py"),
+        ({"robot.py": ""}, None, {"start": "."}, "robot.py"),
+        ({"practice.py": ""}, ".", {"main": "practice.py"}, "practice.py"),
+        ({"src/practice.py": ""}, None, {"start": "src", "main": "practice.py"}, "src/practice.py"),
+        ({"src/practice.py": "", "pyproject.toml": NAMED}, ".", {}, "src/practice.py"),
+        ({"src/practice.py": "", "pyproject.toml": NAMED}, "src", {}, "src/practice.py"),
+        # Settings win over a robot.py beside them.
+        ({"robot.py": "", "src/practice.py": "", "pyproject.toml": NAMED}, ".", {}, "src/practice.py"),
+    ],
+)
+def test_a_program_is_found_from_below_by_an_option_and_by_settings(
+    files: dict[str, str],
+    here: str | None,
+    options: dict[str, str],
+    found: str,
+    tmp_path_factory: pytest.TempPathFactory,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A directory that the user names is one of the project, from which `here` may be far away."""
+    root = tmp_path_factory.mktemp("project")
+    for name, text in files.items():
+        (root / name).parent.mkdir(exist_ok=True)
+        (root / name).write_text(text)
+    place = tmp_path_factory.mktemp("elsewhere") if here is None else root / here
+    place.mkdir(parents=True, exist_ok=True)
+    monkeypatch.chdir(place)
+    given = {name: root / value if name == "start" else Path(value) for name, value in options.items()}
+    assert find_project(**given).main_file.resolve() == (root / found).resolve()
+
+
+def test_a_program_that_the_settings_name_wrongly_is_told(make_project: MakeProject) -> None:
+    project = make_project({"pyproject.toml": '[tool.pyfrc]\nmain = "practise.py"\n'})
+    with pytest.raises(ProjectError, match=r"main = 'practise.py' under \[tool.pyfrc\], but there is no such file"):
+        find_project(project.path)
+
+
+def test_all_settings_hold_for_a_program_deep_in_the_project(make_project: MakeProject) -> None:
+    """In a directory with spaces and accents in its name, from another one."""
+    another = "\n\n    class Another(wpilib.TimedRobot):\n        pass\n"
+    project = make_project(
+        {
+            "équipe 4711/src/robots/practice.py": ROBOT + another,
+            "équipe 4711/src/robots/tests/test_a.py": FINDS_IT,
+            "équipe 4711/pyproject.toml": '[tool.pyfrc]\nmain = "src/robots/practice.py"\nrobot_class = "MyRobot"\n',
+        }
+    )
+    root = project.path / "équipe 4711"
+    assert_finds_it(project, "--isolation", "auto", cwd=root / "src")
+    assert_finds_it(project, "--isolation", "reuse", "--project", root, cwd=project.temporary)
 
 
 def test_a_program_of_another_name_is_found_where_an_option_says(make_project: MakeProject) -> None:
@@ -44,99 +95,7 @@ def test_a_program_of_another_name_is_found_where_an_option_says(make_project: M
     assert_finds_it(project, "--main", "practice.py")
 
 
-def test_a_program_of_another_name_is_found_by_the_settings(make_project: MakeProject) -> None:
-    project = make_project(
-        {
-            "src/practice.py": ROBOT,
-            "src/tests/test_a.py": FINDS_IT,
-            "pyproject.toml": '[tool.pyfrc]\nmain = "src/practice.py"\n',
-        }
-    )
-    assert_finds_it(project)
-
-
-def test_all_settings_hold_for_a_program_deep_in_the_project(make_project: MakeProject) -> None:
-    another = "\n\n    class Another(wpilib.TimedRobot):\n        pass\n"
-    project = make_project(
-        {
-            "src/robots/practice.py": ROBOT + another,
-            "src/robots/tests/test_a.py": FINDS_IT,
-            "pyproject.toml": '[tool.pyfrc]\nmain = "src/robots/practice.py"\nrobot_class = "MyRobot"\n',
-        }
-    )
-    for isolation in ("auto", "reuse"):
-        assert_finds_it(project, "--isolation", isolation)
-
-
-def test_settings_win_over_a_robot_py_beside_them(make_project: MakeProject) -> None:
-    project = make_project(
-        {
-            "robot.py": ROBOT.replace("found", "not meant"),
-            "practice.py": ROBOT,
-            "tests/test_a.py": FINDS_IT,
-            "pyproject.toml": '[tool.pyfrc]\nmain = "practice.py"\n',
-        }
-    )
-    assert_finds_it(project)
-
-
-def test_a_program_that_the_settings_name_wrongly_is_told(make_project: MakeProject) -> None:
-    project = make_project({"pyproject.toml": '[tool.pyfrc]\nmain = "practise.py"\n'})
-    result = project.run("test")
-    assert result.code == 2
-    assert "main = 'practise.py' under [tool.pyfrc], but there is no such file" in result.first_error
-
-
-def test_a_robot_class_of_another_file_is_found(make_project: MakeProject) -> None:
-    project = make_project(
-        {
-            "robot.py": "from frame.chassis import MyRobot\n",
-            "frame/__init__.py": "",
-            "frame/chassis.py": ROBOT,
-            "tests/test_a.py": FINDS_IT,
-        }
-    )
-    assert_finds_it(project)
-
-
-def test_of_a_base_class_and_its_derived_class_the_derived_is_the_robot(make_project: MakeProject) -> None:
-    robot = """
-        import wpilib
-
-
-        class BaseRobot(wpilib.TimedRobot):
-            name = "base"
-
-
-        class MyRobot(BaseRobot):
-            name = "found"
-    """
-    assert_finds_it(make_project({"robot.py": robot, "tests/test_a.py": FINDS_IT}))
-
-
-def test_a_robot_run_as_a_program_is_not_started_by_its_import(make_project: MakeProject) -> None:
-    robot = ROBOT + '\n\n    if __name__ == "__main__":\n        wpilib.run(MyRobot)\n'
-    assert_finds_it(make_project({"robot.py": robot, "tests/test_a.py": FINDS_IT}))
-
-
-def test_a_project_with_spaces_and_accents_in_its_name_is_found(make_project: MakeProject) -> None:
-    project = make_project({"équipe 4711/robot.py": ROBOT, "équipe 4711/tests/test_a.py": FINDS_IT})
-    assert_finds_it(project, cwd=project.path / "équipe 4711")
-
-
-# -- pyfrc init -----------------------------------------------------------------------------------------------------
-
-
-def contents(directory: Path) -> dict[str, bytes]:
-    return {
-        file.relative_to(directory).as_posix(): file.read_bytes() for file in directory.rglob("*") if file.is_file()
-    }
-
-
-# -- the command itself ---------------------------------------------------------------------------------------------
-
-
 def test_the_version_is_told(make_project: MakeProject) -> None:
-    result = make_project({}).run("--version")
+    result = make_project({}).run_here("--version")
     assert result.code == 0
     assert result.stdout.strip() == f"pyfrc, version {__version__}"

@@ -92,16 +92,17 @@ def test_other_ways_to_run_tests(make_project: MakeProject, what: str, options: 
 @pytest.mark.parametrize("what", sampled(REPLACES, "closed"))
 @pytest.mark.parametrize(
     ("command", "last"),
-    [
-        (
-            ["fuzz", "--runs", "2"],
-            "But 2 matches prove little: pyfrc fuzz --time 600 plays for ten minutes.\n",
-        ),
-        (["create-physics"], ""),
+    sampled(
+        [
+            (["fuzz", "--runs", "2"], "But 2 matches prove little: pyfrc fuzz --time 600 plays for ten minutes.\n"),
+            (["create-physics"], ""),
+            (["sim", "--ui", "none", "--mode", "practice", "--seconds", "3"], ""),
+            (["coverage", "test", "--builtin"], ""),
+            (["profile", "test", "--builtin"], ""),
+        ],
         (["sim", "--ui", "none", "--mode", "practice", "--seconds", "3"], ""),
         (["coverage", "test", "--builtin"], ""),
-        (["profile", "test", "--builtin"], ""),
-    ],
+    ),
 )
 def test_other_commands(make_project: MakeProject, what: str, command: list[str], last: str) -> None:
     result = make(make_project, what).run(*command)

@@ -305,7 +305,7 @@ def test_a_script_may_be_longer_than_a_test_without_it(make_project) -> None:
 
 def test_a_bad_script_is_named_as_it_is_opened(make_project) -> None:
     project = make_project({"robot.py": ROBOT, "scripts/bad.jsonl": "hello\n"})
-    result = project.run("replay", "scripts/bad.jsonl")
+    result = project.run_here("replay", "scripts/bad.jsonl")
     assert result.code == 2, result.output
     assert result.first_error.startswith("scripts/bad.jsonl:1: not valid JSON")
     assert "Traceback" not in result.output

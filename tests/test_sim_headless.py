@@ -123,11 +123,11 @@ def test_wrong_usage(arguments: list[str], told: str, project) -> None:
 @pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="there is always a display")
 def test_windows_need_a_display(project) -> None:
     for ui in ("tk", "wpilib"):
-        result = project.run("sim", "--ui", ui, env=NO_DISPLAY)
+        result = project.run_here("sim", "--ui", ui, env=NO_DISPLAY)
         assert result.code == 2
         assert result.first_error == f"--ui {ui} needs a display, and there is none"
         assert "--ui none" in result.stderr
-    result = project.run("sim", "--ui", "tk", "--mode", "auto", env={"DISPLAY": ":99"})
+    result = project.run_here("sim", "--ui", "tk", "--mode", "auto", env={"DISPLAY": ":99"})
     assert (result.code, result.first_error) == (2, "--mode is for simulations without a window")
 
 

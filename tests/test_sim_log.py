@@ -97,13 +97,21 @@ def change(project: RobotProject, file: str, old: str, new: str) -> None:
     place.write_text(text.replace(old, new), encoding="utf-8")
 
 
-@pytest.fixture
-def recorded(make_project: MakeProject) -> RobotProject:
-    """Return a project with a drive that was recorded in both forms."""
-    project = make_project({"robot.py": ROBOT, "physics.py": PHYSICS, "drive.jsonl": DRIVEN})
+@pytest.fixture(scope="module")
+def recording(make_shared_project: MakeProject) -> RobotProject:
+    """Return a project with a drive that was recorded in both forms, which tests do not change."""
+    project = make_shared_project({"robot.py": ROBOT, "physics.py": PHYSICS, "drive.jsonl": DRIVEN})
     files = ("--record", "match.jsonl", "--wpilog", "match.wpilog")
     result = project.run(*SIM, "--script", "drive.jsonl", *files)
     assert result.code == 0, result.output
+    return project
+
+
+@pytest.fixture
+def recorded(recording: RobotProject, make_project: MakeProject) -> RobotProject:
+    """Return a copy of it."""
+    project = make_project({})
+    project.copy(recording.path)
     return project
 
 
@@ -291,7 +299,8 @@ def test_a_log_that_is_cut_says_so(recorded: RobotProject) -> None:
     log.write_bytes(log.read_bytes()[:-2])
     assert log_of(recorded, "match.wpilog").count("match.wpilog: it is cut at byte") == 1
     trace.write_bytes(trace.read_bytes()[:-70])  # within its last change: the hash has a line of its own
-    assert re.search(r"^match.jsonl: line \d+ is cut\.$", log_of(recorded, "match.jsonl"), re.MULTILINE)
+    cut = log_run(find_project(recorded.path), recorded.path / "match.jsonl")
+    assert re.fullmatch(r"line \d+ is cut", cut.script.problem)
     result = recorded.run("replay", "match.jsonl")
     assert result.code == 2
     assert re.match(r"match.trace.jsonl:\d+: this trace is cut or damaged", result.first_error)
@@ -323,9 +332,11 @@ def test_a_log_of_another_year_says_so(make_project: MakeProject) -> None:
 
 
 def test_a_trace_stands_for_the_script_beside_it(recorded: RobotProject) -> None:
-    assert "no difference: " in log_of(recorded, "match.trace.jsonl")
-    (recorded.path / "match.jsonl").unlink()
-    result = recorded.run(*SIM, "--log", "match.trace.jsonl")
+    script, trace = (recorded.path / name for name in ("match.jsonl", "match.trace.jsonl"))
+    project = find_project(recorded.path)
+    assert log_run(project, trace).script == log_run(project, script).script
+    script.unlink()
+    result = recorded.run_here(*SIM, "--log", "match.trace.jsonl")
     assert result.code == 2
     assert "match.trace.jsonl: a trace has no inputs, and its input script is not beside it" in result.output
 
@@ -420,7 +431,7 @@ def test_what_a_person_has_set_on_a_dashboard_is_named(played: RobotProject) -> 
     said = log_of(played, "match.wpilog", "--input", "SmartDashboard/kP")
     assert "in Elevator/setpoint" in said
     assert "in kP" not in said
-    result = played.run(*SIM, "--log", "match.wpilog", "--input", "Nope/kP")
+    result = played.run_here(*SIM, "--log", "match.wpilog", "--input", "Nope/kP")
     assert (result.code, result.first_error) == (2, "--input Nope/kP: match.wpilog has no value of this name")
     assert "It has SmartDashboard/kP." in result.stderr
 

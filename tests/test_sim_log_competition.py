@@ -127,8 +127,10 @@ def test_unchanged_code_does_the_same_in_a_whole_match(name: str, make_project: 
 def test_a_robot_whose_devices_are_simulated_in_real_time_is_compared_by_what_it_publishes(
     make_project: MakeProject,
 ) -> None:
+    # Not its autonomous routine: when that raises the elevator depends on when a wheel is fast enough, in real time.
+    script = "".join(line for line in DRIVE.splitlines(keepends=True) if "autonomous" not in line)
     project = make_project({})
-    drive(project, "ctre_swerve", "--record", "match.jsonl", "--wpilog", "match.wpilog")
+    drive(project, "ctre_swerve", "--record", "match.jsonl", "--wpilog", "match.wpilog", script=script)
     (log,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
     log.rename(project.path / "robot.wpilog")
     assert "no difference: " in log_of(project, "match.jsonl")  # which has no more than devices

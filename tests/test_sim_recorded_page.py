@@ -154,11 +154,11 @@ def test_a_page_of_a_replay_and_of_a_failure_that_fuzz_has_found(make_project: A
 def test_a_page_that_cannot_be_written_is_an_error_before_the_run(make_project: Any) -> None:
     project = make_project({**FILES, "drive.jsonl": SCRIPT})
     for command in (["sim", "--ui", "none", "--mode", "auto"], ["replay", "drive.jsonl"]):
-        result = project.run(*command, "--page", "robot.py/run.html")
+        result = project.run_here(*command, "--page", "robot.py/run.html")
         assert result.code == 2
         assert "cannot be written" in result.output
         assert "the robot is there" not in result.output
-    assert project.run("fuzz", "--merge", "--pages", "pages", "sim").code == 2
+    assert project.run_here("fuzz", "--merge", "--pages", "pages", "sim").code == 2
 
 
 def test_values_are_stored_with_seven_digits() -> None:

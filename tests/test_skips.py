@@ -10,6 +10,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+import runs
 import skips
 from conftest import sampled
 
@@ -125,3 +126,13 @@ def test_no_test_is_skipped_by_a_guard_of_its_own() -> None:
         file.name for file in HERE.glob("test_*.py") if file != Path(__file__) and own.search(file.read_text("utf-8"))
     ]
     assert found == []
+
+
+def test_each_worker_begins_with_some_of_the_longest_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runs, "LONGEST", {"b", "d", "f"})
+    tests = [f"{file}{number}" for file in "abcdefgh" for number in range(3)]
+    # 24 tests: pytest-xdist deals them in as many parts as there are workers.
+    for workers, begin in {1: ["b0"], 2: ["b0", "d0"], 4: ["b0", "d0", "f0", "g0"], 40: ["b0"]}.items():
+        ordered = runs.longest_first(tests, lambda test: test[0], workers)
+        assert sorted(ordered) == tests
+        assert ordered[:: 24 // len(begin)] == begin

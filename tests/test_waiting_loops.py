@@ -35,14 +35,6 @@ TIMED = """
             self.motor.set(0.25)
 """
 
-OWN_START = (
-    TIMED
-    + """
-        def startCompetition(self):
-            super().startCompetition()
-"""
-)
-
 MAGIC = """
     import time
 
@@ -67,22 +59,6 @@ MAGIC = """
 
         def robotPeriodic(self):
             pass
-"""
-
-COMMANDS = """
-    import commands2
-    import wpilib
-
-
-    class WaitsForButton(commands2.Command):
-        def execute(self):
-            while not wpilib.DriverStation.getStickButton(0, 1):
-                wpilib.wait(0.02)
-
-
-    class MyRobot(commands2.TimedCommandRobot):
-        def teleopInit(self):
-            WaitsForButton().schedule()
 """
 
 CALLBACK = """
@@ -110,12 +86,10 @@ READY_MADE = """
     ("robot", "function", "line", "now"),
     [
         (TIMED, "teleopPeriodic", "time.sleep(0.02)", "2 s"),
-        pytest.param(OWN_START, "teleopPeriodic", "time.sleep(0.02)", "2 s", marks=pytest.mark.slow),
         (MAGIC, "execute", "time.sleep(0.02)", "2 s"),
-        pytest.param(COMMANDS, "execute", "wpilib.wait(0.02)", "2 s", marks=pytest.mark.slow),
         pytest.param(CALLBACK, "look", "self.pressed.wait()", "2 s", marks=pytest.mark.slow),
     ],
-    ids=["timed", "own start", "magic", "command", "callback"],
+    ids=["timed", "magic", "callback"],
 )
 def test_a_loop_that_waits_fails_and_names_its_line(
     make_project: MakeProject, robot: str, function: str, line: str, now: str
@@ -127,57 +101,6 @@ def test_a_loop_that_waits_fails_and_names_its_line(
     expected = f"{project.place('robot.py', line)}: {function} has not returned after {now} of robot time"
     assert result.blocks()["test_operator_control"].startswith(expected), result.output
     assert "loop_seconds under [tool.pyfrc.test]" in result.output
-
-
-@pytest.mark.slow
-def test_what_ends_in_time_is_no_failure(make_project: MakeProject) -> None:
-    """Two seconds to the microsecond in teleoperated, all of autonomous, and as long as it likes in robotInit."""
-    robot = """
-        import time
-
-        import wpilib
-
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                time.sleep(3)
-
-            def autonomousInit(self):
-                time.sleep(15)
-
-            def teleopPeriodic(self):
-                time.sleep(2)
-    """
-    project = make_project({"robot.py": robot})
-    result = project.run("test", "--builtin")
-    assert result.code == 0, result.output
-
-
-@pytest.mark.slow
-def test_the_limit_can_be_set(make_project: MakeProject) -> None:
-    """In pyproject.toml; in autonomous, the match's autonomous period counts where it is longer."""
-    robot = """
-        import time
-
-        import wpilib
-
-
-        class MyRobot(wpilib.TimedRobot):
-            def autonomousPeriodic(self):
-                time.sleep(4)
-
-            def teleopPeriodic(self):
-                time.sleep(1)
-    """
-    settings = "[tool.pyfrc.match]\nautonomous = 3.5\n[tool.pyfrc.test]\nloop_seconds = 0.75\n"
-    tests = {"robot.py": robot, "pyproject.toml": settings, "tests/test_ready_made.py": READY_MADE}
-    project = make_project(tests)
-    result = project.run("test", "--", "-k", "autonomous or operator")
-    blocks = result.blocks()
-    assert "autonomousPeriodic has not returned after 3.5 s of robot time" in blocks["test_autonomous[]"]
-    assert "teleopPeriodic has not returned after 0.75 s of robot time" in blocks["test_operator_control"]
-    project.write({"pyproject.toml": "[tool.pyfrc.test]\nloop_seconds = -1\n"})
-    assert "loop_seconds" in project.run("test").output
 
 
 @pytest.mark.slow

@@ -65,7 +65,7 @@ def test_plain_pytest_tells_wrong_settings_in_a_sentence(make_project: MakeProje
     assert name in result.output
 
 
-@pytest.mark.parametrize("command", [["deploy-info", "--robot", "127.0.0.1:1"], ["test"], ["--help"]])
+@pytest.mark.parametrize("command", [["test"], ["--help"]])
 def test_a_current_directory_that_was_removed(command: list[str], tmp_path: Path) -> None:
     gone = tmp_path / "gone"
     gone.mkdir()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import re
 import sys
@@ -21,6 +22,7 @@ from pyfrc_core.config.packages import PACKAGES, SUCCESSORS, install_line, robot
 from pyfrc_core.config.robotpy import load_robot_packages, unknown_components
 from pyfrc_core.errors import SettingsError
 from pyfrc_core.explain import explain
+from pyfrc_core.explain.commands import no_command, users_definitions
 from pyfrc_core.project.robot_files import RobotFiles
 from pyfrc_core.runtime.checks.failures import headline
 from pyfrc_core.season import SEASONS
@@ -458,6 +460,41 @@ def test_an_error_of_a_test(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tes
     with pytest.raises((NameError, AttributeError)) as caught:
         names["test_it"](None, module.Robot())
     assert message in str(headline(caught.value, RobotFiles(tmp_path)))
+
+
+COMMANDS = """
+class Arm:
+    def up(self): return self.run(print)
+    def down(self): self.run(print)
+    def stop(self): self.motor = 0
+class Raise: ...
+"""
+
+
+@for_each(
+    "bound, text, remedy",
+    [
+        ("arm.down()", "None, from arm.down()", "Write return before the command in down() (robot.py:4)."),
+        ("arm.stop()", "None, from arm.stop()", "Write commands2.cmd.runOnce(lambda: arm.stop(), SUBSYSTEM), with"),
+        ("arm.up().schedule()", "None, from arm.up().schedule(), which runs here", "Write arm.up() without it."),
+        ("arm.up", "the function arm.up, and no command", "Write arm.up(), which returns the command."),
+        ("arm.down", "the function arm.down, and no command", "Write commands2.cmd.runOnce(arm.down, SUBSYSTEM), with"),
+        ("lambda: f(1)", "the function lambda: f(1), and no command", "Write commands2.cmd.runOnce(lambda: f(1), SUB"),
+        ("Raise", "the class Raise, and no command", "Write Raise(...), with what its __init__ needs (robot.py:6)."),
+    ],
+)
+def test_what_is_bound_to_a_trigger_and_is_no_command(bound: str, text: str, remedy: str) -> None:
+    defined = dict(users_definitions([("robot.py", ast.parse(COMMANDS))]))
+    found = no_command(ast.parse(bound, mode="eval").body, defined)
+    assert found is not None
+    assert found[0].startswith(text)
+    assert found[1].startswith(remedy)
+
+
+@for_each("bound", ["arm.up()", "Raise()", "command"])
+def test_what_may_be_a_command(bound: str) -> None:
+    defined = dict(users_definitions([("robot.py", ast.parse(COMMANDS))]))
+    assert no_command(ast.parse(bound, mode="eval").body, defined) is None
 
 
 def test_an_unknown_error_is_shown_as_it_is(headline_of: Raise) -> None:

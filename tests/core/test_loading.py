@@ -148,6 +148,20 @@ def test_a_robot_class_of_this_file_counts_before_those_of_others(make_project: 
 
 
 @pytest.mark.parametrize(
+    ("main", "module"),
+    [
+        ("import wpilib\nclass Base(wpilib.TimedRobot): ...\nclass MyRobot(Base): ...\n", "robot"),
+        ("from frame.chassis import MyRobot\n", "frame.chassis"),
+        (f'{ROBOT}\nif __name__ == "__main__":\n    wpilib.run(MyRobot)\n', "robot"),
+    ],
+    ids=["derived", "of another file", "run as a program"],
+)
+def test_a_robot_class_is_found(main: str, module: str, make_project: MakeProject) -> None:
+    robot = load_robot(make_project(main, {"frame/__init__.py": "", "frame/chassis.py": ROBOT}))
+    assert (robot.__name__, robot.__module__) == ("MyRobot", module)
+
+
+@pytest.mark.parametrize(
     ("text", "where", "message", "remedy"),
     [
         (
