@@ -12,8 +12,11 @@ from textwrap import dedent, indent
 
 import pytest
 from conftest import MakeProject, RobotProject, sampled
+from loops import for_each
+from wpimath.kinematics import DifferentialDriveKinematics
 
 from pyfrc_core.errors import PyfrcError
+from pyfrc_core.physics.create.names import Reached, find_track_width
 from pyfrc_core.physics.create.physics_file import checked
 
 ROBOTS = Path(__file__).parent / "robots"
@@ -196,6 +199,7 @@ def test_mecanum(make_project: MakeProject) -> None:
     printed = create(project)
     assert f"front left: PWM 3 ({names[0]})\n  rear left: PWM 0 ({names[1]})" in printed
     assert f"front right: PWM 2 ({names[2]}), forward at -1" in printed
+    assert "TRACK_WIDTH = 22 * units.inch  # from" in (project.path / "physics.py").read_text()
     run_tests(project)
 
 
@@ -298,7 +302,6 @@ def test_a_lift_moves_its_encoder(make_project: MakeProject) -> None:
 
 TANK = """
 import wpilib
-from wpimath.kinematics import DifferentialDriveKinematics
 
 class Drive:
     {0}
@@ -331,20 +334,26 @@ def test_only_what_it_breaks_keeps_it_from_its_place(make_project: MakeProject) 
     assert "failed without it, too:\n  tests/test_other.py::test_other - " in create(project)
 
 
-@pytest.mark.parametrize(
-    ("code", "width"),
+@for_each(
+    "path, thing, width",
     [
-        pytest.param("TRACK_WIDTH = 0.61", "0.61 * units.metre", marks=pytest.mark.slow),
-        ("kTrackwidth = 0.55", "0.55 * units.metre"),
-        ("kinematics = DifferentialDriveKinematics(0.7)", "0.7 * units.metre"),
-        ("TRACK_WIDTH = 24.0", "22 * units.inch"),
-        pytest.param("WIDTH = 0.61", "22 * units.inch", marks=pytest.mark.slow),
+        ("TRACK_WIDTH", 0.61, 0.61),
+        ("kTrackwidth", 0.55, 0.55),
+        ("kinematics", DifferentialDriveKinematics(0.7), 0.7),
+        ("TRACK_WIDTH", 24.0, None),  # inches, probably
+        ("WIDTH", 0.61, None),
+        ("TRACK_WIDTH", 1, None),
     ],
 )
-def test_the_width_is_that_of_the_robots_code(make_project: MakeProject, code: str, width: str) -> None:
-    project = make_project({"robot.py": TANK.format(code)})
+def test_the_width_is_that_of_the_robots_code(path: str, thing: object, width: float | None) -> None:
+    objects = [Reached(("drive",), object(), "robot.drive"), Reached(("drive", path), thing, f"robot.drive.{path}")]
+    assert find_track_width(objects) == width
+
+
+def test_the_width_is_written(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": TANK.format("TRACK_WIDTH = 0.61")})
     create(project)
-    assert f"TRACK_WIDTH = {width}  # from" in (project.path / "physics.py").read_text()
+    assert "TRACK_WIDTH = 0.61 * units.metre  # from" in (project.path / "physics.py").read_text()
 
 
 @pytest.mark.slow

@@ -114,7 +114,7 @@ def steps_of(script: InputScript) -> Iterator[tuple[int, str, Any]]:
         yield from ((step.at_us, target, value) for target, value in step.writes.items())
 
 
-FUZZED = settings(max_examples=80)
+FUZZED = settings(max_examples=40)
 
 
 @FUZZED

@@ -248,7 +248,7 @@ def _whole(kind: str) -> bytes:
     return "".join(json.dumps(each) + "\n" for each in ({"format": "pyfrc-trace 2"}, *lines)).encode()
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(st.data())
 def test_no_damage_is_more_than_a_sentence(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
     """Cut anywhere, with bytes changed anywhere: either a run comes of it, or an error for people."""

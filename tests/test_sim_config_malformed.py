@@ -67,7 +67,7 @@ NUMBERS = [path for path in PATHS if type(_at(path)) in (int, float)]
 
 
 #: For each of two tests. Ten thousand in all were run once; since then it is these, the same in each run.
-HUNDREDS = settings(max_examples=200, suppress_health_check=list(HealthCheck))
+MANY = settings(max_examples=60, suppress_health_check=list(HealthCheck))
 
 
 class Case(NamedTuple):
@@ -230,7 +230,7 @@ def test_the_undamaged_file_loads(root: Path) -> None:
             assert loaded.warnings == ()
 
 
-@HUNDREDS
+@MANY
 @given(
     case=st.one_of(
         truncated(),
@@ -247,7 +247,7 @@ def test_a_malformed_file_is_refused_with_its_place_and_left_as_it_is(root: Path
         assert str(result).startswith(f"sim/config.json:{case.line}: {case.path or ''}")
 
 
-@HUNDREDS
+@MANY
 @given(raw=st.one_of(damaged(), anything))
 def test_whatever_the_file_holds_it_is_loaded_or_refused_with_its_place(root: Path, raw: bytes) -> None:
     outcome(root, raw)
