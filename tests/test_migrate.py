@@ -127,9 +127,9 @@ def test_a_project_is_rewritten_and_what_is_left_is_said_at_its_line(project: Ro
 
 
 def test_a_second_run_changes_nothing(project: RobotProject) -> None:
-    project.run("migrate")
+    project.run_here("migrate")
     before = {file: file.read_bytes() for file in project.path.rglob("*") if file.is_file()}
-    result = project.run("migrate")
+    result = project.run_here("migrate")
     assert "Rewrote 0 files" in result.stdout, result.output
     assert {file: file.read_bytes() for file in project.path.rglob("*") if file.is_file()} == before
 
@@ -138,7 +138,7 @@ def test_a_second_run_changes_nothing(project: RobotProject) -> None:
 def test_nothing_is_written_on_wish(project: RobotProject, newline: str) -> None:
     (project.path / "robot.py").write_text(text(project, "robot.py"), "utf-8", newline=newline)
     before = text(project, "robot.py")
-    result = project.run("migrate", "--check")
+    result = project.run_here("migrate", "--check")
     assert result.code == 1, result.output
     assert text(project, "robot.py") == before
     assert not (project.path / "pyproject.toml").exists()
@@ -146,7 +146,7 @@ def test_nothing_is_written_on_wish(project: RobotProject, newline: str) -> None
 
 
 def test_tools_get_the_report_as_json(project: RobotProject) -> None:
-    report = json.loads(project.run("migrate", "--check", "--json").stdout)
+    report = json.loads(project.run_here("migrate", "--check", "--json").stdout)
     assert report["files"] == ["pyproject.toml", "robot.py", "subsystems/drive.py"]
     (remark,) = report["by_hand"]
     assert remark["places"] == [{"file": "robot.py", "line": project.line("robot.py", "Relay(1)")}]
@@ -158,19 +158,19 @@ def test_changes_that_are_in_no_commit_are_refused(project: RobotProject) -> Non
     require("changes that are in no commit", missing_programs("git"))
     for command in (["init", "-q"], ["add", "."]):
         subprocess.run(["git", *command], cwd=project.path, check=True)
-    result = project.run("migrate")
+    result = project.run_here("migrate")
     assert result.code == 2
     assert "changed, and in no commit" in result.stderr
     assert "--uncommitted" in result.stderr
     assert "robotInit" in text(project, "robot.py")
-    assert project.run("migrate", "--uncommitted").code == 1
+    assert project.run_here("migrate", "--uncommitted").code == 1
     assert text(project, "robot.py") == NEW_ROBOT
-    assert project.run("migrate").code == 2, "a second run, without a commit in between"
+    assert project.run_here("migrate").code == 2, "a second run, without a commit in between"
 
 
 def test_a_file_that_is_no_python_stays_and_is_named(project: RobotProject) -> None:
     project.write({"broken.py": "def broken(:\n    pass\n"})
-    result = project.run("migrate")
+    result = project.run_here("migrate")
     assert "broken.py:2: This is no valid Python" in result.stdout
     assert text(project, "broken.py") == "def broken(:\n    pass\n"
     assert text(project, "robot.py") == NEW_ROBOT
@@ -180,7 +180,7 @@ def test_line_ends_tabs_and_encoding_stay(make_project: MakeProject) -> None:
     project = make_project({})
     lines = ["import wpilib", "class MyRobot(wpilib.TimedRobot):", "\tdef teleopPeriodic(self):", "\t\tpass  # é", ""]
     (project.path / "robot.py").write_bytes("\r\n".join(lines).encode())
-    project.run("migrate")
+    project.run_here("migrate")
     assert (project.path / "robot.py").read_bytes() == "\r\n".join(lines).replace("P", "_p", 1).encode()
 
 
@@ -207,7 +207,7 @@ def test_links_out_of_the_project_are_named(project: RobotProject) -> None:
         "Replace the link by what it leads to, and migrate."
     )
     for _ in range(2):
-        result = project.run("migrate")
+        result = project.run_here("migrate")
         assert result.code == 1
         assert "Nothing is left to do" not in result.stdout
     assert (beside / "arm.py").read_text() == "import wpilib.drive\n"
@@ -219,7 +219,7 @@ def test_other_environments_and_hidden_directories_are_left_alone(project: Robot
     project.write(
         {"venv/pyvenv.cfg": "", "venv/lib/a.py": old, "mine/pyvenv.cfg": "", "mine/lib/b.py": old, ".hidden/c.py": old}
     )
-    project.run("migrate")
+    project.run_here("migrate")
     for name in ("venv/lib/a.py", "mine/lib/b.py", ".hidden/c.py"):
         assert text(project, name) == old
 
@@ -234,7 +234,7 @@ def test_code_in_a_directory_of_its_own(make_project: MakeProject) -> None:
             "tests/a_test.py": "def test_it(robot):\n    assert robot.drive.encoder.getRate() == 0\n",
         }
     )
-    project.run("migrate")
+    project.run_here("migrate")
     assert text(project, "src/robot.py") == NEW_ROBOT
     assert "robot.drive.encoder.get_rate()" in text(project, "tests/a_test.py")
     assert 'robotpy_version = "2027.' in text(project, "pyproject.toml")
@@ -303,11 +303,11 @@ def test_the_settings_name_the_packages_of_the_new_season(project: RobotProject,
     project.write(SETTINGS)
     for name in SETTINGS:
         (project.path / name).write_text(text(project, name), "utf-8", newline=newline)
-    result = project.run("migrate")
+    result = project.run_here("migrate")
     for name, new in NEW_SETTINGS.items():
         assert text(project, name) == new
     assert "pyproject.toml:5: photonlibpy==2026.3.4 is for 2026." in result.stdout
-    project.run("migrate")
+    project.run_here("migrate")
     for name, new in NEW_SETTINGS.items():
         assert text(project, name) == new
 
@@ -317,7 +317,7 @@ def test_five_thousand_lines_are_valid_afterwards(make_project: MakeProject) -> 
     """How long it took is in docs/reference/migrate.md."""
     files = {f"part{number}.py": DRIVE for number in range(200)}
     project = make_project({"robot.py": ROBOT, "subsystems/drive.py": DRIVE, **files})
-    project.run("migrate")
+    project.run_here("migrate")
     for file in project.path.glob("*.py"):
         ast.parse(file.read_text("utf-8"))
     assert text(project, "part199.py") == NEW_DRIVE

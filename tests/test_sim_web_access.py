@@ -6,10 +6,11 @@ import json
 import os
 import re
 import socket
+from collections.abc import Iterator
 from urllib.parse import urlsplit
 
 import pytest
-from conftest import sampled
+from conftest import MakeProject, sampled
 from recorded_pages import run_in
 from sim_robots import FILES
 from web_pages import PATIENCE, Served, served
@@ -32,6 +33,13 @@ QUIET = {
 }
 
 
+@pytest.fixture(scope="module")
+def quiet(make_shared_project: MakeProject) -> Iterator[Served]:
+    """The server of a robot that does nothing, at the address of this computer only."""
+    with served(make_shared_project(QUIET)) as server:
+        yield server
+
+
 def refused(server: Served, path: str, **options: str | None) -> int:
     """The status with which a WebSocket is refused."""
     parts = urlsplit(server.address)
@@ -41,39 +49,36 @@ def refused(server: Served, path: str, **options: str | None) -> int:
     return refusal.value.response.status_code
 
 
-def test_a_wrong_token_is_refused(make_project) -> None:
-    with served(make_project(QUIET)) as server:
-        token = urlsplit(server.address).query.removeprefix("token=")
-        assert len(token) >= 32
-        for path in ("/", "/field-image"):
-            assert server.get(f"{path}?token={token}")[0] == 200
-            for wrong in ("", "?token=", "?token=x", f"?token={token[:-1]}", f"?token={token}x", "?token=%C3%A9"):
-                status, headers, content = server.get(path + wrong)
-                assert (status, headers["content-type"]) == (403, "text/plain; charset=utf-8")
-                assert token.encode() not in content
-        for wrong in ("/ws", "/ws?token=", f"/ws?token={token[:-1]}", f"/ws?token={token}x"):
-            assert refused(server, wrong) == 403
+def test_a_wrong_token_is_refused(quiet: Served) -> None:
+    token = urlsplit(quiet.address).query.removeprefix("token=")
+    assert len(token) >= 32
+    for path in ("/", "/field-image"):
+        assert quiet.get(f"{path}?token={token}")[0] == 200
+        for wrong in ("", "?token=", "?token=x", f"?token={token[:-1]}", f"?token={token}x", "?token=%C3%A9"):
+            status, headers, content = quiet.get(path + wrong)
+            assert (status, headers["content-type"]) == (403, "text/plain; charset=utf-8")
+            assert token.encode() not in content
+    for wrong in ("/ws", "/ws?token=", f"/ws?token={token[:-1]}", f"/ws?token={token}x"):
+        assert refused(quiet, wrong) == 403
 
 
-def test_a_page_of_another_origin_can_neither_read_nor_drive(make_project) -> None:
-    with served(make_project(QUIET)) as server:
-        parts = urlsplit(server.address)
-        for origin in ("http://evil.example", "http://127.0.0.1:1", f"https://{parts.netloc}", "null"):
-            assert refused(server, f"/ws?{parts.query}", origin=origin) == 403
-            for path in (f"/?{parts.query}", "/static/index.html"):
-                status, headers, _ = server.get(path, {"Origin": origin})
-                assert status == 403
-                assert "access-control-allow-origin" not in headers
+def test_a_page_of_another_origin_can_neither_read_nor_drive(quiet: Served) -> None:
+    parts = urlsplit(quiet.address)
+    for origin in ("http://evil.example", "http://127.0.0.1:1", f"https://{parts.netloc}", "null"):
+        assert refused(quiet, f"/ws?{parts.query}", origin=origin) == 403
+        for path in (f"/?{parts.query}", "/static/index.html"):
+            status, headers, _ = quiet.get(path, {"Origin": origin})
+            assert status == 403
+            assert "access-control-allow-origin" not in headers
 
 
-def test_a_name_that_leads_here_is_refused(make_project) -> None:
+def test_a_name_that_leads_here_is_refused(quiet: Served) -> None:
     """DNS rebinding: a page's own name is resolved to this computer."""
-    with served(make_project(QUIET)) as server:
-        parts = urlsplit(server.address)
-        for host in ("evil.example", f"evil.example:{parts.port}", "127.0.0.1.evil.example", "", "192.168.1.7"):
-            for path in (f"/?{parts.query}", "/static/index.html", f"/ws?{parts.query}"):
-                assert server.get(path, {"Host": host})[0] == 403, host
-        assert server.get(f"/?{parts.query}", {"Host": f"localhost:{parts.port}"})[0] == 200
+    parts = urlsplit(quiet.address)
+    for host in ("evil.example", f"evil.example:{parts.port}", "127.0.0.1.evil.example", "", "192.168.1.7"):
+        for path in (f"/?{parts.query}", "/static/index.html", f"/ws?{parts.query}"):
+            assert quiet.get(path, {"Host": host})[0] == 403, host
+    assert quiet.get(f"/?{parts.query}", {"Host": f"localhost:{parts.port}"})[0] == 200
 
 
 def opened(server: Served, host: str, origin: str, token: str = "") -> int:
@@ -89,13 +94,12 @@ def opened(server: Served, host: str, origin: str, token: str = "") -> int:
 
 
 @pytest.mark.slow
-def test_a_forwarded_port_of_another_number(make_project) -> None:
+def test_a_forwarded_port_of_another_number(quiet: Served) -> None:
     """`ssh -L 9999:127.0.0.1:PORT`, and VS Code: the browser's own computer has another port."""
-    with served(make_project(QUIET)) as server:
-        assert server.get(f"/?{urlsplit(server.address).query}", {"Host": "localhost:9999"})[0] == 200
-        assert opened(server, "localhost:9999", "http://localhost:9999") == 101
-        assert opened(server, "localhost:9999", "http://localhost:8888") == 403
-        assert opened(server, "localhost:9999", "http://localhost:9999", token="x") == 403
+    assert quiet.get(f"/?{urlsplit(quiet.address).query}", {"Host": "localhost:9999"})[0] == 200
+    assert opened(quiet, "localhost:9999", "http://localhost:9999") == 101
+    assert opened(quiet, "localhost:9999", "http://localhost:8888") == 403
+    assert opened(quiet, "localhost:9999", "http://localhost:9999", token="x") == 403
 
 
 def test_a_codespace_serves_the_name_at_which_its_port_is_forwarded(
@@ -151,29 +155,27 @@ def test_what_is_no_host(host: str) -> None:
         allowed_origins([host])
 
 
-def test_a_second_user_on_the_network_is_refused(make_project) -> None:
+def test_a_second_user_on_the_network_is_refused(quiet: Served) -> None:
     """The server does not even listen at this computer's address on the network."""
-    with served(make_project(QUIET)) as server:
-        assert server.front_end.server is not None
-        other = urlsplit(server.front_end.server.network_address()).hostname
-        if other is None or other.startswith("127."):
-            pytest.skip("the network: needs an address besides 127.0.0.1")
-        with pytest.raises(OSError), socket.create_connection((other, urlsplit(server.address).port), 2):  # noqa: PT011
-            pass
+    assert quiet.front_end.server is not None
+    other = urlsplit(quiet.front_end.server.network_address()).hostname
+    if other is None or other.startswith("127."):
+        pytest.skip("the network: needs an address besides 127.0.0.1")
+    with pytest.raises(OSError), socket.create_connection((other, urlsplit(quiet.address).port), 2):  # noqa: PT011
+        pass
 
 
-def test_the_page_may_load_its_own_files_only(make_project) -> None:
-    with served(make_project(QUIET)) as server:
-        for path in (f"/?{urlsplit(server.address).query}", "/static/index.html", "/nothing"):
-            headers = server.get(path)[1]
-            rules = dict(rule.strip().split(" ", 1) for rule in headers["content-security-policy"].split(";"))
-            assert rules["default-src"] == "'none'"
-            assert re.fullmatch(r"'self' 'sha256-[\w+/]{43}='", rules["script-src"])  # of the import map
-            assert rules["style-src"] == "'self'"
-            assert "unsafe" not in headers["content-security-policy"]
-            assert rules["frame-ancestors"] == "'none'"
-            assert headers["x-content-type-options"] == "nosniff"
-            assert headers["referrer-policy"] == "no-referrer"
+def test_the_page_may_load_its_own_files_only(quiet: Served) -> None:
+    for path in (f"/?{urlsplit(quiet.address).query}", "/static/index.html", "/nothing"):
+        headers = quiet.get(path)[1]
+        rules = dict(rule.strip().split(" ", 1) for rule in headers["content-security-policy"].split(";"))
+        assert rules["default-src"] == "'none'"
+        assert re.fullmatch(r"'self' 'sha256-[\w+/]{43}='", rules["script-src"])  # of the import map
+        assert rules["style-src"] == "'self'"
+        assert "unsafe" not in headers["content-security-policy"]
+        assert rules["frame-ancestors"] == "'none'"
+        assert headers["x-content-type-options"] == "nosniff"
+        assert headers["referrer-policy"] == "no-referrer"
 
 
 def test_a_page_with_the_viewing_address_sees_and_cannot_drive(make_project) -> None:
