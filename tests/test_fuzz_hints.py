@@ -10,7 +10,7 @@ import pytest
 from conftest import sampled
 from spelling import spelled
 
-from pyfrc_core.fuzz.oracle.growth import Growth, Growths
+from pyfrc_core.fuzz.oracle.growth import NETWORK_TABLES, Growth, Growths
 from pyfrc_core.fuzz.oracle.hints import CampaignHints, LoopTimes, MatchHints
 from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.runtime.time.timed_loop import Periodic
@@ -162,3 +162,21 @@ def test_a_command_that_was_finished_once_is_no_hint() -> None:
     assert text == "robot.py:3: Climb.isFinished() was never true: the command ran for up to 9 s (5 matches)"
     campaign.add(MatchHints(finished=frozenset({"robot.py:3: Climb.isFinished()"})))
     assert not list(campaign.texts())
+
+
+def test_what_is_said_of_growth_of_outputs_and_of_starts() -> None:
+    campaign = CampaignHints()
+    for number, size in enumerate((9, 8, 7, 6)):
+        campaign.add(MatchHints(growths=(Growth("arm.log", size, size * 10), Growth(NETWORK_TABLES, 2, number))))
+    campaign.add(MatchHints(growths=(Growth("arm.log", 5, 50),)))
+    campaign.always_set = ["robot.py:5"]
+    campaign.unsteady = {"cause": "robot.py:7: TimeoutError"}
+    campaign.failed_starts["cause"] = 2
+    unsteady, always, grows = campaign.texts()
+    assert unsteady == "robot.py:7: TimeoutError (at 2 of 5 starts, and not again with the same inputs)"
+    assert always.startswith("robot.py:5: this sets an output in each loop while the robot is disabled")
+    assert grows == (
+        "robot.arm.log grows all the time: by about 7 elements a second, to 70 at the end of a match (5 matches)"
+    )
+    campaign.add(MatchHints(growths=(Growth(NETWORK_TABLES, 3, 30),)))
+    assert list(campaign.texts())[2].startswith("NetworkTables grow all the time: by about 2 elements a second, to ")

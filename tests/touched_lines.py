@@ -4,6 +4,8 @@ Each interpreter of the environment that `mutants.py` makes imports this module 
 names the running test's file; commands, forks and agents inherit it. Each line is written when it first runs, so a
 process that is killed has written what it ran. `sys.monitoring` reports the lines, which needs Python 3.12: a tracer
 would disturb the tests of coverage and profiles, which need it themselves.
+
+pytest warns of a plugin that is imported before it, unless it reads here: PYTEST_DONT_REWRITE
 """
 
 from __future__ import annotations

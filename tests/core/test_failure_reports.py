@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from pyfrc_core.errors import PyfrcError
+from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.test_support import summary
 from pyfrc_core.test_support.autoload import _exists, _robot_project_of
-from pyfrc_core.test_support.reporting import BUG, put_first, seed_section
+from pyfrc_core.test_support.controller import TestController
+from pyfrc_core.test_support.options import READY_MADE_TESTS
+from pyfrc_core.test_support.reporting import BUG, never_ran_the_robot, put_first, seed_section
 from pyfrc_core.test_support.summary import _end_of, _explain_each_bug_once, _shorten_output, _take_device_warnings
+from pyfrc_core.test_support.uncollected import find_uncollected
 
 
 def report(name: str, longrepr: str = "", bug: str | None = None, *sections: tuple[str, str]) -> Any:
@@ -90,3 +96,53 @@ def test_a_robot_project_is_found_above_its_tests_and_not_beyond_another_project
     assert _robot_project_of(robot / "tests" / "more") == robot
     assert _robot_project_of(robot / "tool") is None
     assert not _exists(tmp_path / ("x" * 5000)), "no file can have this name"
+
+
+def test_files_that_have_tests_and_of_which_none_is_run(tmp_path: Path) -> None:
+    directory = tmp_path / "tests"
+    directory.mkdir()
+    off, alike = "import a\n# from pyfrc.tests import *\n", "def arm_test(robot):\n    pass\n"
+    texts = {"off_test.py": off, "test_alike.py": alike, "test_none.py": "x = 1\n", "test_run.py": "", "other.py": "",
+             "conftest.py": off, "arm_tests.py": "def test_a(): ...\n", "tests.py": "class TestA: ...\n"}  # fmt: skip
+    for name, text in texts.items():
+        (directory / name).write_text(text)
+    found = find_uncollected(directory, {directory / "test_run.py"}, ("test_*.py", "*_test.py"))
+    read = "its tests are not run, since pytest reads files called test_*.py and *_test.py. Rename it to"
+    assert sorted(found) == [
+        f"tests/arm_tests.py: {read} test_arm.py.",
+        "tests/off_test.py: no test was found in it. Remove the # in line 2, for the ready-made tests.",
+        "tests/test_alike.py: no test was found in it. The name of a test begins with test_: rename arm_test.",
+        "tests/test_none.py: no test was found in it. The name of a test begins with test_, as in: "
+        "def test_drive(control, robot):",
+        f"tests/tests.py: {read} test_robot.py.",
+    ]
+    project: Any = SimpleNamespace(unreadable_sources=lambda: ["a.py: damaged"], find_tests=lambda: directory)
+    session: Any = SimpleNamespace(testsfailed=0, config=SimpleNamespace(getini=lambda name: ("test_*.py",)))
+    for whole, failed, count in ((True, 0, 5), (True, 1, 0), (False, 0, 0)):
+        session.testsfailed = failed
+        plugin = summary.SummaryPlugin(project, whole)
+        plugin.pytest_collection_finish(session)
+        assert (len(plugin._uncollected), plugin._unreadable) == (count, ["a.py: damaged"])
+
+
+def test_a_test_that_never_ran_its_robot_is_reminded_of_it() -> None:
+    run = RobotRun()
+
+    def reminded(error: BaseException, test: object = len, robot_run: object = run) -> bool:
+        item: Any = SimpleNamespace(funcargs={"_robot_run": robot_run}, function=test)
+        failure: Any = SimpleNamespace(value=error, traceback=[])
+        return never_ran_the_robot(item, failure)
+
+    def runs(control: Any) -> None:
+        control.run_test(lambda now: True)
+
+    def ready_made() -> None: ...
+
+    ready_made.__module__ = f"{READY_MADE_TESTS}.docstring_test"
+    assert reminded(AssertionError())
+    assert not reminded(PyfrcError("a wrong key"))
+    misspelled = AttributeError("no set_automous", obj=object.__new__(TestController))
+    assert not reminded(misspelled)
+    assert not reminded(AssertionError(), runs)
+    assert not reminded(AssertionError(), ready_made)
+    assert not reminded(AssertionError(), len, None)

@@ -62,6 +62,7 @@ def known(code: str) -> tuple[Inference, Module]:
         ("import wpilib\ndef go(e, /, x=None): pass\ngo(1, wpilib.Timer())", ""),
         ("from wpimath.geometry import Rotation2d\nx = Rotation2d(1) * 2", "wpimath.geometry.Rotation2d"),
         ("import wpimath\ndef made() -> wpimath.Rotation2d: ...\nx = made()", "wpimath.geometry.Rotation2d"),
+        ("from wpilib import *\nx = Encoder(0, 1)", "wpilib.Encoder"),
         ("x = x", ""),
         ("class A:\n    y = 1\n    def go(self):\n        return y\nx = A().go()", ""),
     ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -12,9 +13,11 @@ import ntcore
 import pytest
 import wpilib
 
+from pyfrc_core.config.sim import SimConfig
 from pyfrc_core.errors import PyfrcError, RobotCodeError
 from pyfrc_core.physics.core import PhysicsInitException, PhysicsInterface
 from pyfrc_core.physics.engine import Physics, PhysicsModule, load_physics
+from pyfrc_core.physics.pose import Pose, Walls, walls_of
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.wpi import station
@@ -306,3 +309,17 @@ def test_a_field_of_the_robots_keeps_its_name(run: RobotRun, load: Load, takes: 
 
     physics = attached(run, load(INITIALIZED.format("", takes)), Robot, 0.1)
     assert physics.field_name == "Field (physics)"
+
+
+def test_walls_hold_a_robot_by_its_corners() -> None:
+    walls = Walls(across=20.0, down=10.0, length=4.0, width=2.0)
+    assert walls.keep_in(Pose(-1.0, 20.0, 0.0)) == pytest.approx((2.0, 9.0, 0.0))
+    assert walls.keep_in(Pose(99.0, -1.0, math.pi / 2)) == pytest.approx((19.0, 2.0, math.pi / 2))
+    assert walls.keep_in(Pose(5.0, 5.0, 1.0)) == (5.0, 5.0, 1.0)
+    assert Walls(3.0, 1.0, 4.0, 2.0).keep_in(Pose(9.0, 9.0, 0.0)) == (1.5, 0.5, 0.0), "a robot larger than its field"
+    far = math.hypot(4.0, 2.0) / 2
+    inside = [(-far, 5.0), (20.0 + far, 5.0), (5.0, -far), (5.0, 10.0 + far)]
+    outside = [(-far - 0.1, 5.0), (20.1 + far, 5.0), (5.0, -far - 0.1), (5.0, 10.1 + far)]
+    assert [walls.are_passed(Pose(x, y, 0.0)) for x, y in inside + outside] == [False] * 4 + [True] * 4
+    config = SimConfig()
+    assert walls_of(config) == (config.field.w, config.field.h, config.robot.l, config.robot.w)

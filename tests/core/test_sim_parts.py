@@ -7,11 +7,13 @@ from collections.abc import Iterable
 from dataclasses import fields
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from pyfrc_core.log_records import Record
+from pyfrc_core.processes.lent_streams import lent_streams
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.scripts.logged_inputs import LoggedInputs
 from pyfrc_core.runtime.scripts.recorder import Recorder, _shortest
@@ -24,7 +26,9 @@ from pyfrc_core.sim.engine.history import History
 from pyfrc_core.sim.engine.messages import Replayed, StationState, Update
 from pyfrc_core.sim.engine.output_log import OutputLog
 from pyfrc_core.sim.engine.recording import Recording
+from pyfrc_core.sim.engine.robot_side import console, pace
 from pyfrc_core.sim.engine.robot_side.pace import Pace
+from pyfrc_core.sim.engine.robot_side.traces import Traces
 from pyfrc_core.sim.engine.robot_side.user_renderer import UserRenderer
 from pyfrc_core.sim.engine.robot_side.wpilog import WpiLog
 from pyfrc_core.sim.engine.scene import Text, TextStyle
@@ -145,6 +149,40 @@ def test_late_packets_are_counted_each() -> None:
     assert (pace.late_packets, pace.packet_seconds, pace.worst_packet_seconds) == (3, 0.021, 0.021)
 
 
+def test_robot_time_keeps_to_a_schedule_and_gives_up_what_is_too_late(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 100.0
+    monkeypatch.setattr(pace, "wall", lambda: now)
+    twice = Pace(2.0, False)
+    twice.begin(1_000_000)
+    assert (twice.wait_for(3_000_000), Pace(0.0, False).wait_for(9_000_000)) == (1.0, 0.0)
+    now = 101.25
+    assert [twice.wait_for(2_000_000) for _ in range(2)] == [-0.75, -0.75]
+    now = 101.75
+    assert [twice.wait_for(2_000_000) for _ in range(2)] == [-1.25, 0.0]
+
+
+def test_speeds_are_those_of_the_last_half_second_and_of_all_without_pauses(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 100.0
+    monkeypatch.setattr(pace, "wall", lambda: now)
+    one = Pace(1.0, False)
+    found = []
+    for wall, robot_us in ((100.25, 500_000), (100.5, 500_000), (100.75, 600_000), (101.0, 700_000)):
+        now = wall
+        one.ran(robot_us)
+        found.append((round(one.reached, 3), round(one.average, 3)))
+    assert found == [(0.0, 2.0), (0.0, 1.0), (0.2, 0.8), (0.4, 0.7)]
+    now = 111.0
+    one.begin(700_000)
+    assert (one.reached, one.average) == (0.0, 0.7)
+    now = 111.25
+    one.ran(1_000_000)
+    now = 111.5
+    one.ran(1_500_000)
+    assert (one.reached, one.average) == (2.0, 1.0)
+    one.paused = True
+    assert one.reached == 0.0
+
+
 # -- values -----------------------------------------------------------------------------------------------------------
 
 
@@ -228,3 +266,41 @@ def test_a_robot_without_an_address_is_that_of_this_computer(tmp_path: Path, mon
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(view, "_no_project", lambda: view.Project(tmp_path / "robot.py"))
     assert view._robot(view.ViewRequest(robot=""), print).title == "this computer"
+
+
+def test_what_is_printed_before_a_data_log_is_open_comes_first_and_after_its_end_nothing() -> None:
+    clock, lines = SimpleNamespace(now_us=20_000), list[tuple[int, str]]()
+    with lent_streams():
+        printed = console.PrintedOutput(clock, "<{}>", keeps=True)  # type: ignore[arg-type]
+        assert (printed.stamp_for("one\ntwo"), lines, printed.keeps) == ("<20000>", [], True)
+        clock.now_us = 40_000
+        printed.begin(lambda now_us, line: lines.append((now_us, line)))
+        printed.stamp_for("three")
+        assert lines == [(40_000, "one"), (40_000, "two"), (40_000, "three")]
+        printed.end()
+        assert (printed.stamp_for("four"), lines[3:], printed.keeps) == ("<40000>", [], False)
+
+
+def test_of_a_replay_that_is_known_only_what_changes_after_it_is_noted() -> None:
+    changed: dict[str, Any] = {}
+
+    def look_at_values() -> tuple[dict[str, Any], list[str]]:
+        found = dict(changed)
+        changed.clear()
+        return found, []
+
+    hal_data: Any = SimpleNamespace(changes=lambda: SimpleNamespace(look_at_values=look_at_values))
+    traces = Traces(hal_data, None)
+    changed["dio[1].value"] = False
+    traces.skip_hal(0.02)
+    traces.look(0.04)
+    assert traces.take(0.04) == ((), ()), "what was known is no change any more"
+    changed["dio[2].value"] = False
+    traces.look(0.06)
+    assert traces.take(0.06) == ((Change(0.06, {"dio[2].value": False}),), ())
+    traces.is_on = True
+    changed["dio[3].value"] = False
+    traces.skip_hal(0.08)
+    traces.look(0.1)
+    assert traces.take(0.1) == ((Change(0.1, {"dio[3].value": False}),), ()), "a replay that differs is reported"
+    assert traces.network_values == {}

@@ -8,11 +8,13 @@ import ssl
 import threading
 import urllib.error
 from dataclasses import replace
+from email.message import Message
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from packaging.markers import Marker, default_environment
 from packaging.requirements import Requirement
 
 from pyfrc_core._version import __version__
@@ -25,7 +27,7 @@ from pyfrc_core.sync.lock import is_file_name
 from pyfrc_core.sync.pip_errors import NothingFitsError
 from pyfrc_core.sync.resolve import _found, find_packages
 from pyfrc_core.sync.synchronize import SyncOptions, _Work
-from pyfrc_core.sync.wanted import Wanted, load_wanted
+from pyfrc_core.sync.wanted import Wanted, load_wanted, robot_environment
 
 HASH = "a" * 64
 PYTHON_FILE = LockedFile("python", "3.14", "python.tar.gz", 1, HASH, "https://a.invalid/p")
@@ -314,3 +316,26 @@ def test_a_copy_appears_only_when_it_is_complete(work: _Work, tmp_path: Path) ->
     with pytest.raises(PyfrcError, match="changes while it is read"):
         work._copy(replace(six, size=4), tmp_path)
     assert [each.name for each in (tmp_path / "cache/pip_cache").iterdir()] == ["six.whl"]
+
+
+def test_versions_of_this_computer_and_a_python_like_the_robots(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert install._version_here("pytest") == pytest.__version__
+    assert install._version_here("no-such-package") is None
+    robot = default_environment() | robot_environment(CURRENT)
+    assert Marker("platform_python_implementation == 'CPython' and implementation_name == 'cpython'").evaluate(robot)
+    assert Marker("sys_platform == 'linux' and platform_system == 'Linux' and os_name == 'posix'").evaluate(robot)
+    assert robot["python_version"] == ".".join(CURRENT.downloads.python.split(".")[:2])
+
+
+def test_a_refused_download_says_what_to_correct() -> None:
+    def refused(code: int, named_by: str | None = None) -> tuple[str, str]:
+        wanted = download.Download("six 1", "https://a.invalid/six.whl", Path("six.whl"), named_by=named_by)
+        error = download._refused(wanted, urllib.error.HTTPError(wanted.url, code, "Gone", Message(), None))
+        return error.message, error.remedy
+
+    assert refused(404)[0] == "six 1 is no longer at https://a.invalid/six.whl"
+    assert refused(404)[1].startswith("Run pyfrc sync --upgrade")
+    message, remedy = refused(404, PYTHON_VARIABLE)
+    assert message == "six 1 is not at https://a.invalid/six.whl"
+    assert remedy == f"The variable {PYTHON_VARIABLE} names this address: correct it, or unset it."
+    assert refused(503, PYTHON_VARIABLE)[0] == "six 1 cannot be downloaded from a.invalid: HTTP 503 Gone"

@@ -389,9 +389,7 @@ class Inference:
         return union(self._result(each) for each in self.attribute(owners, method))
 
     def _operation(self, node: cst.BinaryOperation, scope: Scope) -> Atoms:
-        name = _OPERATORS.get(type(node.operator), "")
-        left, right = self.infer(node.left, scope), self.infer(node.right, scope)
-        return self._results(left, name) | self._results(right, name.replace("__", "__r", 1))
+        return self._results(self.infer(node.left, scope), _OPERATORS.get(type(node.operator), ""))
 
     def returned(self, function: OwnFunction) -> Atoms:
         """Return what a function of the team's returns."""
