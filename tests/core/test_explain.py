@@ -660,3 +660,9 @@ def test_components_that_do_not_exist(tmp_path: Path) -> None:
     file.write_text('[tool.robotpy]\ncomponents = "commands2"\n')
     with pytest.raises(SettingsError, match=r"pyproject.toml:2: components must be a list\n  .*\[.commands2.\]"):
         load_robot_packages(file)
+
+
+def test_a_name_of_another_language_is_no_missing_import(headline_of: Raise) -> None:
+    assert "import this" not in headline_of("this.arm = 1")
+    assert "import math" in headline_of("return math.pi")
+    assert "None" in headline_of("return 1 < None < 3")

@@ -32,6 +32,7 @@ from pyfrc_core.processes.exit import (
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork
 from pyfrc_core.processes.frames import decode, encode
 from pyfrc_core.processes.interpreter import spawn_worker
+from pyfrc_core.processes.output_pipe import OutputPipe
 from pyfrc_core.processes.worker import ForkedWorker, Send, Work, Worker, wait_for_any
 from pyfrc_core.project import Project
 from pyfrc_core.project.robot_files import RobotFiles
@@ -405,3 +406,41 @@ def test_what_a_new_interpreter_prints_has_the_encoding_of_its_reader(monkeypatc
     assert [encoding(None), encoding(3)] == ["cp1252:backslashreplace", "utf-8:backslashreplace"]
     monkeypatch.setattr(sys, "stdout", None)
     assert encoding(None) == "utf-8:backslashreplace"
+
+
+def test_what_is_printed_into_a_pipe_comes_out_in_order_and_without_marks() -> None:
+    found: list[tuple[str, Any]] = []
+    pipe = OutputPipe(lambda text, stamps: found.append((text, list(stamps))))
+
+    def printed(data: bytes) -> None:
+        os.write(pipe.writing_end, data)
+
+    stamp = pipe.stamp.format(20_000).encode()
+    printed(b"one\n" + stamp + b"two")
+    pipe.flush()
+    assert "".join(text for text, _ in found) == "one\ntwo"
+    assert found[0][1] == [(4, 20_000)]
+    found.clear()
+    for piece in (stamp[:5], stamp[5:-3], stamp[-3:-1], stamp[-1:], b"\xc3", b"\xa4"):
+        printed(piece)
+    pipe.flush()
+    assert "".join(text for text, _ in found) == "ä"
+    assert [stamps for _, stamps in found if stamps] in ([], [[(0, 20_000)]])
+    found.clear()
+    printed(b"a\0b\0pyfrc-no")
+    pipe.close()
+    assert "".join(text for text, _ in found) == "a\0b\0pyfrc-no"
+    pipe.flush()
+    pipe.close()
+
+
+def test_forks_close_a_connection_where_there_are_forks(monkeypatch: pytest.MonkeyPatch) -> None:
+    connection: Any = SimpleNamespace(close=lambda: None)
+    registered: list[Any] = []
+    monkeypatch.setattr(
+        channel, "os", SimpleNamespace(register_at_fork=lambda after_in_child: registered.append(after_in_child))
+    )
+    channel.close_in_forks(connection)
+    assert registered == [connection.close]
+    monkeypatch.setattr(channel, "os", SimpleNamespace())
+    channel.close_in_forks(connection)

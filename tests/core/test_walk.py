@@ -7,11 +7,13 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from pyfrc_core.project import Project
-from pyfrc_core.project.walk import files_below, python_files, read_source, text_to_search, why_unreadable
+from pyfrc_core.project import Project, robot_files
+from pyfrc_core.project.robot_files import RobotFiles
+from pyfrc_core.project.walk import SourceError, files_below, python_files, read_source, text_to_search, why_unreadable
 from pyfrc_core.test_support.uncollected import find_uncollected
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="links and pipes that Windows has not")
@@ -119,3 +121,44 @@ def test_hidden_directories_have_no_sources_but_a_project_below_one_has(tmp_path
     make(root, "tests/arm_tests.py", content=b"def test_arm(): pass\n")
     assert [file.relative_to(root).as_posix() for file in python_files(root)] == ["robot.py", "tests/arm_tests.py"]
     assert len(list(find_uncollected(root / "tests", set(), ["test_*.py"]))) == 1
+
+
+def test_sources_that_cannot_be_read_are_those_of_the_robot_and_of_the_tests_beside_it(tmp_path: Path) -> None:
+    for name in ("robot", "tests"):
+        make(tmp_path, f"{name}/wrong.py", content=b"\xff = 1")
+    for root, expected in (("robot", ["wrong.py", "../tests/wrong.py"]), ("tests", ["wrong.py"])):
+        errors = Project(tmp_path / root / "robot.py").unreadable_sources()
+        assert [str(each).partition(":")[0] for each in errors] == expected
+
+
+def test_which_files_are_the_robots_and_how_they_are_shown(tmp_path: Path) -> None:
+    files = RobotFiles(tmp_path / "robot")
+    program, test, beside = (str(tmp_path / each) for each in ("robot/a.py", "robot/tests/a.py", "tests/b/a.py"))
+    library = str(tmp_path / "robot/.venv/lib/site-packages/a.py")
+    ours = robot_files.__file__
+    names = (program, test, beside, library, ours)
+    assert [files.is_robot_code(each) for each in names] == [True, False, False, False, False]
+    assert [files.is_project_file(each) for each in names] == [True, True, True, False, False]
+    assert [files.relative(each) for each in names[:3]] == [
+        "a.py",
+        str(Path("tests/a.py")),
+        str(Path("../tests/b/a.py")),
+    ]
+    assert RobotFiles(tmp_path / "tests").is_robot_code(str(tmp_path / "tests/robot.py"))
+
+
+def test_lines_of_a_call_and_of_an_error_are_the_users() -> None:
+    here = RobotFiles(Path(__file__).parent)
+    frame = sys._getframe()
+    assert here.line_of_call(frame) == f"test_walk.py:{frame.f_lineno}"
+    assert RobotFiles(Path("/no/such")).line_of_call(frame) is None
+    assert here.line_of_call(None) is None
+    with pytest.raises(SourceError) as raised:
+        read_source(Path("/no/such.py"))
+    entry: Any = raised.value.__traceback__
+    assert here.innermost_line(entry) == f"test_walk.py:{entry.tb_lineno}"
+    assert robot_files.past_pyfrc(entry) is entry
+    last = robot_files.past_pyfrc(entry.tb_next)
+    assert last is not None
+    assert last.tb_next is None, "the last entry stays"
+    assert robot_files.past_pyfrc(None) is None
