@@ -46,6 +46,9 @@ def test_it_reads_what_it_has_written(lock_file: Path):
     assert load_lock(lock_file, CURRENT) == LOCK
     assert LOCK.files == (PYTHON, SEVEN, WHEEL)
     assert load_lock(lock_file.with_name("another"), CURRENT) is None
+    odd = replace(LOCK, requirements=('x; a == "ä\x7f\U0001f916\\"',))
+    save_lock(lock_file, odd)
+    assert load_lock(lock_file, CURRENT) == odd
 
 
 @pytest.mark.parametrize(

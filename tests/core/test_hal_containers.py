@@ -194,3 +194,9 @@ def test_the_longest_name_of_a_joystick() -> None:
     with pytest.raises(WrongValue):
         stick["name"] = "n" * 256
     stick["name"] = ""
+
+
+def test_which_values_can_be_written() -> None:
+    tree = HalData()
+    paths = {"pwm[1].value": True, "joysticks[0].axes": True, "time.hasSource": True, "user_program_state": False}
+    assert {path: tree.can_write(path) for path in paths} == paths

@@ -221,6 +221,19 @@ def test_a_shared_fixture_with_another_parameter_is_made_again(monkeypatch: pyte
     assert [other("a", "b"), other("a", "c"), other("a", "d"), other("b", "c")] == [False, True, False, True]
 
 
+def test_as_many_tests_run_at_once_as_there_are_processors(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(loop, "usable_processors", lambda: 4)
+    for libraries, jobs in (((), 4), (("phoenix6",), 5)):
+        monkeypatch.setattr(loop, "real_time_libraries", lambda libraries=libraries: libraries)
+        assert (loop._number_of_jobs("auto"), loop._number_of_jobs(3)) == (jobs, 3)
+
+
+def test_hooks_of_others() -> None:
+    modules = {"pytest_rerunfailures": True, "_pytest.runner": False, "pyfrc_core.test_support.hangs": False}
+    hooks = {name: SimpleNamespace(function=SimpleNamespace(__module__=name)) for name in modules}
+    assert {name: loop._is_foreign(hook) for name, hook in hooks.items()} == modules
+
+
 def test_a_slow_start_is_explained_once(plugin: Any) -> None:
     lines: list[str] = []
     reporter = SimpleNamespace(
