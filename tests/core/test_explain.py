@@ -13,6 +13,7 @@ from types import ModuleType
 
 import commands2
 import commands2.button
+import hal
 import pytest
 import wpilib
 import wpilib.drive
@@ -36,6 +37,9 @@ Raise = Callable[[str], str]
 @pytest.fixture
 def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
     """Runs the body of a function in a file of the project, and returns the headline of its error."""
+    # Another test's station may have been connected.
+    wpilib.simulation.DriverStationSim.setAllianceStationId(hal.AllianceStationID.kUnknown)
+    wpilib.simulation.DriverStationSim.notifyNewData()
 
     def headline_of(text: str) -> str:
         file = tmp_path / "robot.py"
