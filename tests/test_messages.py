@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from conftest import MakeProject, Result
-
-from pyfrc_core.test_support.uncollected import find_uncollected
 
 ROBOT = """
     import wpilib
@@ -105,29 +101,6 @@ def test_a_test_file_with_a_mistake_gets_the_lines_that_the_robot_gets(make_proj
     )
     assert "tests/test_import.py:1: robot has no MyRobt\n  Did you mean MyRobot?" in result.stdout
     assert "_pytest" not in result.stdout
-
-
-def test_test_files_that_are_never_run_are_named(tmp_path: Path) -> None:
-    for name, text in {
-        "drive_tests.py": "def test_it():\n    assert False\n",
-        "pyfrc_test.py": "x = 1\n# from pyfrc.tests import *\n",
-        "test_arm.py": "def check_test(robot):\n    pass\n",
-        "test_fine.py": "def test_fine():\n    pass\n",
-        "test_empty.py": "",
-        "helpers.py": "x = 1\n",
-    }.items():
-        (tmp_path / name).write_text(text)
-    found = list(find_uncollected(tmp_path, {tmp_path / "test_fine.py"}, ("test_*.py", "*_test.py")))
-    expected = (
-        ("drive_tests.py: its tests are not run, since pytest reads files called test_*.py and ", "to test_drive.py."),
-        ("pyfrc_test.py: no test was found in it. Remove the # in line 2, ", "for the ready-made tests."),
-        ("test_arm.py: no test was found in it. The name of a test begins with test_: ", "rename check_test."),
-        ("test_empty.py: no test was found in it. The name of a test begins with test_, as in: ", "robot):"),
-    )
-    assert len(found) == len(expected), found
-    for sentence, (first, last) in zip(found, expected, strict=True):
-        assert sentence.startswith(f"{tmp_path.name}/{first}"), sentence
-        assert sentence.endswith(last), sentence
 
 
 def test_nan_and_a_can_id_used_twice_are_named(make_project: MakeProject) -> None:

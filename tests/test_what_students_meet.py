@@ -385,43 +385,6 @@ def test_a_text_without_quotes_in_toml(tmp_path: Path, line: str, quoted: str) -
     assert str(caught.value).startswith("pyproject.toml:2: ") or "pyproject.toml:2: " in str(caught.value)
 
 
-# --- a test that never ran the robot
-
-NEVER_RUNS = """
-    def test_without_a_run(control, robot, hal_data):
-        assert hal_data["pwm"][0]["value"] == 1
-
-    def test_with_hal_data_only(hal_data):
-        assert hal_data["pwm"][0]["value"] == 1
-
-    def test_with_a_run(control, robot):
-        control.run_test(lambda now: now < 0.1)
-        assert False
-
-    def test_with_a_wrong_run(control, robot):
-        control.run_test(5)
-
-    def test_with_a_wrong_key(control, robot, hal_data):
-        hal_data["pmw"]
-
-    def test_with_a_misspelled_method(control, robot):
-        control.set_autonomus()
-
-    def test_of_arithmetic():
-        assert 1 + 1 == 3
-"""
-
-
-@pytest.mark.slow
-def test_a_failure_of_a_test_that_never_ran_the_robot_says_so(make_project: MakeProject) -> None:
-    ready_made = "from pyfrc.tests.docstring_test import *\n"  # looks at the code only
-    project = make_project({"robot.py": ROBOT, "tests/test_a.py": NEVER_RUNS, "tests/test_b.py": ready_made})
-    blocks = project.run("test").blocks()
-    said = {name for name, text in blocks.items() if "The robot was never run in this test" in text}
-    assert len(blocks) == 8
-    assert said == {"test_without_a_run", "test_with_hal_data_only"}
-
-
 # --- one bug that breaks many tests
 
 ONE_BUG = """
