@@ -15,12 +15,9 @@ from pyfrc_core.deploy import logs
 from pyfrc_core.deploy.agent import disk
 from pyfrc_core.deploy.agent.compiling import CompiledForms
 from pyfrc_core.deploy.agent.logs import RobotLogs
-from pyfrc_core.deploy.agent.release_record import LONG, after_watch
 from pyfrc_core.deploy.agent.robot_paths import Refusal
 from pyfrc_core.deploy.program_imports import ProgramImports
-from pyfrc_core.deploy.progress import describe_work
 from pyfrc_core.deploy.robot_packages import _fits, _same
-from pyfrc_core.deploy.targets import MAX_TEAM, is_shared_host, team_of_host
 
 
 def test_a_file_is_on_the_disk_before_it_has_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -93,19 +90,6 @@ def test_which_versions_are_the_same(one: str, other: str, same: bool) -> None:
     assert _same(one, other) is same
 
 
-def test_hosts_belong_to_a_team_or_to_all() -> None:
-    hosts = {"10.2.54.2": 254, "roboRIO-254-FRC.local": 254, "10.255.99.2": MAX_TEAM, "10.0.0.2": None}
-    assert {host: team_of_host(host) for host in hosts} == hosts
-    assert [is_shared_host(host) for host in ("172.22.11.2", "10.2.54.2")] == [True, False]
-
-
-def test_work_of_the_robot_in_words() -> None:
-    assert describe_work("check", 2300, 5000) == "checking 2,300 of 5,000 files"
-    assert describe_work("check", 5000, 5000) == "checking 5,000 of 5,000 files"
-    assert describe_work("link", 5001, 5000) == "linking 5,001 files"
-    assert describe_work("no such", 1, 2) == "working"
-
-
 def test_modules_that_a_program_adds_to_its_path_are_its_own(tmp_path: Path) -> None:
     imports = ProgramImports.__new__(ProgramImports)
     imports._files = {"lib/arm.py": tmp_path, "lib/more/__init__.py": tmp_path}  # type: ignore[assignment]
@@ -121,20 +105,6 @@ def test_how_much_of_a_log_is_missing_here(tmp_path: Path) -> None:
     assert logs._missing(log, file) == 6
     file.write_bytes(b"12345678901")
     assert logs._missing(log, file) == 0
-
-
-def test_a_watched_start_in_the_record() -> None:
-    boot: Any = SimpleNamespace(name="b")
-    first = after_watch({"name": "x"}, True, False, 7, 3.5, boot)
-    assert first == {"name": "x", "ran": True, "ended": False, "lasted": 3.5, "process": {"boot": "b", "id": 7}}
-    longer = after_watch(first, True, False, 8, LONG + 1.0, boot)
-    assert (longer["lasted"], longer["process"]) == (LONG, {"boot": "b", "id": 8})
-    ended = after_watch(first, False, True, 7, 99.0, boot)
-    assert (ended["ran"], ended["ended"], ended["lasted"], ended["process"]) == (True, True, 3.5, None)
-    never = after_watch({}, False, True, None, 99.0, boot)
-    assert (never["ran"], never["lasted"], never["process"]) == (False, 0.0, None)
-    assert after_watch({}, True, False, None, 0.5, boot)["process"] is None
-    assert after_watch({}, True, False, 7, 0.5, SimpleNamespace(name=None))["process"] is None  # type: ignore[arg-type]
 
 
 def test_a_log_is_removed_only_as_it_was_named(tmp_path: Path) -> None:
