@@ -17,43 +17,39 @@ from .dashboards import MOST_CELLS, Kind
 #: Where a project has it; robots serve their deploy directory.
 ELASTIC_LAYOUT = File("deploy", "elastic-layout.json")
 
-#: For each type of Elastic's widgets, what shows the same, with the settings that Elastic leaves out by default.
-_KINDS: dict[str, tuple[Kind, Mapping[str, Any]]] = {
-    "Text Display": ("input", {}),
-    "Large Text Display": ("text", {}),
-    "Number Slider": ("slider", {"min": -1.0, "max": 1.0}),
-    "Number Bar": ("gauge", {"min": -1.0, "max": 1.0}),
-    "Voltage View": ("gauge", {"min": 4.0, "max": 13.0, "unit": "V"}),
-    "Radial Gauge": ("gauge", {"min": 0.0, "max": 100.0}),
-    "Graph": ("graph", {"seconds": 5.0}),
-    "Match Time": ("time", {}),
-    "Boolean Box": ("lamp", {}),
-    "Toggle Button": ("switch", {}),
-    "Toggle Switch": ("switch", {}),
-    "Single Color View": ("color", {}),
-    "Multi Color View": ("color", {}),
-    "Camera Stream": ("camera", {}),
-    "ComboBox Chooser": ("chooser", {}),
-    "Split Button Chooser": ("chooser", {}),
-    "Command": ("command", {}),
-    "SwerveDrive": ("swerve", {}),
-    "Field": ("field", {}),
-    "Mechanism2d": ("mechanism", {}),
-    "Gyro": ("gyro", {}),
-    "PIDController": ("pid", {}),
-    "ProfiledPIDController": ("pid", {}),
-    "PowerDistribution": ("power", {}),
-    "Alerts": ("alerts", {}),
-    "Accelerometer": ("values", {}),
-    "3-Axis Accelerometer": ("values", {}),
-    "DifferentialDrive": ("values", {}),
-    "Encoder": ("values", {}),
-    "FMSInfo": ("values", {}),
-    "Motor Controller": ("values", {}),
-    "Relay": ("values", {}),
-    "RobotPreferences": ("values", {}),
-    "Subsystem": ("values", {}),
-    "Ultrasonic": ("values", {}),
+#: For each kind, the types of Elastic's widgets that show the same.
+_TYPES: dict[Kind, tuple[str, ...]] = {
+    "input": ("Text Display",),
+    "text": ("Large Text Display",),
+    "slider": ("Number Slider",),
+    "gauge": ("Number Bar", "Radial Gauge", "Voltage View"),
+    "graph": ("Graph",),
+    "time": ("Match Time",),
+    "lamp": ("Boolean Box",),
+    "switch": ("Toggle Button", "Toggle Switch"),
+    "color": ("Single Color View", "Multi Color View"),
+    "camera": ("Camera Stream",),
+    "chooser": ("ComboBox Chooser", "Split Button Chooser"),
+    "command": ("Command",),
+    "swerve": ("SwerveDrive",),
+    "field": ("Field",),
+    "gyro": ("Gyro",),
+    "pid": ("PIDController", "ProfiledPIDController"),
+    "power": ("PowerDistribution",),
+    "alerts": ("Alerts",),
+    "values": (
+        *("3-Axis Accelerometer", "Accelerometer", "DifferentialDrive", "Encoder", "FMSInfo", "Motor Controller"),
+        *("Relay", "RobotPreferences", "Subsystem", "Ultrasonic"),
+    ),
+}
+_KINDS = {type_name: kind for kind, names in _TYPES.items() for type_name in names}
+#: What Elastic takes where a layout does not say it.
+_DEFAULTS: dict[str, Mapping[str, Any]] = {
+    "Number Slider": {"min": -1.0, "max": 1.0},
+    "Number Bar": {"min": -1.0, "max": 1.0},
+    "Radial Gauge": {"min": 0.0, "max": 100.0},
+    "Voltage View": {"min": 4.0, "max": 13.0, "unit": "V"},
+    "Graph": {"seconds": 5.0},
 }
 #: Those of a single value, which a table may show.
 _SINGLE = ("input", "text", "number", "slider", "gauge", "lamp", "switch", "color", "time")
@@ -146,10 +142,10 @@ def _widget(type_name: str, properties: Mapping[str, Any]) -> dict[str, Any] | N
     topic = properties.get("topic")
     if type_name not in _KINDS or not isinstance(topic, str):
         return None
-    kind, settings = _KINDS[type_name]
+    kind = _KINDS[type_name]
     if kind == "text" and properties.get("data_type") in ("double", "float", "int"):
         kind = "number"
-    widget = {"kind": kind, "topic": _topic(topic, properties), **settings}
+    widget = {"kind": kind, "topic": _topic(topic, properties), **_DEFAULTS.get(type_name, {})}
     for theirs, own in _SETTINGS.get(kind, {}).items():
         if (value := _number(properties.get(theirs))) is not None:
             widget[own] = value
