@@ -64,6 +64,7 @@ _PACKAGES = {
 
 #: What no package brings.
 _OTHERWISE = {
+    "axe-core": "npm ci",
     "Dask": 'pip install "distributed>=2024.12"',
     "robotpy-rev": 'pip install "robotpy-rev>=2027.0.0a7.post1"',
     "phoenix6": 'pip install "phoenix6>=26.70.0a2"',

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from browser_pages import Seen, person_at_page, shared_browser, shared_server  # noqa: F401 - `person` and what it needs
 
@@ -44,7 +46,7 @@ def limits(person: Seen, axis: str) -> list[float]:
 
 def settings(person: Seen, key: str, **chosen: str) -> None:
     """Choose settings of a curve."""
-    person.page.get_by_label(f"Settings of {key}", exact=True).click()
+    person.page.get_by_label(re.compile(f"^Settings of {re.escape(key)}, ")).click()
     for label, option in chosen.items():
         person.page.get_by_label(label.replace("_", " "), exact=True).select_option(option)
     person.page.keyboard.press("Escape")

@@ -18,11 +18,12 @@ LOOK = """() => {
   const hidden = [];
   const small = [];
   const lists = ["auto", "scroll"];
-  for (const each of document.querySelectorAll("button, input, select, summary, .stick")) {
+  const top = document.querySelector("dialog, .menu-list:popover-open") ?? document;
+  for (const each of top.querySelectorAll("button, input, select, summary, a, [tabindex='0'][role]")) {
     const label = ["checkbox", "radio"].includes(each.type) ? each.closest("label:not(.switch)") : null;
     const element = label ?? each.closest(".search") ?? each;
     const box = element.getBoundingClientRect();
-    if (!box.width || !box.height || each.closest(".line")) continue; // a line of the console is text
+    if (!box.width || !box.height || each.closest(".lines, .failure-text")) continue; // parts of lines of text
     const name = each.ariaLabel || each.title || each.textContent || each.className;
     let [scrollsX, scrollsY, isCut] = [false, false, false];
     for (let outer = element.parentElement; outer; outer = outer.parentElement) {
@@ -37,7 +38,9 @@ LOOK = """() => {
       isCut ||= cutsY && !scrollsY && (box.top < limits.top - 1 || box.bottom > limits.bottom + 1);
     }
     if (isCut) hidden.push(name);
-    if (Math.min(box.width, box.height) < LEAST) small.push(`${name}: ${box.width} x ${box.height}`);
+    const around = getComputedStyle(each, "::after"); // where fingers hit a border, too
+    const [width, height] = ["width", "height"].map((size) => Math.max(box[size], parseFloat(around[size]) || 0));
+    if (Math.min(width, height) < LEAST) small.push(`${name}: ${width} x ${height}`);
   }
   return { hidden, small };
 }""".replace("LEAST", str(LEAST))
@@ -129,8 +132,8 @@ def test_nothing_is_off_the_screen_and_thumbs_hit_it(layout: str, tablet: Seen) 
         assert page.evaluate(LOOK) == {"hidden": [], "small": []}, tab.inner_text()
 
 
-@pytest.mark.parametrize(("width", "height"), [(390, 844), (844, 390)])
-def test_a_phone_reaches_everything(width: int, height: int, tablet: Seen) -> None:
+@pytest.mark.parametrize(("width", "height"), [(390, 844), (844, 390), (768, 1024)])
+def test_a_phone_and_an_upright_tablet_reach_everything(width: int, height: int, tablet: Seen) -> None:
     page = tablet.page
     page.set_viewport_size({"width": width, "height": height})
     tablet.drawn()
@@ -141,6 +144,37 @@ def test_a_phone_reaches_everything(width: int, height: int, tablet: Seen) -> No
     dock = page.locator(".dock").bounding_box()
     assert dock is not None
     assert dock["height"] > 0.5 * height
+
+
+def test_thumbs_hit_what_a_person_opens(tablet: Seen) -> None:
+    page = tablet.page
+    page.set_viewport_size({"width": 768, "height": 1024})
+    found: dict[str, Any] = {}
+
+    def look_into(title: str) -> None:
+        page.get_by_title(title, exact=True).or_(tablet.button(title)).first.tap()
+        page.locator("dialog, .menu-list:popover-open").wait_for()
+        found[title] = page.evaluate(LOOK)
+        page.keyboard.press("Escape")
+
+    for title in ("Layout", "Open and close panels", "Restart, save, end", "What is drawn", "Mark"):
+        look_into(title)
+    page.evaluate("module('js/plotting.js').then(({ addToPlot }) => addToPlot('nt:/SmartDashboard/kP', 'plot:1'))")
+    show_tab(tablet.tab("Plot 1"))
+    for title in ("Settings of kP", "Axes", "Add value"):
+        look_into(title)
+    tablet.button("Table").tap()
+    found["Table"] = page.evaluate(LOOK)
+    tablet.choose("Layout", "Dashboard")
+    look_into("Dashboards of this project")
+    tablet.button("New dashboard…").tap()
+    tablet.button("OK").tap()
+    tablet.button("Add widget").tap()
+    page.get_by_label("Search all values").fill("kP")
+    page.keyboard.press("Enter")
+    for title in ("Settings of kP", "Grid", "Add widget"):
+        look_into(title)
+    assert {title: each for title, each in found.items() if each != {"hidden": [], "small": []}} == {}
 
 
 def test_a_value_is_set_and_plotted_without_a_pointer_that_hovers(tablet: Seen) -> None:

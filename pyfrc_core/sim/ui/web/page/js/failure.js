@@ -34,7 +34,7 @@ export class FailureBar extends Live {
           ${model.isDriven && html`<button onClick=${() => commandLive("restart")} disabled=${!model.mayDrive}><${Icon} name="restart" />Restart</button>`}
         </div>
       </div>
-      ${failure.details && html`<details><summary>Traceback</summary><pre>${failure.details}</pre></details>`}
+      ${failure.details && html`<details><summary>Traceback</summary><pre tabindex="0">${failure.details}</pre></details>`}
     </section>`;
   }
 }

@@ -51,7 +51,7 @@ const METERS = [
 
 export function PowerWidget({ path }) {
   const [switchable] = valuesIn(path, ["SwitchableChannel"]);
-  return html`<div class="power scroll">
+  return html`<div class="power scroll" tabindex="0">
     ${METERS.filter(([name]) => valuesIn(path, [name]).length).map(([name, label, high, unit]) => html`<div class="row flex" key=${`${path} ${name}`}>
       <span class="row-label">${label}</span><${Meter} row=${{ paths: [`${path}/${name}`], low: 0, high, decimals: 1, unit }} /></div>`)}
     ${switchable && html`<div class="row flex" key=${switchable}><span class="row-label">Switchable</span><${Toggle} row=${{ paths: [switchable] }} label="Switchable channel" /></div>`}

@@ -121,11 +121,11 @@ function isTyping(target) {
   return target.matches?.('input:not([type="range"]):not([type="checkbox"]):not([type="radio"]), textarea, select, [contenteditable]');
 }
 
-// Whether the keyboard is on a control that a key works: of the timeline only arrows, so that the emergency stop stays.
+// Whether the keyboard is on a control that a key works. What only takes arrows, such as the timeline, leaves the emergency
+// stop as it is; and what scrolls leaves arrows as they are, unless the person went there by keys.
 function isControl(target, name) {
-  if (!["return", "kp_enter", "space", "left", "right", "up", "down"].includes(name)) return false;
-  const isArrow = ["left", "right", "up", "down"].includes(name);
-  return target.matches?.(`button, a, summary, input, [role="separator"], [tabindex="0"]${isArrow ? "" : ':not([role="slider"])'}`);
+  if (["left", "right", "up", "down"].includes(name)) return target.matches?.('button, a, summary, input, [tabindex="0"]:is([role], :focus-visible)');
+  return ["return", "kp_enter", "space"].includes(name) && target.matches?.("button, a, summary, input");
 }
 
 function down(event) {

@@ -3,7 +3,7 @@ import { model } from "#js/model.js";
 import { live, look, lookBy, lookByPackets } from "#js/past.js";
 import { playback } from "#js/playback.js";
 
-const USES_KEYS = 'input, select, textarea, [contenteditable], [role="tab"], [tabindex="0"]:not([role="log"]), .menu, dialog';
+const USES_KEYS = 'input, select, textarea, [contenteditable], [role="tab"], [tabindex="0"]:not([role="log"]):is([role], :focus-visible), .menu, dialog';
 const SCROLL = ["PageUp", "PageDown", "Home", "End"];
 
 // Do what a key does, and return whether it does something.

@@ -44,7 +44,7 @@ class Split extends Component {
   render({ node, place, narrow }) {
     const parts = [];
     node.children.forEach((child, index) => {
-      if (index) parts.push(html`<${Border} key=${`border${index}`} split=${this} index=${index - 1} />`);
+      if (index) parts.push(html`<${Border} key=${`border${index}`} split=${this} index=${index - 1} sizes=${node.sizes} narrow=${narrow} />`);
       const style = { flexGrow: String(node.sizes[index]) };
       parts.push(html`<div class="cell" key=${`cell${index}`} style=${style}>
         <${Node} node=${child} place=${[...place, index]} narrow=${narrow} />
@@ -54,14 +54,16 @@ class Split extends Component {
   }
 
   move(index, share) {
-    if (!this.props.narrow) settings.tree = resize(settings.tree, this.props.place, index, share);
+    settings.tree = resize(settings.tree, this.props.place, index, share);
   }
 }
 
 class Border extends Component {
-  render({ split }) {
+  render({ split, index, sizes, narrow }) {
+    if (narrow) return html`<div class="border" role="separator"></div>`; // the arrangement is not the person's
     const across = split.props.node.kind === "row" ? "vertical" : "horizontal";
-    return html`<div class="border" role="separator" tabindex="0" aria-orientation=${across}
+    const share = (100 * sizes[index]) / (sizes[index] + sizes[index + 1]);
+    return html`<div class="border" role="separator" tabindex="0" aria-orientation=${across} aria-valuenow=${Math.round(share)}
       aria-label="Border between panels: arrow keys move it"
       onPointerDown=${this.begin} onPointerMove=${this.drag} onPointerUp=${this.end} onKeyDown=${this.key}></div>`;
   }
@@ -101,16 +103,17 @@ class Tabs extends Component {
     const kind = PANELS[active?.split(":")[0]];
     return html`<section class="tabs column" onDragOver=${this.over} onDragLeave=${this.leave} onDrop=${this.drop}
         data-panel=${active} aria-label=${panelTitle(active)}>
-      <div class="tab-list" role="tablist">
-        ${node.panels.map((panel) => html`<div key=${panel} class=${classes({ tab: true, flex: true, active: panel === active })}
-            draggable=${!narrow} onDragStart=${(event) => this.carry(event, panel)}>
-          <button role="tab" aria-selected=${panel === active} onClick=${() => this.front(panel)}
-            onKeyDown=${(event) => this.key(event, panel)}>${panelTitle(panel)}</button>
-          ${panel === active && html`<button class="tab-close" title=${`Close ${panelTitle(panel)}`}
-            aria-label=${`Close ${panelTitle(panel)}`} onClick=${() => this.close(panel)}><${Icon} name="close" /></button>`}
-        </div>`)}
+      <div class="tab-line flex">
+        <div class="tab-list fill" role="tablist">
+          ${node.panels.map((panel) => html`<div key=${panel} class=${classes({ tab: true, flex: true, active: panel === active })}
+              draggable=${!narrow} onDragStart=${(event) => this.carry(event, panel)}>
+            <button role="tab" aria-selected=${panel === active} onClick=${() => this.front(panel)}
+              onKeyDown=${(event) => this.key(event, panel)}>${panelTitle(panel)}</button>
+          </div>`)}
+        </div>
+        <button class="tab-close" title=${`Close ${panelTitle(active)}`} aria-label=${`Close ${panelTitle(active)}`} onClick=${() => this.close(active)}><${Icon} name="close" /></button>
       </div>
-      <div class="panel fill" role="tabpanel" key=${active}>
+      <div class="panel fill" role="tabpanel" aria-label=${panelTitle(active)} key=${active}>
         ${kind && html`<${kind.component} key=${active} id=${active} />`}
       </div>
       ${over && html`<div class=${`drop-mark ${over}`}></div>`}

@@ -132,7 +132,7 @@ export class DashboardPanel extends Live {
     const { arranging } = this;
     const board = { arranging, chosen: dashboards.chosen, choose: this.choose, cell: this.cell, change: this.change, remove: this.remove };
     const style = { "--columns": shown.columns, "--rows": shown.rows };
-    return html`<div class=${classes({ grid: true, fill: true, arranging })} ref=${this.grid} style=${style} onPointerDown=${this.leaveWidgets} onDragOver=${this.over} onDrop=${this.drop}>
+    return html`<div class=${classes({ grid: true, fill: true, arranging })} tabindex="0" ref=${this.grid} style=${style} onPointerDown=${this.leaveWidgets} onDragOver=${this.over} onDrop=${this.drop}>
       ${shown.widgets.map((widget, index) => html`<${WidgetFrame} key=${index} widget=${widget} index=${index} board=${board} />`)}
       ${!shown.widgets.length && html`<p class="empty grid-empty">${arranging ? "Drag a value here from NetworkTables, or choose “Add widget”." : "This dashboard has no widgets. Choose “Arrange”."}</p>`}
     </div>`;
@@ -206,10 +206,10 @@ export class DashboardPanel extends Live {
     addTopic(path, { x: Math.floor((event.clientX - box.left + this.grid.current.scrollLeft) / width), y: Math.floor((event.clientY - box.top + this.grid.current.scrollTop) / height) });
   };
 
-  // Boxes for text have an undo of their own.
+  // Where the buttons are. Boxes for text have an undo of their own.
   stepKey = (event) => {
     const name = event.key.toLowerCase();
-    if (!this.arranging || !(event.ctrlKey || event.metaKey) || event.altKey || !["z", "y"].includes(name)) return;
+    if (this.state.full || dashboards.problem || !(event.ctrlKey || event.metaKey) || event.altKey || !["z", "y"].includes(name)) return;
     if (event.target.closest?.("input:not([type=checkbox], [type=radio], [type=range]), textarea, dialog")) return;
     event.preventDefault();
     dashboards.go(name === "z" && !event.shiftKey);

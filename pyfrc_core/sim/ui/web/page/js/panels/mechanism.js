@@ -17,7 +17,7 @@ export class MechanismPanel extends Drawn {
   render({ only }) {
     this.found = mechanisms(model.shown.values).filter(({ folder }) => !only || folder === only);
     model.need(this, this.found.map(({ folder }) => `${folder}/`));
-    return html`<div class="mechanism"><canvas ref=${this.canvas} role="img" aria-label=${this.found.map((each) => each.name).join(", ")}></canvas>
+    return html`<div class="mechanism"><canvas ref=${this.canvas} role="img" aria-label=${this.found.map((each) => each.name).join(", ") || "No mechanism"}></canvas>
       ${!this.found.length && html`<p class="empty">A Mechanism2d that the robot publishes with ${model.hello.options.dashboard.publishing} appears here.</p>`}</div>`;
   }
 

@@ -11,7 +11,7 @@ const NAMES = { left: "Left", right: "Right" };
 // hold: whether the time that is shown stays
 export function PlotAxes({ axes, ranges, limits, setRange, hold, setHold }) {
   return html`<${Dropdown} label="Axes" title="Limits of the axes" content=${() => html`<div class="form">
-    <div><label><input type="checkbox" checked=${hold} onChange=${() => setHold(!hold)} /> Keep the time that is shown</label></div>
+    <div><label class="check"><input type="checkbox" checked=${hold} onChange=${() => setHold(!hold)} /> Keep the time that is shown</label></div>
     ${axes.map((axis) => html`<${Axis} key=${axis} axis=${axis} locked=${axis in ranges()} range=${() => ranges()[axis] ?? limits(axis)} setRange=${setRange} />`)}
   </div>`} />`;
 }
@@ -31,7 +31,7 @@ function Axis({ axis, locked, range, setRange }) {
   return html`<div class="axis-line"><span>${NAMES[axis]}</span>
     <${TextBox} aria-label=${`${NAMES[axis]} axis from`} text=${short(low)} set=${typed((value) => [value, range()[1]])} />
     <${TextBox} aria-label=${`${NAMES[axis]} axis to`} text=${short(high)} set=${typed((value) => [range()[0], value])} />
-    <label><input type="checkbox" aria-label=${`Lock the ${NAMES[axis].toLowerCase()} axis`} checked=${locked} onChange=${() => setRange(axis, locked ? null : range())} /> Lock</label></div>`;
+    <label class="check"><input type="checkbox" aria-label=${`Lock the ${NAMES[axis].toLowerCase()} axis`} checked=${locked} onChange=${() => setRange(axis, locked ? null : range())} /> Lock</label></div>`;
 }
 
 function short(value) {

@@ -17,7 +17,7 @@ const LINE_NAMES = ["solid", "dashed", "dotted", "dash-dotted"];
 export function PlotLegend({ plot, bare, isTable, hasBranch, isNumber, shownOf, statisticsOf }) {
   const curves = plot.curves;
   if (bare) {
-    return html`<ul class="legend" aria-label="Curves">
+    return html`<ul class="legend" aria-label="Curves" tabindex="0">
       ${curves.map((curve) => html`<li key=${keyOf(curve)}><i class="swatch" style=${swatchOf(curve)}></i><${CurveName} curve=${curve} />
         <${Value} curve=${curve} value=${shownOf(curve)} /></li>`)}
     </ul>`;
@@ -72,7 +72,7 @@ function Tools({ curve, plot, isNumber }) {
 // What is shown of a value, in which unit, and how it is drawn.
 // plot: { curves, isNumber(curve), change(curve, changes, or a function that returns them), copy(curve) }
 function CurveSettings({ curve, plot }) {
-  return html`<${Dropdown} className="curve-button" title=${`Settings of ${titleOf(curve)}`} name=${`Settings of ${keyOf(curve)}`}
+  return html`<${Dropdown} className="curve-button" title=${`Settings of ${titleOf(curve)}`} name=${`Settings of ${keyOf(curve)}, ${titleOf(curve)}`}
     label=${html`<${CurveName} curve=${curve} />`} content=${(close) => html`<${Settings} curve=${curve} plot=${plot} close=${close} />`} />`;
 }
 

@@ -46,7 +46,7 @@ export function sendables(values) {
 
 export function Alerts({ folder, values }) {
   const lines = ALERTS.flatMap(([kind, name]) => (plain(values.get(`${folder.path}/${kind}`)) ?? []).map((text) => ({ name, text })));
-  return html`<div class="card"><h4>${folder.name}</h4>${lines.map(({ name, text }, index) => html`<p key=${index} class=${`alert flex ${name}`}><${Icon} name="warning" />${text}</p>`)}
+  return html`<div class="card" tabindex="0"><h4>${folder.name}</h4>${lines.map(({ name, text }, index) => html`<p key=${index} class=${`alert flex ${name}`}><${Icon} name="warning" />${text}</p>`)}
     ${!lines.length && html`<p class="faint">No alerts.</p>`}</div>`;
 }
 
@@ -59,7 +59,7 @@ export function CommandCard({ folder, values }) {
 // paths: those of the values to show, in this order; without it, all of the table
 export function ValuesCard({ folder, values, paths = null }) {
   const shown = paths ?? [...values.keys()].filter((path) => path.startsWith(`${folder.path}/`) && !path.slice(folder.path.length).includes("/."));
-  return html`<div class="card"><h4>${folder.name}<span class="chip">${folder.type}</span></h4>
+  return html`<div class="card" tabindex="0"><h4>${folder.name}<span class="chip">${folder.type}</span></h4>
     ${shown.map((path) => html`<${ValueRow} key=${path} path=${path} name=${paths ? path.split("/").pop() : path.slice(folder.path.length + 1)} value=${plain(values.get(path))} />`)}</div>`;
 }
 
