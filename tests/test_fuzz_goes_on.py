@@ -126,7 +126,7 @@ def test_most_matches_leave_out_an_input_of_each_known_failure() -> None:
     scheduler = SeedScheduler(1)
     often, too, seldom = (FuzzFailure("ValueError", f"robot.py:{line}", "f", "") for line in (1, 2, 3))
     for ended_by in [often, too, None] * 10 + [seldom]:
-        scheduler.note_end(scheduler.schedule(0), ended_by)
+        scheduler.known.note(scheduler.schedule(0).left_out[-1][1], ended_by)
     scheduler.avoid(often, script_of({"mode": "teleop", "joysticks[0].buttons[1]": True}, {"dio[0].value": False}))
     scheduler.avoid(too, script_of({"mode": "autonomous"}, {"mode": "disabled"}, {"mode": "autonomous"}))
     scheduler.avoid(seldom, script_of({"mode": "test"}))

@@ -60,10 +60,7 @@ class Players(WorkExecutor):
         self.shrink: Callable[[ShrinkTask], Shrunk] = lambda task: Shrunk(script(40_000), task.failure, True, 7)
         self.tasks: list[Work] = []
         self.begun = 0
-
-    @property
-    def lines(self) -> frozenset[Any]:
-        return LINES
+        self.lines = LINES
 
     @property
     def matches(self) -> list[FuzzTask]:

@@ -57,7 +57,7 @@ class Local(LocalMatchExecutor):
 
     def __init__(self, directory: Path, jobs: int = 2) -> None:
         super().__init__(Project(directory / "robot.py"), jobs, directory)
-        self._lines = frozenset()
+        self.lines = frozenset()
         self.begun: list[Call] = []
         self.ends: Iterator[int] = iter(())
         self.outcome: Callable[[Any], object] = lambda task: MatchResult(None, task.script)

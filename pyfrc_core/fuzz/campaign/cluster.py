@@ -12,18 +12,17 @@ import pickle
 import socket
 import time
 import uuid
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from contextlib import contextmanager, suppress
 from importlib.util import find_spec
-from typing import Any, Protocol
+from typing import Any
 from urllib.parse import urlsplit
 
 from ..._version import requirement
 from ...errors import PyfrcError, UsageError
 from ...processes.call import run_in_subprocess
 from ...project import Project
-from ..guidance.goals import RobotLine
 from ..match.work import MatchResult, NextWork, NoMoreWork, Result, Shrunk, Work
 from .executors import WorkExecutor, all_lines
 from .packed_project import pack
@@ -39,24 +38,6 @@ _RETRIES = 2
 
 #: The project's own files decide what a match does, and these variables.
 _ENVIRONMENT = {"PYTHONHASHSEED": "0"}
-
-
-class DaskClient(Protocol):
-    """What is used of `distributed.Client`, most of which has no types."""
-
-    status: str
-
-    def nthreads(self) -> dict[str, int]: ...
-
-    def get_executor(self, *, pure: bool, retries: int) -> Executor: ...
-
-    def get_versions(self, *, packages: Sequence[str]) -> dict[str, dict[str, Any]]: ...
-
-    def register_plugin(self, plugin: object, name: str) -> object: ...
-
-    def unregister_worker_plugin(self, name: str) -> object: ...
-
-    def close(self) -> object: ...
 
 
 class ClusterError(PyfrcError):
@@ -99,17 +80,14 @@ class ClusterMatchExecutor(WorkExecutor):
     :param plugin: the name of the plugin that keeps the project on each worker
     """
 
-    def __init__(self, project: Project, client: DaskClient, address: str, plugin: str) -> None:
+    def __init__(self, project: Project, client: Any, address: str, plugin: str) -> None:
         super().__init__(project, max(1, sum(client.nthreads().values())))
         self._client = client
         self._address = address
         self._plugin = plugin
-        self._executor = client.get_executor(pure=False, retries=_RETRIES)
+        self._executor: Executor = client.get_executor(pure=False, retries=_RETRIES)
         self._checked = self._had_workers = time.monotonic()
-
-    @property
-    def lines(self) -> frozenset[RobotLine]:
-        return run_in_subprocess(all_lines, self.project, "while it was imported")
+        self.lines = run_in_subprocess(all_lines, project, "while it was imported")
 
     def run(self, next_work: NextWork) -> Generator[tuple[Work, Result], None, None]:
         from .cluster_worker import play_on_worker
@@ -156,16 +134,16 @@ class ClusterMatchExecutor(WorkExecutor):
 
 
 @contextmanager
-def _connected(address: str) -> Iterator[DaskClient]:
+def _connected(address: str) -> Iterator[Any]:
     _check_address(address)
     from distributed import Client
 
-    connect: Any = Client
+    connect: Any = Client  # most of it has no types
     for name in logging.root.manager.loggerDict:
         if name.startswith(("asyncio", "distributed", "tornado")):  # what they log is shown as an error of ours
             logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
-        client: DaskClient = connect(address, timeout=_RESPONSE_SECONDS, set_as_default=False)
+        client = connect(address, timeout=_RESPONSE_SECONDS, set_as_default=False)
     except OSError as error:
         raise _unreachable(address, error) from error
     try:
@@ -200,14 +178,14 @@ def _unreachable(address: str, error: OSError) -> ClusterError:
     )
 
 
-def _count_workers(client: DaskClient, address: str) -> int:
+def _count_workers(client: Any, address: str) -> int:
     try:
         return len(client.nthreads())
     except OSError:
         raise ClusterError(f"the connection to the scheduler at {address} was lost") from None
 
 
-def _check_versions(client: DaskClient, address: str) -> None:
+def _check_versions(client: Any, address: str) -> None:
     """:raises ClusterError: when there are no workers, or one cannot play the same matches as this computer"""
     from .cluster_worker import PACKAGES, versions
 

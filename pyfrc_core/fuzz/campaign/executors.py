@@ -6,11 +6,12 @@ Each match has its own process, so it may crash, hang and print without harm.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import AbstractContextManager, closing, contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import TypeVar
 
 from ...errors import PyfrcError, RobotCodeError
 from ...interruption import interruption
@@ -27,7 +28,7 @@ from ...runtime.turns import taking_turns
 from ...temporary import temporary_directory
 from ..guidance.goals import RobotLine
 from ..guidance.seed_schedule import match_seconds
-from ..match.imported_robot import robot_lines
+from ..match.imported_robot import import_libraries, libraries_of, robot_lines
 from ..match.journal import read_journal
 from ..match.play import play
 from ..match.preparation import Preparation, known_project, prepare_interpreter
@@ -48,6 +49,8 @@ from ..match.work import (
 from ..oracle.failure import HANGS, PROCESS_ENDED, FuzzFailure
 from ..shrink.shrinker import Shrinker
 from .first_starts import START_US
+
+Returned = TypeVar("Returned")
 
 #: How often a failure at the start has to repeat.
 _STARTS_AGAIN = 4
@@ -119,13 +122,14 @@ def _work(project: Project, log: CrashLog, work: Work) -> Result:
 
 def all_lines(project: Project, log: CrashLog) -> frozenset[RobotLine]:
     """Import the robot in this process; return its lines."""
-    return robot_lines(project).all()
+    return robot_lines(project).all
 
 
-def _survey(project: Project) -> tuple[bool, frozenset[RobotLine]]:
-    """Import the robot; return whether its processes cannot be forked after that, and its lines."""
-    lines = robot_lines(project).all()
-    return bool(reasons_not_to_fork()), lines
+def _survey(project: Project) -> tuple[bool, frozenset[RobotLine], tuple[str, ...]]:
+    """Import the robot; return whether its processes cannot be forked after that, its lines, and its libraries."""
+    libraries = libraries_of(project)
+    lines = robot_lines(project).all
+    return bool(reasons_not_to_fork()), lines, libraries
 
 
 class LocalMatchExecutor(WorkExecutor):
@@ -134,16 +138,10 @@ class LocalMatchExecutor(WorkExecutor):
     :param directory: a directory for temporary files
     """
 
-    _lines: frozenset[RobotLine]
-
     def __init__(self, project: Project, jobs: int, directory: Path) -> None:
         super().__init__(project, jobs)
         self._directory = directory
         self._journals = 0
-
-    @property
-    def lines(self) -> frozenset[RobotLine]:
-        return self._lines
 
     def run(self, next_work: NextWork) -> Generator[tuple[Work, Result], None, None]:
         running: dict[Call[Result], tuple[Work, Work]] = {}
@@ -222,11 +220,17 @@ class ForkedMatchExecutor(LocalMatchExecutor):
         super().__init__(project, jobs, directory)
 
         # In a separate process first: an import cannot be undone.
-        survey = ForkedCall(lambda log: _survey(project), files=project.files)
-        with closing(survey):
-            survey.wait()
-            imports_late, self._lines = survey.result(project.files, "while it was imported")
-        self._preparation = Preparation(project, is_imported=not imports_late)
+        imports_late, self.lines, libraries = self._try(lambda: _survey(project))
+        if imports_late and libraries and not self._try(lambda: import_libraries(project, libraries)):
+            libraries = ()
+        self._preparation = Preparation(project, not imports_late, libraries)
+
+    def _try(self, work: Callable[[], Returned]) -> Returned:
+        """Return what this returns in a fork, in which it imports something."""
+        call: Call[Returned] = ForkedCall(lambda log: work(), files=self.project.files)
+        with closing(call):
+            call.wait()
+            return call.result(self.project.files, "while it was imported")
 
     def close(self) -> None:
         self._preparation.close()
@@ -245,7 +249,7 @@ class SpawnedMatchExecutor(LocalMatchExecutor):
         try:
             with closing(survey):
                 survey.wait()
-                self._lines = survey.result(project.files, "while it was imported")
+                self.lines = survey.result(project.files, "while it was imported")
         except BaseException:
             self.close()
             raise

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
-from hashlib import sha256
 from pathlib import Path, PurePosixPath
 
-from ...errors import PyfrcError
 from ...passes.memory import project_files
 from ...project import Project
 
@@ -19,24 +17,19 @@ class PackedProject:
     """A project with the content of its files.
 
     :param project: with the paths of the computer on which it was packed
-    :param files: each file's content and SHA-256, by its path relative to the project's root
+    :param files: each file's content, by its path relative to the project's root
     """
 
     project: Project
-    files: dict[str, tuple[bytes, str]]
+    files: dict[str, bytes]
 
     def unpack(self, directory: Path) -> Project:
-        """Write the files below an empty directory, and return the project there.
-
-        :raises PyfrcError: when a file has another content than it had when it was packed
-        """
+        """Write the files below an empty directory, and return the project there."""
         # Tests and settings may be beside the project's root, or above it.
         above = max((PurePosixPath(name).parts.count("..") for name in self.files), default=0)
         root = directory.resolve().joinpath(*["above"] * above, self.project.root.name or "robot")
         root.mkdir(parents=True)
-        for name, (content, digest) in self.files.items():
-            if sha256(content).hexdigest() != digest:
-                raise PyfrcError(f"{name} has changed on its way to the worker")
+        for name, content in self.files.items():
             file = Path(os.path.normpath(root / name))
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(content)
@@ -53,6 +46,5 @@ def pack(project: Project) -> PackedProject:
         name = Path(os.path.relpath(file, project.root)).as_posix()
         is_hidden = any(part.startswith(".") for part in name.split("/") if part != "..")
         if not is_hidden and file.suffix not in _LOGS and file.is_file() and os.access(file, os.R_OK):
-            content = file.read_bytes()
-            files[name] = content, sha256(content).hexdigest()
+            files[name] = file.read_bytes()
     return PackedProject(replace(project), dict(sorted(files.items())))

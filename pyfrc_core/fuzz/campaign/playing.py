@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections import deque
 from collections.abc import Iterator, Mapping
@@ -17,6 +18,9 @@ from .results import CampaignOptions
 
 #: How many matches are a batch.
 _BATCH = 32
+#: Of a robot of which a second takes more processor seconds than this, the lines are watched in every so many matches
+#: only: before Python 3.12, that takes a quarter of the time.
+_COSTLY, _WATCHED_EVERY = 0.3, 4
 #: The longest match that is worth its time, as a share of the campaign's; one of the usual length always is.
 _LONGEST = 0.125
 
@@ -100,9 +104,14 @@ class Playing:
         if not self._next:
             return None
         match = self._next.popleft()
-        task = replace(self.known_of_robot, schedule=match.schedule, known=self.reached)
+        watches_lines = self._watches_lines(match)
+        task = replace(self.known_of_robot, schedule=match.schedule, known=self.reached, watches_lines=watches_lines)
         self._running[id(task)] = _Running(task, match, time.monotonic())
         return task
+
+    def _watches_lines(self, match: Match) -> bool:
+        is_costly = not self.in_batches and self.cost is not None and self.cost > _COSTLY
+        return sys.version_info >= (3, 12) or not is_costly or (match.number or 0) % _WATCHED_EVERY == 0
 
     def finish(self, task: FuzzTask, played: MatchResult) -> Iterator[tuple[Match, MatchResult]]:
         """Note the result of a match; yield the results to use now."""
@@ -127,7 +136,7 @@ class Playing:
         """Note the goals that a match has reached, and how it ended."""
         new = {goal: at_us for goal, at_us in played.reached.items() if goal not in self.reached}
         self.scheduler.learn(match.schedule, new)
-        self.scheduler.note_end(match.schedule, played.failure)
+        self.scheduler.known.note(match.schedule.left_out[-1][1], played.failure)
         if played.failure is not None:
             self._failed.setdefault(played.failure.cause, (match.number, replace(played, noted=())))
         self.reached = self.reached.union(new)
@@ -140,7 +149,7 @@ class Playing:
         Each has the number of its match.
         """
         failed = self._failed
-        return [failed[each.cause] for each in self.scheduler.frequent_failures() if each.cause in failed]
+        return [failed[each.cause] for each in self.scheduler.known.frequent() if each.cause in failed]
 
     def _choose(self) -> None:
         """Choose the next matches: a batch, or one."""

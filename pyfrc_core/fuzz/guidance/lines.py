@@ -14,7 +14,7 @@ import gc
 import sys
 import threading
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from types import CodeType, FrameType, FunctionType
 from typing import Any
@@ -33,15 +33,17 @@ class RobotLines:
 
     def __init__(self, files: RobotFiles) -> None:
         self._files = files
-        self._functions: list[FunctionType] = []
+        #: The robot's functions.
+        self.functions: list[FunctionType] = []
         #: Code objects and their lines. They are found by identity: a code object is hashed with all its constants.
         self._codes: dict[int, tuple[CodeType, dict[int, RobotLine]]] = {}
         for thing in gc.get_objects():
             # Not `isinstance`, which reads `__class__`: lazy proxies import their module when it is read.
             if type(thing) is FunctionType and files.is_robot_code(thing.__code__.co_filename):
-                self._functions.append(thing)
+                self.functions.append(thing)
                 self._add(thing.__code__)
-        self._all = frozenset(line for _, lines in self._codes.values() for line in lines.values())
+        #: All lines.
+        self.all = frozenset(line for _, lines in self._codes.values() for line in lines.values())
 
     def _add(self, code: CodeType) -> None:
         if id(code) not in self._codes:
@@ -52,15 +54,6 @@ class RobotLines:
             for constant in code.co_consts:
                 if isinstance(constant, CodeType):
                     self._add(constant)
-
-    @property
-    def functions(self) -> Sequence[FunctionType]:
-        """Return the robot's functions."""
-        return self._functions
-
-    def all(self) -> frozenset[RobotLine]:
-        """Return all lines."""
-        return self._all
 
     @contextmanager
     def watched(self, known: frozenset[Goal], now_us: Callable[[], int]) -> Iterator[Mapping[Goal, int]]:
@@ -133,7 +126,7 @@ class RobotLines:
             yield
             return
 
-        modules = {id(function.__globals__) for function in self._functions}
+        modules = {id(function.__globals__) for function in self.functions}
 
         def on_call(frame: FrameType, event: str, argument: object) -> Any:
             # Most calls are libraries' own. Reading `f_code` is audited, and our audit hook makes that slow.

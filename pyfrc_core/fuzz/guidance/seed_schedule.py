@@ -20,7 +20,7 @@ from .known_failures import KnownFailures
 _CONTINUED = 0.5
 #: The share of new matches that begin with a recorded one, when there are any.
 _FROM_RECORDED = 0.8
-#: With a limit of time, the first matches are short, and then every other one.
+#: With a limit of time, the first matches are short, and continue none; then every other one is short.
 _FIRST_SHORT = 24
 #: A match that continues another equals it for at most this long after that one first reached a goal.
 _SAME_FOR_US = 1_000_000
@@ -91,7 +91,7 @@ class SeedScheduler:
         self._seed = seed
         self._recorded = recorded
         self._worthwhile: dict[str, list[_Worthwhile]] = {kind: [] for kind in _WEIGHTS}
-        self._known = KnownFailures()
+        self.known = KnownFailures()
 
     def schedule(self, number: int) -> SeedSchedule:
         """Return the seeds of the match with this number."""
@@ -100,10 +100,11 @@ class SeedScheduler:
         if number < len(self._recorded):
             whole = BaseMatch(self._recorded[number], self._recorded[number].end_us)
             return SeedSchedule(((0, own),), ((0, frozenset()),), whole)
-        left_out = self._known.left_out(random.Random(f"left out {own}"))
+        left_out = self.known.left_out(random.Random(f"left out {own}"))
         kinds = [kind for kind, worthwhile in self._worthwhile.items() if worthwhile]
-        if not kinds or rng.random() >= _CONTINUED:
-            is_short = self._begins_short and (number < _FIRST_SHORT or number % 2)
+        is_first = self._begins_short and number < _FIRST_SHORT
+        if is_first or not kinds or rng.random() >= _CONTINUED:
+            is_short = is_first or (self._begins_short and number % 2)
             first = own + SHORT if is_short else own
             return SeedSchedule(((0, first),), ((0, left_out),), self._base(own))
         (kind,) = rng.choices(kinds, [_WEIGHTS[kind] for kind in kinds])
@@ -122,11 +123,7 @@ class SeedScheduler:
 
     def avoid(self, failure: FuzzFailure, script: InputScript) -> None:
         """Leave out what this shortest script of a failure needs in many later matches, if it ends many."""
-        self._known.add(failure, needed_inputs(script))
-
-    def note_end(self, schedule: SeedSchedule, failure: FuzzFailure | None) -> None:
-        """Note the failure that ended a match, or that none did."""
-        self._known.note(schedule.left_out[-1][1], failure)
+        self.known.add(failure, needed_inputs(script))
 
     def state(self) -> dict[str, Any]:
         """Return what `schedules_of` needs, as values of JSON: the latest matches that are worth continuing."""
@@ -148,10 +145,6 @@ class SeedScheduler:
             )
             for seeds, left_out in state["worthwhile"]
         ]
-
-    def frequent_failures(self) -> list[FuzzFailure]:
-        """Return the failures that have ended many matches, and for which `avoid` was not called."""
-        return self._known.frequent()
 
     def learn(self, schedule: SeedSchedule, reached: Mapping[Goal, int]) -> None:
         """Note the goals that a match was the first to reach.

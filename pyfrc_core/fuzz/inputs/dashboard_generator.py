@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -26,38 +26,18 @@ _BEFORE_START = 0.5
 #: How often a dashboard publishes an entry of another type than the robot reads.
 _OTHER_TYPE = 0.06
 
-#: After so many searches at most, all entries are looked at again: a chooser may have another option.
-_UNCHANGED = 5
-
 #: Types whose values show them, so that a target does not name them.
 _PLAIN = ("boolean", "double", "string")
 _NUMBERS = ("int", "float", "double")
 
 
-class DashboardFinder:
-    """Finds the inputs of dashboards; looks at the entries again only after there are others, and now and then."""
+def find_dashboard_inputs() -> list[Input]:
+    """Return the choosers' options, the commands' buttons, and what else belongs to an object, in order.
 
-    def __init__(self) -> None:
-        self._names: list[str] = []
-        self._found: list[Input] = []
-        self._searches = 0
-
-    def find(self) -> list[Input]:
-        """Return the choosers' options, the commands' buttons, and what else belongs to an object, in order.
-
-        A plain entry that the robot writes and does not read is no input.
-        """
-        names = network.entry_names()
-        if names != self._names or self._searches % _UNCHANGED == 0:
-            self._names, self._found = names, sorted(_inputs(names))
-        self._searches += 1
-        return self._found
-
-
-def _inputs(names: Sequence[str]) -> Iterator[Input]:
-    for widget in map(dashboards.widget_of, names):
-        if widget is not None:
-            yield Input(NETWORK + widget.entry, widget.kind, widget.owner, widget.options)
+    A plain entry that the robot writes and does not read is no input.
+    """
+    widgets = filter(None, map(dashboards.widget_of, network.entry_names()))
+    return sorted(Input(NETWORK + each.entry, each.kind, each.owner, each.options) for each in widgets)
 
 
 class DashboardGenerator:

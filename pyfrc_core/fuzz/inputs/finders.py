@@ -5,7 +5,6 @@ Inputs from the dashboard are in `dashboard_generator`.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from itertools import chain
@@ -14,10 +13,11 @@ from ...hal import HalData, counters, format_path, tree
 from ...hal.paths import join
 from ...hal.robot_devices import TreeDevice
 from ...hal.rows import TableRow, rows_of
+from ...hal.sim_quantities import quantity_of
 from ...runtime.scripts.targets import OPMODE
 from ...season import CURRENT
 from ...wpi import devices, joysticks, station
-from .values import UNKNOWN, Input, InputKind, RobotConstants
+from .values import UNKNOWN, Input, RobotConstants
 
 # -- joysticks -------------------------------------------------------------------------------------------------------
 
@@ -42,26 +42,6 @@ def _controls(number: int, axes: int, buttons: int, povs: int, triggers: tuple[i
 
 
 # -- sensors ---------------------------------------------------------------------------------------------------------
-
-#: Patterns for a SimDevice and its numeric value, as ``device/value``; the first match counts.
-_OF_DEVICES: tuple[tuple[str, InputKind], ...] = (
-    (r"^SPARK.*(?<!ABSOLUTE ENCODER)(?<!ANALOG SENSOR)/Position$", "rotations"),
-    (r"^SPARK.*/Velocity$", "rpm"),
-    (r"(CANcoder|Talon FX).*/rawPosition", "rotations"),
-    (r"Pigeon.*/rawYaw", "angle"),
-    (r"Pigeon.*/angularVel", "turning"),
-)
-#: Patterns for the names of other numeric values; the first match counts.
-_NAMED: tuple[tuple[str, InputKind], ...] = (
-    (r"rate|velocity", "turning"),
-    (r"yaw|pitch|roll", "half turns"),
-    (r"heading", "heading"),
-    (r"angle", "angle"),
-    (r"accel|^[xyz]$", "acceleration"),
-    (r"range|distance", "range"),
-    (r"voltage", "battery"),
-    (r"current", "amperes"),
-)
 
 
 class SensorFinder:
@@ -131,27 +111,8 @@ def _of_row(row: TableRow, device: TreeDevice, is_counted: bool, constants: Robo
         yield Input(target, "pulses" if is_counted else field.quantity, owner, seldom=device.kind.seldom)
 
 
-def _kind_of_number(device: str, value: str) -> InputKind:
-    for pattern, kind in _OF_DEVICES:
-        if re.search(pattern, f"{device}/{value}"):
-            return kind
-    return next((kind for pattern, kind in _NAMED if re.search(pattern, value, re.IGNORECASE)), "turns")
-
-
 def _of_sim_device(name: str) -> Iterator[Input]:
     for value, is_output, sort, options in devices.sim_values(name):
-        if is_output:
-            continue
-        kind: InputKind
-        if sort == "boolean":
-            kind = "connected" if re.search("connected|valid", value, re.IGNORECASE) else "switch"
-        elif sort == "option":
-            kind = "option"
-        elif sort == "number":
-            kind = _kind_of_number(name, value)
-        else:
-            kind = "celsius" if re.search("temperature", value, re.IGNORECASE) else "whole"
-        if kind == "battery" and name.endswith("ANALOG SENSOR"):
-            kind = "volts"
-        if kind != "option" or options:
+        kind = quantity_of(name, value, sort)
+        if not is_output and (kind != "option" or options):
             yield Input(format_path(("CAN", name, value)), kind, format_path(("CAN", name)), options)

@@ -13,7 +13,7 @@ from ...runtime.clock import PACKET_US, to_us
 from ...runtime.scripts.targets import MODE, OPMODE, PLUGGED, RESTART
 from ...wpi import robots, station
 from ...wpi.opmodes import PublishedOpmode
-from .dashboard_generator import DashboardFinder, DashboardGenerator
+from .dashboard_generator import DashboardGenerator, find_dashboard_inputs
 from .drivers import choose_models
 from .finders import SensorFinder, find_controls
 from .gamepads import find_gamepads
@@ -62,6 +62,7 @@ class InputGenerator:
     :param asked_controls: the targets of the controls that the robot has asked for so far
     :param published: entries of NetworkTables that the program is known to write all the time
     :param auto_joysticks: whether the driver station sends joystick data in autonomous, too
+    :param haste: how many times as fast as usual the drivers are
     """
 
     def __init__(
@@ -77,6 +78,7 @@ class InputGenerator:
         asked_controls: Container[str] = (),
         published: frozenset[str] = frozenset(),
         auto_joysticks: bool = False,
+        haste: float = 1.0,
     ) -> None:
         #: The inputs found so far, by target.
         self.inputs: dict[str, Input] = {}
@@ -93,12 +95,11 @@ class InputGenerator:
         self._models = {} if base else choose_models(rng)
         #: The controls and the gamepads that were found last.
         self._controls: tuple[list[Input], dict[int, str]] | None = None
-        self._sticks = JoystickGenerator(rng, asked_controls, constants)
+        self._sticks = JoystickGenerator(rng, asked_controls, constants, haste)
         self._sensors = SensorGenerator(rng, self._hal_data, constants)
         self._sensor_finder = SensorFinder(constants)
         reads = None if network_reads is None else network_reads.found
         self._dashboard = DashboardGenerator(rng, reads, constants, published)
-        self._dashboard_finder = DashboardFinder()
         #: Applies writes at once, while the robot starts. Set by the match.
         self.write_at_once: Callable[[Mapping[str, Value]], None] | None = None
         if network_reads is not None:
@@ -247,7 +248,7 @@ class InputGenerator:
             if each.device in self._held and self._hal_data.read(each.target):  # it was created after the first write
                 found[each.target] = False
         self._sensors.excluded = self._held | {each.device for each in sensors if each.target in self._driven}
-        self._remember(self._dashboard.set_inputs(self._dashboard_finder.find()))
+        self._remember(self._dashboard.set_inputs(find_dashboard_inputs()))
 
     def _before_first_read(self, read: NetworkRead) -> None:
         """Write an entry before the robot first reads it, as if it had been there before the robot was started."""

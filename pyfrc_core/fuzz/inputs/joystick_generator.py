@@ -30,6 +30,9 @@ _ASKED, _COMMON, _RARE = 80, 8, 1
 #: How often a thumb rolls around a POV that it presses.
 _ROLLS = 0.35
 
+#: How often an axis that is moved is that of a stick in a corner.
+_CORNERS = 0.15
+
 _RELEASED: dict[InputKind, float] = {"axis": 0.0, "trigger": 0.0, "button": False, "pov": station.NOT_PRESSED}
 
 
@@ -38,10 +41,18 @@ class JoystickGenerator:
 
     :param asked: the targets of the controls that the robot has asked for; they may become more
     :param constants: the constants of the robot's code
+    :param haste: how many times as fast as usual the drivers are
     """
 
-    def __init__(self, rng: random.Random, asked: Container[str] = (), constants: RobotConstants = UNKNOWN) -> None:
+    def __init__(
+        self,
+        rng: random.Random,
+        asked: Container[str] = (),
+        constants: RobotConstants = UNKNOWN,
+        haste: float = 1.0,
+    ) -> None:
         self._rng = rng
+        self._haste = haste
         self._asked = asked
         self._constants = constants
         self.next_us = 0
@@ -124,7 +135,7 @@ class JoystickGenerator:
         for control in [control for control in self._held if rng.random() < habit.let_go]:
             self._set(control, _RELEASED[control.kind], found)
         there = [port for port in range(station.JOYSTICKS) if port not in self.unplugged and any(self._ports[port])]
-        self._pose_until_us = now_us + max(PACKET_US, round(habit.duration(rng) * 50) * PACKET_US)
+        self._pose_until_us = now_us + max(PACKET_US, round(habit.duration(rng) / self._haste * 50) * PACKET_US)
         if not there or rng.random() < 0.1:
             self._hands_off(found)
             return
@@ -162,6 +173,9 @@ class JoystickGenerator:
         for button in self._some(buttons, rng.choice(habit.buttons)):
             self._set(button, True, found)
         for axis in self._some(axes, rng.choice(habit.axes)):
+            if axis.kind == "axis" and rng.random() < _CORNERS:
+                self._push_into_corner(axis, axes, found)
+                continue
             value = draw(axis.kind, rng, constants=self._constants)
             how = rng.random()
             if how < 0.2:
@@ -180,6 +194,13 @@ class JoystickGenerator:
             if button not in self._held:
                 self._tap(button, rng.choice(habit.times), now_us)
         self._taps.sort()
+
+    def _push_into_corner(self, axis: Input, axes: Sequence[Input], found: dict[str, Value]) -> None:
+        """Push a stick into a corner, where it is further from its middle than 1."""
+        other = axes.index(axis) ^ 1  # a stick's two axes are neighbors
+        for each in (axis, *axes[other : other + 1]):
+            if each.kind == "axis":
+                self._set(each, self._rng.choice((-1.0, 1.0)), found)
 
     def _roll(self, pov: Input, now_us: int) -> None:
         """Roll a thumb around a POV: it is at several angles, each for a moment."""

@@ -19,6 +19,8 @@ from .values import Value
 SHORT_SECONDS = 5.0
 #: What a seed ends with whose match is short.
 SHORT = " short"
+#: How many times as fast as usual its drivers are: it has room for little.
+_HASTES = (1.0, 2.0)
 #: The share of the other matches that are as long as real ones, half of them as two in a row, and how much longer than
 #: usual these are at most.
 _WHOLE, _LONGER = 1 / 30, 12
@@ -45,8 +47,10 @@ _EVENTS = ("CASJ", "2026casj", "NYRO", "Einstein")
 _MOST_MATCHES = {"practice": 60, "qualification": 130, "elimination": 16}
 _REPLAYS = (1, 1, 1, 2, 3)
 
-#: How often the robot is ready before its driver station, and the driver station before it knows the alliance.
-_NO_STATION, _NO_ALLIANCE = 0.1, 0.12
+#: How often the robot is ready before its driver station, and the driver station before it knows the alliance; and for
+#: how many seconds at most it does not: also for the whole match.
+_NO_STATION, _NO_ALLIANCE = 0.1, 0.2
+_UNKNOWN_FOR = (0.1, 2.0, 20.0, 1000.0)
 #: How often the driver station counts the time without a field, in its practice mode; else it sends -1.
 _PRACTICE = 0.6
 
@@ -71,7 +75,7 @@ class FieldData:
             self.later = (rng.uniform(0.1, 0.5), {"control.dsAttached": True, "alliance_station": station})
         elif how < _NO_STATION + _NO_ALLIANCE:
             self.at_start["alliance_station"] = "unknown"
-            self.later = (rng.choice((0.1, 1.0, 5.0, 20.0)) * rng.random(), {"alliance_station": station})
+            self.later = (rng.choice(_UNKNOWN_FOR) * rng.random(), {"alliance_station": station})
         else:
             self.at_start["alliance_station"] = station
         if rng.random() < 0.5:
@@ -317,6 +321,14 @@ def _sides(rng: random.Random) -> str:
     if rng.random() < 0.6:
         return "".join(rng.choice("LR") for _ in range(3))
     return rng.choice("RGBY")
+
+
+def haste_of(first_seed: str) -> float:
+    """Return how many times as fast as usual the drivers of a match are: more than once in some short ones.
+
+    :param first_seed: the seed with which the match begins
+    """
+    return random.Random(f"haste {first_seed}").choice(_HASTES) if first_seed.endswith(SHORT) else 1.0
 
 
 def length_of(first_seed: str, usual: float, settings: MatchSettings) -> float:

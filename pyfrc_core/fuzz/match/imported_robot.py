@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
+import sys
+from collections.abc import Iterable
+from contextlib import suppress
 from functools import lru_cache
 from typing import Any
 
@@ -10,6 +14,7 @@ from ...invariants.load import Invariant, load_invariants
 from ...project import Project
 from ...runtime.loading import load_robot
 from ...runtime.patches.install import patches
+from ...runtime.threads.fork_obstacles import library_threads, reasons_not_to_fork
 from ..guidance.lines import RobotLines
 from ..inputs.robot_constants import find_constants
 from ..inputs.values import RobotConstants
@@ -43,6 +48,29 @@ def load(project: Project) -> type[Any]:
         load_physics(project)
     invariants_of(project)
     return robot_class
+
+
+def libraries_of(project: Project) -> tuple[str, ...]:
+    """Return the names of the modules that importing the robot imports, and that are not the project's own, in order.
+
+    The robot must not have been imported in this process.
+    """
+    from ...runtime.pristine.modules import ProjectModules
+
+    modules, before = ProjectModules(project.files), set(sys.modules)
+    load(project)
+    new = [(name, module) for name, module in list(sys.modules.items()) if name not in before]
+    return tuple(name for name, module in new if not modules.is_of_project(module))
+
+
+def import_libraries(project: Project, libraries: Iterable[str]) -> bool:
+    """Import these modules, as the robot would; return whether this process can still be forked."""
+    patches.install(project.files)
+    library_threads.begin()
+    for name in libraries:
+        with suppress(Exception):  # the robot's import shows it, if it needs this one
+            importlib.import_module(name)
+    return not reasons_not_to_fork()
 
 
 @lru_cache(maxsize=1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager, nullcontext
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from contextlib import closing as closed
 from dataclasses import replace
 from functools import partial
@@ -29,11 +29,12 @@ from ...runtime.scripts.targets import RESTART, Targets
 from ...runtime.seeds import seed_generators
 from ...runtime.turns import acquire
 from ...wpi import network
+from ..guidance.goals import Goal
 from ..guidance.seed_schedule import match_seconds
 from ..guidance.states import RobotStates
 from ..inputs.asked_controls import watch_controls
 from ..inputs.input_generator import InputGenerator
-from ..inputs.match_plan import MODE_FUNCTIONS, MatchEvent, plan_match
+from ..inputs.match_plan import MODE_FUNCTIONS, MatchEvent, haste_of, plan_match
 from ..inputs.network_reads import watch_network_reads
 from ..inputs.values import Value
 from ..oracle.checks import attach_oracle
@@ -122,6 +123,7 @@ def _fuzz(
             asked_controls=closing.enter_context(watch_controls()).targets,
             published=task.published,
             auto_joysticks=project.auto_joysticks,
+            haste=haste_of(task.schedule.seeds[0][1]),
         )
         generator.left_out = task.schedule.left_out_at(begin.at_us)
         journal = closing.enter_context(closed(Journal(task.journal))) if task.journal else None
@@ -147,7 +149,10 @@ def _fuzz(
         clock.before_packet.insert(0, step)
         clock.limit_us = max(clock.limit_us, to_us(seconds) + PACKET_US)
         failure = None
-        with lines.watched(task.known, lambda: clock.now_us) as reached:
+        watched: AbstractContextManager[Mapping[Goal, int]] = nullcontext({})
+        if task.watches_lines:
+            watched = lines.watched(task.known, lambda: clock.now_us)
+        with watched as reached:
             try:
                 construct(project, run, load(project))
                 if before is None:

@@ -6,6 +6,7 @@ What each match would make in the same way, or read from the disk, is made here 
 from __future__ import annotations
 
 import gc
+from collections.abc import Sequence
 from contextlib import suppress
 from functools import lru_cache
 
@@ -15,20 +16,23 @@ from ...processes.interpreter import InitialState
 from ...project import Project
 from ...wpi import network
 from ..inputs.finders import prepare_search
-from .imported_robot import imported_devices, robot_constants
+from .imported_robot import import_libraries, imported_devices, robot_constants
 
 
 class Preparation:
     """What the forks of this process find prepared.
 
     :param is_imported: whether the robot may be imported in this process
+    :param libraries: the modules to import here if it may not: most of the time of an import is theirs
     """
 
-    def __init__(self, project: Project, is_imported: bool) -> None:
+    def __init__(self, project: Project, is_imported: bool, libraries: Sequence[str] = ()) -> None:
         self._patches = PatchTable()
         if is_imported:
             robot_constants(project)
             imported_devices(project)
+        elif libraries:
+            import_libraries(project, libraries)
         prepare_search()
         _read_settings(project)
         # It would start a thread, and no one reads what matches log.

@@ -51,6 +51,7 @@ class FuzzTask:
     :param published: entries of NetworkTables that the program is known to write all the time
     :param always_set: the lines of code that always set an output while the robot is disabled
     :param overrides: the robot's functions for modes, see `MatchResult`
+    :param watches_lines: whether goals are lines and branches, too
     :param journal: a file for the inputs, in case the process ends before it can return them
     """
 
@@ -59,6 +60,7 @@ class FuzzTask:
     published: frozenset[str] = frozenset()
     always_set: tuple[str, ...] = ()
     overrides: tuple[str, ...] = ()
+    watches_lines: bool = True
     journal: Path | None = None
 
 
@@ -184,14 +186,11 @@ class MatchExecutor(ABC):
     def __init__(self, project: Project, jobs: int) -> None:
         self.project = project
         self.jobs = jobs
+        #: The lines of the robot's functions.
+        self.lines: frozenset[RobotLine] = frozenset()
         #: Set to end the matches: `play` then raises `KeyboardInterrupt`. (An exception raised by a signal handler
         #: would be lost if it came during a fork.)
         self.interrupted = False
-
-    @property
-    @abstractmethod
-    def lines(self) -> frozenset[RobotLine]:
-        """Return the lines of the robot's functions."""
 
     @abstractmethod
     def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:

@@ -1,4 +1,4 @@
-"""Find what grows all the time in a match: lists and the like in the robot's objects, and entries of NetworkTables.
+"""Find what only grows in a match: lists and the like in the robot's objects, and entries of NetworkTables.
 
 The number of elements is the same in each run of a match. The memory of the process is not: it depends on Python's
 allocator, on libraries, and on pyfrc itself.
@@ -21,13 +21,15 @@ Containers = Callable[[], dict[str, tuple[dict[str, object], str]]]
 NETWORK_TABLES = "NetworkTables"
 
 #: The interval of counts, in microseconds.
-_EVERY_US = 4_000_000
-#: What grows is larger at each count by at least this much, for this many counts: perhaps only after some input.
-_LEAST_MORE, _LEAST_COUNTS = 20, 6
+_EVERY_US = 2_000_000
+#: What only grows has become larger by at least this much, at so many counts since it last became smaller.
+_LEAST_MORE, _LEAST_TIMES = 10, 8
+#: It has done so at one of the last counts: else it is full.
+_LAST = 2
 
 
 class Growth(NamedTuple):
-    """What grew all the time.
+    """What only grew.
 
     :param name: the path of the attribute, from the robot
     :param per_second: by how many elements a second
@@ -63,9 +65,10 @@ class Growths:
         self._counts.setdefault(name, []).append(size)
 
     def found(self) -> Iterator[Growth]:
-        """Yield what grew from each count to the next at the end of the match, by its path."""
-        for name, every in sorted(self._counts.items()):
-            counts = every[-_LEAST_COUNTS:]
-            more = [after - before for before, after in pairwise(counts)]
-            if len(counts) >= _LEAST_COUNTS and min(more) >= _LEAST_MORE:
+        """Yield what only grew until the end of the match, by its path; it may have waited for some input."""
+        for name, counts in sorted(self._counts.items()):
+            more: list[int] = []
+            for before, after in pairwise(counts):
+                more = [*more, after - before] if after >= before else []
+            if sum(each >= _LEAST_MORE for each in more) >= _LEAST_TIMES and max(more[-_LAST:]) >= _LEAST_MORE:
                 yield Growth(name, sum(more) / len(more) * 1_000_000 / _EVERY_US, counts[-1])

@@ -8,7 +8,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ...project.robot_files import RobotFiles
@@ -35,7 +35,7 @@ _processor_time = time.thread_time
 class MatchHints:
     """What one match shows.
 
-    :param growths: what grew all the time
+    :param growths: what only grew
     :param unfinished: the commands that ran for long, and for how long, in microseconds
     :param finished: the commands that ended because they were finished
     :param loop_seconds: the processor time of a long loop; a few loops took longer
@@ -123,11 +123,9 @@ class HintWatch:
         """Return what the match shows; it is over."""
         commands = self._commands
         commands.end()
-        growths = tuple(self._growths.found())
-        if self._loops is None:
-            return MatchHints(growths, commands.longest, frozenset(commands.finished))
+        found = MatchHints(tuple(self._growths.found()), commands.longest, frozenset(commands.finished))
         loops = self._loops
-        return MatchHints(growths, commands.longest, frozenset(commands.finished), loops.seconds, loops.period)
+        return found if loops is None else replace(found, loop_seconds=loops.seconds, period=loops.period)
 
 
 # -- of a campaign ---------------------------------------------------------------------------------------------------
@@ -176,10 +174,10 @@ class CampaignHints:
             )
         for name, growths in sorted(self._growths.items()):
             if len(growths) >= _LEAST_MATCHES:
-                what = "NetworkTables grow" if name == NETWORK_TABLES else f"robot.{name} grows"
+                what = "NetworkTables only grow" if name == NETWORK_TABLES else f"robot.{name} only grows"
                 shown = sorted(growths, key=lambda growth: growth.per_second)[len(growths) // 2]
                 yield (
-                    f"{what} all the time: by about {shown.per_second:.0f} elements a second, to {shown.size} at the "
+                    f"{what}: by about {shown.per_second:.0f} elements a second, to {shown.size} at the "
                     f"end of a match ({counted(len(growths), 'match', 'matches')})"
                 )
         for name, times in sorted(self._unfinished.items()):

@@ -35,6 +35,7 @@ from .starts import (
     moments_held_in_autonomous,
     starts_of,
     transitions_without_pause,
+    without_idle_releases,
     without_overwritten,
 )
 
@@ -122,6 +123,7 @@ class Shrinker:
         starts = starts_of(*self._whole) if self.failure.kind != PROCESS_ENDED else []
         if self._first_of([*starts, self._whole]) is None:
             return
+        self._first([without_idle_releases(self._writes)])
         self._fewer(self._by(_sort_of))
         self._fewer(self._by(lambda target: target))
         before: InputScript | None = None

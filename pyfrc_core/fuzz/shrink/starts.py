@@ -99,6 +99,18 @@ def moments_held_in_autonomous(writes: Sequence[ScriptWrite]) -> int:
     return found
 
 
+def without_idle_releases(writes: Sequence[ScriptWrite]) -> tuple[ScriptWrite, ...]:
+    """Leave out what releases a control that is not pressed."""
+    pressed: set[str] = set()
+    kept: list[ScriptWrite] = []
+    for write in writes:
+        released = CONTROL.fullmatch(write.target) is not None and is_released(write.target, write.value)
+        if not released or write.target in pressed:
+            kept.append(write)
+        (pressed.discard if released else pressed.add)(write.target)
+    return tuple(kept)
+
+
 def without_overwritten(writes: Sequence[ScriptWrite]) -> tuple[ScriptWrite, ...]:
     """Leave out what a later write to the same input at the same moment replaces."""
     last = {(write.at_us, write.target): write.number for write in writes}
