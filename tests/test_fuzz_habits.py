@@ -13,6 +13,7 @@ from wpilib.event import EventLoop
 
 from pyfrc_core.fuzz.inputs.asked_controls import watch_controls
 from pyfrc_core.fuzz.inputs.joystick_generator import JoystickGenerator
+from pyfrc_core.fuzz.inputs.match_plan import SHORT, haste_of
 from pyfrc_core.fuzz.inputs.values import Input, Value
 from pyfrc_core.runtime.clock import PACKET_US
 
@@ -27,9 +28,9 @@ def controls() -> Iterator[Input]:
         yield Input(f"{device}.povs[0]", "pov", device)
 
 
-def matches(seed: int, asked: tuple[str, ...] = ASKED) -> list[tuple[float, dict[str, Value]]]:
+def matches(seed: int, asked: tuple[str, ...] = ASKED, haste: float = 1.0) -> list[tuple[float, dict[str, Value]]]:
     """The writes of the drivers in ten minutes: the time in seconds, and the values."""
-    generator = JoystickGenerator(random.Random(seed), asked)
+    generator = JoystickGenerator(random.Random(seed), asked, haste=haste)
     generator.set_controls(controls(), [0, 1])
     found = []
     for now_us in range(0, 600_000_000, PACKET_US):
@@ -67,6 +68,30 @@ def test_buttons_are_held_for_seconds() -> None:
     held = [end - start for start, end in presses(ASKED[0])]
     assert sum(seconds > 2 for seconds in held) > 10
     assert any(seconds > 4 for seconds in held)
+
+
+def test_drivers_in_haste_press_about_twice_as_often() -> None:
+    usual, hasty = (
+        sum(value is True for _, writes in matches(1, haste=haste) for value in writes.values()) for haste in (1.0, 2.0)
+    )
+    assert 1.6 * usual < hasty < 2.4 * usual
+
+
+def test_drivers_are_in_haste_in_some_short_matches_only() -> None:
+    assert {haste_of(f"fuzz 1 {number}{SHORT}") for number in range(20)} == {1.0, 2.0}
+    assert {haste_of(f"fuzz 1 {number}") for number in range(20)} == {1.0}
+
+
+def test_sticks_are_pushed_into_corners() -> None:
+    held: dict[str, Value] = {}
+    corners = set()
+    for _, writes in matches(1):
+        held |= writes
+        sticks = [
+            (held.get(f"joysticks[0].axes[{axis}]"), held.get(f"joysticks[0].axes[{axis + 1}]")) for axis in (0, 4)
+        ]
+        corners |= {(index, *stick) for index, stick in enumerate(sticks)}
+    assert {(index, x, y) for index in (0, 1) for x in (-1.0, 1.0) for y in (-1.0, 1.0)} <= corners
 
 
 @for_each(

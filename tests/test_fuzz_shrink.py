@@ -13,6 +13,7 @@ from pyfrc_core.fuzz.campaign.describe import late_failure, story_of
 from pyfrc_core.fuzz.match.work import MatchExecutor, MatchResult, ReplayTask, Task
 from pyfrc_core.fuzz.oracle.failure import HANGS, FuzzFailure
 from pyfrc_core.fuzz.shrink.shrinker import Shrinker
+from pyfrc_core.fuzz.shrink.starts import ScriptWrite, without_idle_releases
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import InputScript, Step
 
@@ -102,6 +103,12 @@ def test_a_button_that_toggles_is_pressed_once() -> None:
     many = pressed(1, 3, 5, 8, 11, 14, 18)
     shrinker, _ = shrunk(toggling, script_of([(0.5, "mode", "teleop"), *many, (25, "joysticks[0].buttons[2]", True)]))
     assert written(shrinker.script) == [(BUTTON, True), (BUTTON, False), ("joysticks[0].buttons[2]", True)]
+
+
+def test_what_releases_a_control_that_is_not_pressed_is_left_out() -> None:
+    writes = [(BUTTON, False, 0), (BUTTON, True, 1), ("dio[0].value", False, 2), (BUTTON, False, 3), (BUTTON, False, 4)]
+    kept = without_idle_releases([ScriptWrite(0, target, value, number) for target, value, number in writes])
+    assert [write.number for write in kept] == [1, 2, 3]
 
 
 def test_what_depends_on_the_state_alone_needs_no_long_run() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
@@ -81,6 +83,19 @@ def local(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Local:
 
 def ends_of(results: Iterator[MatchResult]) -> list[int]:
     return [each.script.end_us for each in results]
+
+
+def test_the_libraries_of_a_robot_are_not_its_own_modules(tmp_path: Path) -> None:
+    (tmp_path / "robot.py").write_text(
+        "import html.parser\nimport wpilib\nimport parts\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
+    )
+    (tmp_path / "parts.py").write_text("")
+    code = (
+        "from pathlib import Path; from pyfrc_core.project import Project; "
+        "from pyfrc_core.fuzz.match.imported_robot import libraries_of; print(*libraries_of(Project(Path('robot.py'))))"
+    )
+    names = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True).stdout.split()
+    assert "html.parser" in names and not {"robot", "parts"}.intersection(names)
 
 
 def test_results_come_in_the_order_of_the_tasks_and_no_more_run_than_there_are_jobs(local: Local) -> None:
