@@ -6,6 +6,7 @@ from collections.abc import Generator
 
 import hal
 import pytest
+import wpilib.simulation
 
 from pyfrc_core.runtime.patches.notifier import PeriodicThread
 from pyfrc_core.runtime.robot import RobotRun
@@ -47,3 +48,4 @@ def run(_unreported_start: None) -> Generator[RobotRun]:
     finally:
         run.close()
         station.reset_driver_station()
+        wpilib.simulation.RoboRioSim.resetData()  # the battery's voltage
