@@ -9,21 +9,19 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from ..file_hash import open_file
 from . import recovery_hints
 from .agent import start_monitor, wire
 from .agent_stream import AgentChannel, AgentStream, TimeLimits, agent_command, agent_package
+from .discovery import Address
 from .errors import ConnectionFailedError, DeployError, OtherComputerError
 from .facts import Deployed, DeployRequest, Plan, RobotFacts, RobotLog, RolledBack, StartState, Watched
+from .manifest import Entry, Manifest
+from .recovery_hints import RecoveryHint
 from .responses import Raw, ResponseError, parse, value_of
-
-if TYPE_CHECKING:
-    from .discovery import Address
-    from .manifest import Entry, Manifest
-    from .recovery_hints import RecoveryHint
-    from .targets import ControllerKind
+from .targets import ControllerKind
 
 __all__ = ["AgentClient", "DeployRequest", "Deployed", "Plan", "RobotFacts", "RolledBack", "StartState", "Watched"]
 

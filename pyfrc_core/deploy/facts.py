@@ -5,14 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from ..terminal_text import one_line
 from .agent import start_monitor
 from .responses import Raw, parse, sent_as, value_of
-
-if TYPE_CHECKING:
-    from .targets import ControllerKind
+from .targets import ControllerKind
 
 #: The image of a virtual robot, which has none.
 VIRTUAL_IMAGE = "virtual robot"

@@ -11,13 +11,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO
 
 from ..config.robotpy import RobotPackages, load_robot_packages
 from ..errors import PyfrcError, RobotCodeError, text_of
 from ..explain import Explanation, explain
 from ..processes import spawn
 from ..processes.call import run_in_subprocess
+from ..processes.crash_report import CrashLog
 from ..project import MAIN_FILE, Project
 from ..project.git import git_output
 from ..project.walk import SourceError, read_source
@@ -27,9 +28,6 @@ from .manifest import Entry, Manifest, ascii_path, build_manifest, listed, liste
 from .progress import DeployProgress, UserInterface, ask_to_continue
 from .robot_packages import ImportSearch
 from .team import RobotChoice
-
-if TYPE_CHECKING:
-    from ..processes.crash_report import CrashLog
 
 
 @dataclass(frozen=True)

@@ -15,14 +15,12 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO
 
+from ..errors import PyfrcError
 from ..shell import quoted
 from ..terminal_text import escape_unencodable, visible
 from .errors import RefusedError
-
-if TYPE_CHECKING:
-    from ..errors import PyfrcError
 
 _NAME_WIDTH = 10
 _DETAIL_WIDTH = 58

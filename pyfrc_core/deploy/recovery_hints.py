@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from .errors import CHANGED, ConnectionFailedError, DeployError, StoppedError
-
-if TYPE_CHECKING:
-    from .facts import StartState
+from .facts import StartState
 
 
 @dataclass(frozen=True)

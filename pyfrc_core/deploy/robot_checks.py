@@ -10,20 +10,16 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
-from typing import TYPE_CHECKING
 
 from .._version import requirement
 from ..season import CURRENT, SEASONS
 from ..terminal_text import one_line
+from .agent.layout import Layout
 from .connection import Connection
 from .errors import ConnectionFailedError, NoPythonError, RefusedError
-from .facts import VIRTUAL_IMAGE
+from .facts import VIRTUAL_IMAGE, RobotFacts
 from .progress import DeployProgress
 from .targets import AdministratorTask, ControllerKind
-
-if TYPE_CHECKING:
-    from .agent.layout import Layout
-    from .facts import RobotFacts
 
 NO_CHECK = "To deploy without this check: --no-version-check."
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from codecs import BOM_UTF8
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from .._version import __version__
 from ..compat.unrepeatable import real_time_libraries
@@ -13,15 +13,13 @@ from ..config.robotpy import load_robot_packages, unknown_components
 from ..errors import ProjectError, PyfrcError, SettingsError
 from ..passes.memory import left_over
 from ..processes.call import run_in_subprocess
+from ..processes.crash_report import CrashLog
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_libraries
+from ..runtime.checks.sources import CodeWarning
 from ..season import SeasonSetting, refuse_other_season
 from .check_result import CheckResult, hint, ok, problem
 from .installed import Installed, Package, fits
-
-if TYPE_CHECKING:
-    from ..processes.crash_report import CrashLog
-    from ..runtime.checks.sources import CodeWarning
 
 Answer = TypeVar("Answer")
 

@@ -10,9 +10,11 @@ import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from ..errors import PyfrcError, RobotCodeError, text_of
+from ..project import Project
+from ..project.robot_files import RobotFiles
 from .crash_report import CrashLog
 from .exit import flush_output
 from .fork import wait_for_any
@@ -20,10 +22,6 @@ from .interpreter import spawn_worker
 from .reuse import Interpreters
 from .standstill import StandstillNotice
 from .worker import ForkedWorker, Send, Worker
-
-if TYPE_CHECKING:
-    from ..project import Project
-    from ..project.robot_files import RobotFiles
 
 Answer = TypeVar("Answer")
 

@@ -7,10 +7,8 @@ import signal
 import subprocess
 import sys
 from contextlib import suppress
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from .spawn import StartedProcess
+from .spawn import StartedProcess
 
 
 def kill_group(process: StartedProcess) -> None:

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import builtins
-from typing import TYPE_CHECKING
 
 from ..compat.cpython_private import get_frame
 from ..errors import RobotCodeError
 from ..patch_table import PatchTable
+from ..project.robot_files import RobotFiles
 from ..wpi import names
-
-if TYPE_CHECKING:
-    from ..project.robot_files import RobotFiles
 
 _real_input = builtins.input
 _files: list[RobotFiles] = []

@@ -8,10 +8,12 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeVar, cast, overload
+from typing import Protocol, TypeAlias, TypeVar, cast, overload
 
 from ..config.settings import MatchSettings
+from ..invariants.load import Invariant
 from ..invariants.watch import watch_invariants
+from ..project import Project
 from ..runtime.clock import to_us
 from ..runtime.exceptions import TestEnded
 from ..runtime.match import MatchPeriods
@@ -20,13 +22,8 @@ from ..runtime.scripts.inputs_file import load_inputs, remarks
 from ..runtime.scripts.player import Player
 from ..runtime.seeds import seed_generators
 from ..wpi import station
-from ..wpi.opmodes import find_opmode
+from ..wpi.opmodes import OpmodeOfTests, find_opmode
 from .fake_time import FakeTime, duration_us
-
-if TYPE_CHECKING:
-    from ..invariants.load import Invariant
-    from ..project import Project
-    from ..wpi.opmodes import OpmodeOfTests
 
 #: What a test that passes something else to `run_test` is to write.
 _SUCH_AS = "\n  For three seconds of robot time, write: control.run_test(lambda tm: tm < 3)"

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
 from ..errors import RobotCodeError, UsageError
 from ..processes.call import run_in_subprocess
+from ..processes.crash_report import CrashLog
+from ..project import Project
 from ..runtime.checks.failures import as_robot_code_error
 from ..runtime.checks.hang_detector import HangDetector
 from ..runtime.exceptions import TestFroze, TestRanTooLong
@@ -16,13 +18,8 @@ from ..runtime.loading import load_robot
 from ..runtime.patches.install import patches
 from ..runtime.robot import RobotRun
 from ..wpi import station
+from ..wpi.opmodes import OpmodeOfTests, PublishedOpmode
 from .options import READY_MADE_TESTS
-
-if TYPE_CHECKING:
-    from ..processes.crash_report import CrashLog
-    from ..project import Project
-    from ..wpi.opmodes import OpmodeOfTests, PublishedOpmode
-
 
 #: Limits a test with the fixture `opmode` to the opmodes that it names: ``@pytest.mark.opmode("Drive")``.
 MARK = "opmode"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
 
 from ...config.toml_file import TomlFile
 from ...errors import PyfrcError
 from ...explain.names import meant
+from ...project import Project
 from .enum_values import find_early_reads, find_sticks_read_once, find_wrong_comparisons
 from .foreign_paths import find_foreign_paths
 from .kinds import Kinds
@@ -21,9 +21,6 @@ from .sources import CodeWarning, sources
 from .wrong_moments import find_wrong_moments
 from .wrong_tests import find_wrong_tests
 from .wrong_units import find_wrong_units
-
-if TYPE_CHECKING:
-    from ...project import Project
 
 _TOOLS = ("pyfrc", "robotpy")
 #: The keys of ``[tool.robotpy]``; that of 2024 has another name today.

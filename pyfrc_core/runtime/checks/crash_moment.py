@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from ...processes.crash_report import CrashLog
 from ...wpi import station
-
-if TYPE_CHECKING:
-    from ...processes.crash_report import CrashLog
-    from ..robot import RobotRun
+from ..robot import RobotRun
 
 
 class CrashMoment:

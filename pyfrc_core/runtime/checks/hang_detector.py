@@ -16,19 +16,16 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from types import FrameType
-from typing import TYPE_CHECKING
 
 from ...compat.c_calls import raise_in_thread
 from ...compat.cpython_private import allocate_lock, current_frames, outwards, start_bare_thread
+from ...processes.crash_report import CrashLog
 from ...processes.exit import EXIT_HANGS, exit_now, prepare_sudden_exit
 from ...processes.standstill import Standstill, StandstillNotice
+from ...project.robot_files import RobotFiles
 from ..exceptions import TestFroze
 from ..patches.active_run import Run, active_run
 from ..threads.thread_cpu import ThreadTimes
-
-if TYPE_CHECKING:
-    from ...processes.crash_report import CrashLog
-    from ...project.robot_files import RobotFiles
 
 #: How many times as long the user's own tests may compute: they may have reasons that a robot has not.
 _OUTSIDE_FACTOR = 6.0

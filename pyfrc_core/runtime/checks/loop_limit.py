@@ -9,17 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from types import CodeType, FrameType
-from typing import TYPE_CHECKING
 
 from ...compat.cpython_private import current_frames, get_frame, outwards
 from ...config.settings import Settings
 from ...project.robot_files import RobotFiles, is_pyfrc
 from ...wpi import names, robots, station
 from ..clock import OBSERVE, PACKET_US, to_us
+from ..robot import RobotRun
 from .failures import NamesItsPlace
-
-if TYPE_CHECKING:
-    from ..robot import RobotRun
 
 #: Functions of ours that call a loop's body: what is further out on the stack is not part of the turn.
 _LOOP_FUNCTION = robots.LOOP_FUNCTION.name

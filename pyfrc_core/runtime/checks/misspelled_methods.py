@@ -12,15 +12,12 @@ from collections.abc import Iterator
 from inspect import isasyncgenfunction, iscoroutinefunction, isgeneratorfunction
 from pathlib import Path
 from types import CodeType, FunctionType
-from typing import TYPE_CHECKING
 
 from ...errors import RobotCodeError
+from ...project import Project
 from ...project.loaded_modules import loaded_modules
 from ...wpi import names
 from .sources import CodeWarning
-
-if TYPE_CHECKING:
-    from ...project import Project
 
 
 def find_misspelled_methods(project: Project) -> list[CodeWarning]:

@@ -6,16 +6,13 @@ import ast
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from ...project import Project
 from ...project.loaded_modules import loaded_modules
 from ...project.walk import python_files, text_to_search
 from ...season import CURRENT
 from ...wpi.opmodes import DECORATORS
 from .sources import CodeWarning
-
-if TYPE_CHECKING:
-    from ...project import Project
 
 _BASES = ("OpMode", "PeriodicOpMode")
 

@@ -7,13 +7,9 @@ Without it the robot stays disabled for good: here as on the field, but a test o
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ...wpi import names, robots, station
-
-if TYPE_CHECKING:
-    from ..robot import RobotRun
-
+from ..robot import RobotRun
 
 #: A robot that was enabled at this many looks, 0.04 s apart, should know it, however long it takes to start.
 _LOOKS = 125

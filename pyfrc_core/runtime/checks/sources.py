@@ -7,15 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from types import ModuleType
+from typing import TypeVar
 
 from ...explain.places import parsed
+from ...project import Project
 from ...project.loaded_modules import loaded_modules
-
-if TYPE_CHECKING:
-    from types import ModuleType
-
-    from ...project import Project
 
 Node = TypeVar("Node", bound=ast.AST)
 

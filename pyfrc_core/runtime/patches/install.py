@@ -14,10 +14,11 @@ import time
 from collections.abc import Callable
 from operator import index
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
 from ...patch_table import Patch, PatchTable
+from ...project.robot_files import RobotFiles
 from ...wpi import timing
 from ..after_import import after_import
 from ..clock import KICKOFF as KICKOFF
@@ -27,9 +28,6 @@ from ..threads.fork_obstacles import library_threads
 from ..threads.replacements import as_original
 from . import noise, object_hashes, robot_stack, udp_ports, wpilib_names
 from .active_run import Run, active_run
-
-if TYPE_CHECKING:
-    from ...project.robot_files import RobotFiles
 
 _real_sleep = time.sleep
 

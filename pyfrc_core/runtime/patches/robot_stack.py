@@ -8,14 +8,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...compat.cpython_private import get_frame
 from ...patch_table import Patch
+from ...project.robot_files import RobotFiles
 from ...wpi import reports
-
-if TYPE_CHECKING:
-    from ...project.robot_files import RobotFiles
 
 
 def show_robots_lines(files: Callable[[], RobotFiles]) -> None:

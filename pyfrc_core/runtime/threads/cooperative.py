@@ -9,19 +9,14 @@ from __future__ import annotations
 
 import os
 import threading
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import FrameType
 
 from ...compat.cpython_private import current_frames, get_frame, is_initialized, outwards
 from ..clock import to_us
-from .robot_threads import real_thread_join
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from types import FrameType
-
-    from .robot_threads import RobotThread, RobotThreads
+from .robot_threads import RobotThread, RobotThreads, real_thread_join
 
 _LIBRARY = Path(threading.__file__).parent
 # The parts of the standard library that make locks and threads for their callers, and what replaces their names.

@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import selectors
 import sys
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 from ...compat.cpython_private import get_frame
 from ...patch_table import Patch
 from ..robot_time import to_us
 from . import cooperative
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 #: How often, in robot time, a loop that waits looks at its sockets, and at what other threads have sent it.
 _POLL_US = 5_000

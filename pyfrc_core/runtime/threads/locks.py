@@ -9,17 +9,14 @@ from __future__ import annotations
 import queue
 import threading
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...compat.cpython_private import ALLOCATE_LOCK, PYTHON_RLOCK, PYTHON_SIMPLE_QUEUE, LockType, RLockType, get_frame
 from ...patch_table import Patch
 from ..clock import to_us
 from .cooperative import join_thread, on_behalf_of_robot_code, scope, start_thread
 from .replacements import BuiltinClassReplacement, replaces
-from .robot_threads import real_allocate_lock
-
-if TYPE_CHECKING:
-    from .robot_threads import RobotThread
+from .robot_threads import RobotThread, real_allocate_lock
 
 _real_rlock = threading.RLock
 _real_simple_queue = queue.SimpleQueue

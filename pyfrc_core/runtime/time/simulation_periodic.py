@@ -8,12 +8,9 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
+from ...hal.output_gate import OutputGate
 from ...wpi import commands, robots, station
-
-if TYPE_CHECKING:
-    from ...hal.output_gate import OutputGate
 
 
 def gate_robot(robot: object, gate: Callable[[], OutputGate], after: Callable[[], object]) -> None:

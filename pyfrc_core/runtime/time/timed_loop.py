@@ -9,14 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from heapq import heapify, heappop, heappush
-from typing import TYPE_CHECKING
 
 from ...wpi import robots
 from ..clock import PACKET_US, ROBOT_LOOP, Clock, to_us
-
-if TYPE_CHECKING:
-    from ..threads.robot_threads import RobotThreads
-
+from ..threads.robot_threads import RobotThreads
 
 _NEVER = 1 << 62
 

@@ -7,18 +7,15 @@ from contextlib import closing, contextmanager, suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ...errors import PyfrcError
+from ...processes.crash_report import CrashLog
 from ...processes.fork import is_forked
+from ...processes.interpreter import InitialState
 from ...processes.reuse import Interpreters
+from ...processes.worker import Send
+from ...project import Project
 from ..options import TestOptions
-
-if TYPE_CHECKING:
-    from ...processes.crash_report import CrashLog
-    from ...processes.interpreter import InitialState
-    from ...processes.worker import Send
-    from ...project import Project
 
 
 @contextmanager

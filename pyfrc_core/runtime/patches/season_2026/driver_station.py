@@ -7,7 +7,7 @@ driver station that was lost; and waiting for a connection waits in wall time.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import hal
 import hal.simulation
@@ -17,11 +17,9 @@ import wpilib.simulation
 from ....patch_table import Patch
 from ...clock import to_us
 from ...threads import cooperative
+from ...threads.robot_threads import RobotThread
 from ..active_run import active_run
 from ..stepping import delivering
-
-if TYPE_CHECKING:
-    from ...threads.robot_threads import RobotThread
 
 
 def patches() -> list[Patch]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import hal
 import hal.simulation
@@ -12,6 +12,7 @@ import wpilib
 import wpilib.simulation
 
 from ....patch_table import Patch
+from ....project.robot_files import RobotFiles
 from ....wpi import encoder_channels, robots
 from ...clock import to_us
 from .. import hal_resets, noise, timeslices
@@ -20,9 +21,6 @@ from ..made_devices import noting
 from ..stepping import left_to_the_run, stepping, wait
 from . import counters, driver_station, hal_notifiers, log_names, sysid_logs
 from .watchdog import Watchdog
-
-if TYPE_CHECKING:
-    from ....project.robot_files import RobotFiles
 
 
 def patches(files: Callable[[], RobotFiles]) -> list[Patch]:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ....hal import HalData
 from ....runtime.scripts.trace import TracedChanges
 from ....runtime.scripts.trace_lines import Change
 from ....wpi import network, station
@@ -18,9 +19,6 @@ from ..messages import MODE, POSE
 from ..scene import Pose
 from ..structs import SCHEMA
 from ..topic_values import TopicValues
-
-if TYPE_CHECKING:
-    from ....hal import HalData
 
 
 class NetworkTrace:

@@ -6,14 +6,11 @@ A front end passes on which keys go down and up. Filtering a keyboard's automati
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
+from ...engine.simulation import Simulation
 from .joysticks import Joysticks
 from .keyboard import Control, KeyDriver, KeyLayout, canonical, layout_for
 from .time_controls import toggle
-
-if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
 
 #: The keys in a few words, for a front end to show.
 SUMMARY = "Ctrl+E or [ ] \\  enable   Enter  disable   Space  e-stop   F5  pause   F6  step"

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
+from ...engine.simulation import Simulation
 
 #: The slowest and the fastest speed of a slider; beyond the fastest comes "as fast as possible".
 SLOWEST, FASTEST = 0.1, 8.0

@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from ...engine.scene import Field, Point, Pose, Tag
-
-if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
+from ...engine.simulation import Simulation
 
 #: The limits of zooming in and out; 1 shows the whole field.
 NEAREST, FARTHEST = 24.0, 0.5

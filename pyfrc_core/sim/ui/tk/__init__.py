@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import gc
-from typing import TYPE_CHECKING
 
+from ...engine.simulation import Simulation
 from .. import FrontEnd
 from .window import Window
-
-if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
 
 
 class TkFrontEnd(FrontEnd):

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import tkinter as tk
 from tkinter import ttk
-from typing import TYPE_CHECKING
 
 from ....physics.pose import Pose
+from ...engine.simulation import Simulation
 from ..models.wording import pose_text
 from . import theme as colors
 from .console_view import ConsoleView
 from .field_view import FieldView
 from .theme import Theme
 from .tooltip import Tooltip
-
-if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
 
 #: The field's share of the height, and the least share of a traceback.
 _FIELD_SHARE, _TRACEBACK_SHARE = 0.72, 0.45

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import tkinter as tk
 from tkinter import ttk
-from typing import TYPE_CHECKING
 
+from ...engine.simulation import Simulation
 from ...engine.snapshot import Failure
 from ..models.wording import plain_output
 from . import theme as colors
 from .theme import Theme
-
-if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
 
 #: The lines that stay visible; the longest headline of a failure above them, in characters.
 _MOST_LINES, _MOST_HEADLINE = 2000, 300

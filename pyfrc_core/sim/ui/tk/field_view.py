@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import tkinter as tk
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from ....errors import SettingsError
 from ....physics.pose import Pose
 from ...engine.scene import Field, Point, Scene, Shape, Target
+from ...engine.simulation import Simulation
 from ...engine.snapshot import Snapshot, Status
 from ..models.viewport import RobotDrag, Viewport, grid_lines, is_on_robot, robot_polygons, tag_marks
 from ..models.wording import station_name
@@ -15,9 +16,6 @@ from . import theme as colors
 from .drawings import Drawings
 from .field_image import FieldImage
 from .theme import Theme
-
-if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
 
 _ZOOM_STEP = 1.2
 

@@ -5,17 +5,14 @@ from __future__ import annotations
 import tkinter as tk
 from collections.abc import Callable
 from tkinter import ttk
-from typing import TYPE_CHECKING
 
+from ...engine.simulation import Simulation
 from ...engine.snapshot import Chooser, Snapshot
 from ..models.wording import STATIONS, station_name
 from . import theme as colors
 from .boxes import has_keys, tame
 from .theme import Theme, fitting
 from .tooltip import Tooltip
-
-if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
 
 #: The greatest width of the labels before the boxes, in pixels of the design.
 _LABEL = 96

@@ -6,18 +6,15 @@ import math
 import tkinter as tk
 from collections.abc import Callable
 from tkinter import ttk
-from typing import TYPE_CHECKING
 
+from ...engine.commands import ChosenMode
+from ...engine.simulation import Simulation
 from ...engine.snapshot import Opmode, Snapshot, Status
 from ..models.wording import MODES, NO_OPMODE, mode_text
 from . import theme as colors
 from .boxes import tame
 from .theme import Theme
 from .tooltip import Tooltip
-
-if TYPE_CHECKING:
-    from ...engine.commands import ChosenMode
-    from ...engine.simulation import Simulation
 
 _COLORS = {"wait": colors.MUTED, "error": colors.RED, "disabled": colors.TEXT, "enabled": colors.GREEN}
 

@@ -5,17 +5,14 @@ from __future__ import annotations
 import tkinter as tk
 from collections.abc import Callable
 from tkinter import ttk
-from typing import TYPE_CHECKING
 
+from ...engine.simulation import Simulation
 from ...engine.snapshot import Snapshot, Status
 from ..models.time_controls import SPEEDS, toggle
 from ..models.wording import clock, speed_text
 from .boxes import tame
 from .theme import Theme
 from .tooltip import Tooltip
-
-if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
 
 
 class TimeBar:

@@ -8,12 +8,12 @@ import tkinter as tk
 from collections import deque
 from tkinter import ttk
 from types import TracebackType
-from typing import TYPE_CHECKING
 
 from ....compat.c_calls import draw_sharp_text
 from ....display import WITHOUT_DISPLAY
 from ....errors import UsageError
 from ....interruption import interruption
+from ...engine.simulation import Simulation
 from ...engine.snapshot import Snapshot, Status
 from ..models.driver_station_keys import SUMMARY, DriverStationKeys
 from ..models.joysticks import Joysticks
@@ -29,9 +29,6 @@ from .station_bar import StationBar
 from .theme import make_theme
 from .time_bar import TimeBar
 from .tooltip import Tooltip
-
-if TYPE_CHECKING:
-    from ...engine.simulation import Simulation
 
 #: The interval of drawing, in seconds.
 _FRAME = 1 / 40

@@ -7,19 +7,16 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ....browser import open_in_browser, why_no_browser, write_redirection
 from ....text_files import keep_out_of_version_control
 from ...engine.simulation import Simulation
+from ...engine.source import Source
 from .. import FrontEnd
 from .access import Access, allowed_origins, codespace_origins
 from .app import WebApp
 from .collector import Collector
 from .server import Server, WebOptions
-
-if TYPE_CHECKING:
-    from ...engine.source import Source
 
 #: The interval of looks whether the simulation is to end, in seconds: on Windows, Ctrl-C does not end a wait.
 _LOOK_SECONDS = 0.5

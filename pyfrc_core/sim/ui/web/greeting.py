@@ -6,21 +6,19 @@ import json
 import re
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...._version import __version__
+from ....project import Project
 from ....season import CURRENT
 from ....text_files import keep_out_of_version_control, write_whole
 from ...engine.messages import VALUE
+from ...engine.source import Source
 from ..models.joysticks import FIRST_BUTTON, JOYSTICKS, MOST_BUTTONS, axis_labels, button_labels
 from ..models.keyboard import BUTTON_KEYS, BUTTON_KEYS_TEXT, ENABLE_CHORD, GENTLE, LAYOUTS, layout_for
 from ..models.time_controls import FASTEST, SLOWEST
 from ..models.wording import MODES, NO_OPMODE, STATIONS
 from .dashboards import Dashboards
-
-if TYPE_CHECKING:
-    from ....project import Project
-    from ...engine.source import Source
 
 _BATTERY = re.compile(r"battery(_?volt(age|s))?$", re.IGNORECASE)
 #: What is plotted first of a driver station's log, with its axis: volts, or a share.

@@ -10,19 +10,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, replace
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ....config.pictures import field_picture
 from ...engine.snapshot import Failure
-from ...engine.source import Abilities
+from ...engine.source import Abilities, Source
 from .collector import Collector
 from .greeting import greeting, load_layout
 from .messages import json_text
 from .single_file import data_url, single_file
 from .updates import UpdateBuilder
-
-if TYPE_CHECKING:
-    from ...engine.source import Source
 
 #: What a person has arranged that is of use to others.
 _OF_USE = ("version", "plots", "pins", "fieldLayers", "fieldRobot", "coordinates")
