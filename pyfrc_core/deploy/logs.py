@@ -24,6 +24,7 @@ from ..shell import quoted
 from ..text_files import keep_out_of_version_control
 from ..wording import counted, from_here, size_text, table
 from .errors import ConnectionFailedError, DeployError, RefusedError
+from .manifest import ascii_path
 from .progress import DeployProgress, UserInterface
 from .target_connection import connected_agent
 from .team import RobotChoice, choose_target
@@ -100,7 +101,7 @@ def _lines(logs: Sequence[RobotLog]) -> list[str]:
     rows = [
         (
             str(number),
-            _ascii(log.name),
+            ascii_path(log.name),
             log.match or "-",
             size_text(log.size),
             datetime.fromtimestamp(min(log.modified, 4e9)).strftime("%Y-%m-%d %H:%M"),
@@ -110,10 +111,6 @@ def _lines(logs: Sequence[RobotLog]) -> list[str]:
         for number, log in enumerate(logs, 1)
     ]
     return list(table(rows, 3, 3)) if rows else []
-
-
-def _ascii(text: str) -> str:
-    return ascii(text)[1:-1]
 
 
 def _chosen(logs: Sequence[RobotLog], wanted: Sequence[str], by_number: bool) -> list[RobotLog]:
@@ -129,7 +126,7 @@ def _chosen(logs: Sequence[RobotLog], wanted: Sequence[str], by_number: bool) ->
         if by_number and word.isdecimal() and 0 < int(word) <= len(logs):
             found = {int(word) - 1}
         if not found:
-            newest = ", ".join(_ascii(log.name) for log in logs[:3])
+            newest = ", ".join(ascii_path(log.name) for log in logs[:3])
             raise UsageError(
                 f"no log on the robot has {word!r} in its name", remedy=f"The newest: {newest or 'there are none'}."
             )
@@ -154,7 +151,7 @@ def _fetch_all(robot: AgentClient, chosen: list[RobotLog], into: Path, progress:
                 raise
             phase.detail = f"{from_here(file)}, {size_text(log.size)}"
         if has_grown:
-            progress.note(f"  the robot is still writing {_ascii(log.name)}: fetch it again later for the rest")
+            progress.note(f"  the robot is still writing {ascii_path(log.name)}: fetch it again later for the rest")
         fetched.append(file)
     return fetched
 
@@ -192,7 +189,8 @@ def fetch_log(robot: AgentClient, log: RobotLog, file: Path, on_bytes: Callable[
                 on_bytes(done, log.size)
                 piece = robot.read_log(log.path, done, min(_PIECE_BYTES, log.size - done))
                 if not piece:
-                    raise DeployError(f"{_ascii(log.path)} has become shorter on the robot", remedy="Fetch it again.")
+                    what = f"{ascii_path(log.path)} has become shorter on the robot"
+                    raise DeployError(what, remedy="Fetch it again.")
                 stream.write(piece)
                 done += len(piece)
             stream.flush()
@@ -205,7 +203,7 @@ def fetch_log(robot: AgentClient, log: RobotLog, file: Path, on_bytes: Callable[
     sha256, size = robot.hash_log(log.path, log.size)
     if hash_file(part)[0] != sha256:
         part.unlink()
-        what = f"{_ascii(log.name)} was changed on the robot meanwhile, or was damaged on its way"
+        what = f"{ascii_path(log.name)} was changed on the robot meanwhile, or was damaged on its way"
         raise DeployError(what, remedy="Fetch it again.")
     part.replace(file)
     return size > log.size
@@ -240,5 +238,5 @@ def _removed(robot: AgentClient, chosen: list[RobotLog], request: LogRequest, ta
             talk.progress.warning(error.message)
         else:
             removed.append(log.path)
-            talk.progress.note(f"  removed from the robot: {_ascii(log.path)}")
+            talk.progress.note(f"  removed from the robot: {ascii_path(log.path)}")
     return removed

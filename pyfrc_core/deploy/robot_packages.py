@@ -242,7 +242,7 @@ def unfit_packages(packages: RobotPackages, facts: RobotFacts) -> Iterator[Packa
         if not _needed_there(needed, facts):
             continue
         version = facts.packages.get(canonicalize_name(needed.name))
-        if version is None or not _fits(version, needed):
+        if version is None or not fits(version, needed):
             instead = f"{needed.name} {version}" if version else f"no package {needed.name}"
             text = f"requires has {str(needed)!r}, but the robot has {instead}"
             yield PackageProblem(packages.lines["requires"], text, remedy(quoted_requirement(needed)))
@@ -265,7 +265,8 @@ def _needed_there(needed: Requirement, facts: RobotFacts) -> bool:
     return all(needed.marker.evaluate({**robot, "platform_machine": machine}) for machine in machines)
 
 
-def _fits(version: str, needed: Requirement) -> bool:
+def fits(version: str, needed: Requirement) -> bool:
+    """Return whether a version meets a requirement."""
     from packaging.version import InvalidVersion, Version
 
     try:

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from packaging.requirements import InvalidRequirement, Requirement
 from packaging.utils import canonicalize_name
-from packaging.version import InvalidVersion, Version
+
+from ..deploy.robot_packages import fits
 
 #: WPILib's own libraries. Packages that require one of them belong to a WPILib season.
 _WPILIB = {"wpilib", "robotpy-wpiutil", "robotpy-hal", "robotpy-wpimath", "pyntcore", "robotpy-wpinet"}
@@ -91,14 +92,6 @@ class Installed:
                 ):
                     found.add(name)
         return [self.copies[name][0] for name in sorted(found)]
-
-
-def fits(version: str, needed: Requirement) -> bool:
-    """Return whether a version meets a requirement."""
-    try:
-        return needed.specifier.contains(Version(version), prereleases=True)
-    except InvalidVersion:
-        return True  # unknown
 
 
 def find_installed() -> Installed:

@@ -10,6 +10,7 @@ from .._version import __version__
 from ..compat.unrepeatable import real_time_libraries
 from ..config.packages import quoted_requirement
 from ..config.robotpy import load_robot_packages, unknown_components
+from ..deploy.robot_packages import fits
 from ..errors import ProjectError, PyfrcError, SettingsError
 from ..passes.memory import left_over
 from ..processes.call import run_in_subprocess
@@ -19,7 +20,7 @@ from ..project.hidden_libraries import find_hidden_libraries
 from ..runtime.checks.sources import CodeWarning
 from ..season import SeasonSetting, refuse_other_season
 from .check_result import CheckResult, hint, ok, problem
-from .installed import Installed, Package, fits
+from .installed import Installed, Package
 
 Answer = TypeVar("Answer")
 

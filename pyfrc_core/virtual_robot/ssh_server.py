@@ -18,9 +18,9 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import paramiko
+from paramiko import Channel, PKey, Transport
 from paramiko.common import (
     AUTH_FAILED,
     AUTH_SUCCESSFUL,
@@ -28,16 +28,11 @@ from paramiko.common import (
     OPEN_SUCCEEDED,
 )
 
+from ..deploy.agent.robot_paths import RobotPaths
 from ..deploy.connection import VIRTUAL_ROBOT_GREETING
 from ..processes.groups import kill_group
 from . import children
 from .console import close_server
-
-if TYPE_CHECKING:
-    from paramiko import Channel, PKey, Transport
-
-    from ..deploy.agent.robot_paths import RobotPaths
-
 
 _TABLE = Path("/proc/net/tcp")
 

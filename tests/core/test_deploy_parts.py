@@ -11,13 +11,13 @@ from typing import Any
 import pytest
 from packaging.requirements import Requirement
 
-from pyfrc_core.deploy import logs
+from pyfrc_core.deploy import logs, robot_packages
 from pyfrc_core.deploy.agent import disk
 from pyfrc_core.deploy.agent.compiling import CompiledForms
 from pyfrc_core.deploy.agent.logs import RobotLogs
 from pyfrc_core.deploy.agent.robot_paths import Refusal
 from pyfrc_core.deploy.program_imports import ProgramImports
-from pyfrc_core.deploy.robot_packages import _fits, _same
+from pyfrc_core.deploy.robot_packages import _same
 
 
 def test_a_file_is_on_the_disk_before_it_has_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -79,7 +79,7 @@ def test_compiled_forms_are_linked_beside_the_link_of_their_source(tmp_path: Pat
     ],
 )
 def test_which_versions_fit_a_requirement(version: str, needed: str, fits: bool) -> None:
-    assert _fits(version, Requirement(needed)) is fits
+    assert robot_packages.fits(version, Requirement(needed)) is fits
 
 
 @pytest.mark.parametrize(

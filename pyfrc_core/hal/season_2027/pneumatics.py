@@ -8,20 +8,6 @@ from typing import Any, TypeAlias
 
 from wpilib.simulation import CTREPCMSim, PowerDistributionSim, REVPHSim
 
-__all__ = [
-    "Hub",
-    "Pcm",
-    "PowerDistribution",
-    "currents",
-    "exists",
-    "is_closed_loop",
-    "reset",
-    "set_closed_loop",
-    "solenoid",
-    "watch_current",
-    "watch_solenoid",
-]
-
 #: CTRE's and REV's modules, by their numbers.
 Pcm: TypeAlias = CTREPCMSim
 Hub: TypeAlias = REVPHSim

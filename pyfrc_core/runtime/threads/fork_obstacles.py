@@ -26,6 +26,8 @@ class _LibraryThreads:
 
     def __init__(self) -> None:
         self._before: set[int] | None = None
+        #: Those that counted at the last look: they need no second one.
+        self._counted: set[int] = set()
 
     def begin(self) -> None:
         """Look at them before the project's code is imported."""
@@ -43,10 +45,11 @@ class _LibraryThreads:
             return 0
         found = self._now() - self._before
         for _ in range(_LOOKS):
-            if not found:
+            if found <= self._counted:
                 break
             _real_sleep(_LOOK_SECONDS)
             found &= self._now()
+        self._counted = found
         return len(found)
 
     def _now(self) -> set[int]:

@@ -6,38 +6,18 @@ They are WPILib's own objects. What is read of them has the same name in each se
 
 from __future__ import annotations
 
-from wpimath.geometry import Pose2d, Rotation2d, Transform2d, Translation2d
+from wpimath.geometry import Pose2d as Pose2d
+from wpimath.geometry import Rotation2d
+from wpimath.geometry import Transform2d as Transform2d
+from wpimath.geometry import Translation2d as Translation2d
+from wpimath.kinematics import ChassisSpeeds as ChassisSpeeds
+from wpimath.kinematics import DifferentialDriveKinematics as DifferentialDriveKinematics
+from wpimath.kinematics import DifferentialDriveWheelSpeeds as DifferentialDriveWheelSpeeds
+from wpimath.kinematics import MecanumDriveKinematics as MecanumDriveKinematics
+from wpimath.kinematics import MecanumDriveWheelSpeeds as MecanumDriveWheelSpeeds
 from wpimath.kinematics import (
-    ChassisSpeeds,
-    DifferentialDriveKinematics,
-    DifferentialDriveWheelSpeeds,
-    MecanumDriveKinematics,
-    MecanumDriveWheelSpeeds,
     SwerveDrive4Kinematics,
 )
-
-__all__ = [
-    "ChassisSpeeds",
-    "DifferentialDriveKinematics",
-    "DifferentialDriveWheelSpeeds",
-    "MecanumDriveKinematics",
-    "MecanumDriveWheelSpeeds",
-    "Pose2d",
-    "Transform2d",
-    "Translation2d",
-    "chassis_speeds",
-    "chassis_speeds_in_feet",
-    "mecanum_kinematics",
-    "mecanum_wheel_speeds_in_feet",
-    "module_places",
-    "polar",
-    "pose",
-    "tank_kinematics",
-    "tank_wheel_speeds_in_feet",
-    "track_width",
-    "transform_in_feet",
-    "translation",
-]
 
 
 def pose(x: float = 0.0, y: float = 0.0, angle: float = 0.0) -> Pose2d:

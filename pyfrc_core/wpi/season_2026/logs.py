@@ -12,28 +12,15 @@ from wpiutil import DataLogWriter, wpistruct
 from wpiutil.log import (
     BooleanArrayLogEntry,
     BooleanLogEntry,
-    DataLog,
     DoubleArrayLogEntry,
     DoubleLogEntry,
     IntegerArrayLogEntry,
-    IntegerLogEntry,
-    StringLogEntry,
 )
+from wpiutil.log import DataLog as DataLog
+from wpiutil.log import IntegerLogEntry as IntegerLogEntry
+from wpiutil.log import StringLogEntry as StringLogEntry
 
 from ...log_records import Record
-
-__all__ = [
-    "HOW_TO_LOG_STATION",
-    "DataLog",
-    "IntegerLogEntry",
-    "Kind",
-    "LogWriter",
-    "RealWriter",
-    "StringLogEntry",
-    "as_in_2026",
-    "log_network",
-    "povs",
-]
 
 #: WPILib's own writer, whose name is replaced for robot code.
 RealWriter = DataLogWriter

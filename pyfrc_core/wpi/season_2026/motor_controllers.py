@@ -9,22 +9,12 @@ from typing import Any
 import wpilib
 from wpilib.interfaces import MotorController
 
-from ..motor_calls import MotorCalls, OnMotorCall, noting_members, numbers_in, of_drive, with_derived
+from ..motor_calls import MotorCalls as MotorCalls
+from ..motor_calls import OnMotorCall as OnMotorCall
+from ..motor_calls import noting_members, numbers_in, of_drive, with_derived
 
 #: The packages of WPILib's own motor controllers.
 _WPILIBS = ("wpilib",)
-
-__all__ = [
-    "POWER_GETTER",
-    "MotorCalls",
-    "OnMotorCall",
-    "is_group",
-    "is_inverted",
-    "is_pwm",
-    "power_of",
-    "replacements",
-    "with_own_getter",
-]
 
 
 def is_inverted(thing: object) -> bool:

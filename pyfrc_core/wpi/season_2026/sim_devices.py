@@ -10,19 +10,6 @@ import hal
 from hal import simulation as hs
 from wpilib.simulation import SimDeviceSim
 
-__all__ = [
-    "Device",
-    "SimValue",
-    "access",
-    "forget_parts",
-    "handle_of",
-    "names",
-    "only_robot_writes",
-    "open_device",
-    "values_of",
-    "watch",
-]
-
 _reset = hs.resetSimDeviceData
 #: The name of a SimDevice for a sensor of a SPARK; its first group is that of the SPARK.
 _PART = re.compile(r"(SPARK (?:MAX|Flex) \[[\d,]+\]) .+")

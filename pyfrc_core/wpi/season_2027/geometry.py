@@ -7,40 +7,17 @@ They are WPILib's own objects. What is read of them has the same name in each se
 from __future__ import annotations
 
 from wpimath import ChassisVelocities as ChassisSpeeds
+from wpimath import DifferentialDriveKinematics as DifferentialDriveKinematics
+from wpimath import DifferentialDriveWheelVelocities as DifferentialDriveWheelSpeeds
+from wpimath import MecanumDriveKinematics as MecanumDriveKinematics
+from wpimath import MecanumDriveWheelVelocities as MecanumDriveWheelSpeeds
+from wpimath import Pose2d as Pose2d
 from wpimath import (
-    DifferentialDriveKinematics,
-    MecanumDriveKinematics,
-    Pose2d,
     Rotation2d,
     SwerveDrive4Kinematics,
-    Transform2d,
-    Translation2d,
 )
-from wpimath import DifferentialDriveWheelVelocities as DifferentialDriveWheelSpeeds
-from wpimath import MecanumDriveWheelVelocities as MecanumDriveWheelSpeeds
-
-__all__ = [
-    "ChassisSpeeds",
-    "DifferentialDriveKinematics",
-    "DifferentialDriveWheelSpeeds",
-    "MecanumDriveKinematics",
-    "MecanumDriveWheelSpeeds",
-    "Pose2d",
-    "Transform2d",
-    "Translation2d",
-    "chassis_speeds",
-    "chassis_speeds_in_feet",
-    "mecanum_kinematics",
-    "mecanum_wheel_speeds_in_feet",
-    "module_places",
-    "polar",
-    "pose",
-    "tank_kinematics",
-    "tank_wheel_speeds_in_feet",
-    "track_width",
-    "transform_in_feet",
-    "translation",
-]
+from wpimath import Transform2d as Transform2d
+from wpimath import Translation2d as Translation2d
 
 
 def pose(x: float = 0.0, y: float = 0.0, angle: float = 0.0) -> Pose2d:

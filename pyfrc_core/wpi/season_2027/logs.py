@@ -12,33 +12,20 @@ import ntcore
 from wpilog import (
     BooleanArrayLogEntry,
     BooleanLogEntry,
-    DataLog,
     DataLogWriter,
     DoubleArrayLogEntry,
     DoubleLogEntry,
     IntegerArrayLogEntry,
-    IntegerLogEntry,
-    StringLogEntry,
 )
+from wpilog import DataLog as DataLog
+from wpilog import IntegerLogEntry as IntegerLogEntry
+from wpilog import StringLogEntry as StringLogEntry
 from wpimath import Pose2d
 from wpiutil import wpistruct
 
 from ...log_records import Record
 from . import timing
 from .station import angle_of, pov_of
-
-__all__ = [
-    "HOW_TO_LOG_STATION",
-    "DataLog",
-    "IntegerLogEntry",
-    "Kind",
-    "LogWriter",
-    "RealWriter",
-    "StringLogEntry",
-    "as_in_2026",
-    "log_network",
-    "povs",
-]
 
 #: WPILib's own writer, whose name is replaced for robot code.
 RealWriter = DataLogWriter

@@ -10,20 +10,6 @@ import hal
 from hal import simulation as hs
 from wpilib.simulation import SimDeviceSim
 
-__all__ = [
-    "PWM_MOTOR",
-    "Device",
-    "SimValue",
-    "access",
-    "forget_parts",
-    "handle_of",
-    "names",
-    "only_robot_writes",
-    "open_device",
-    "values_of",
-    "watch",
-]
-
 _reset = hs.reset_sim_device_data
 #: The name of a SimDevice for a sensor of a SPARK; its first group is that of the SPARK.
 _PART = re.compile(r"(SPARK (?:MAX|Flex) \[[\d,]+\]) .+")

@@ -5,8 +5,9 @@ from __future__ import annotations
 import tkinter as tk
 from collections.abc import Callable
 from tkinter import ttk
-from typing import TYPE_CHECKING
 
+from ....config.sim import SimConfig
+from ...engine.simulation import Simulation
 from ...engine.snapshot import Snapshot
 from ..models.devices import SETTABLE, DeviceRows, Row
 from ..models.wording import shown_number, typed_number
@@ -14,10 +15,6 @@ from . import theme as colors
 from .device_items import ITEMS, Item, RowPlace
 from .theme import Theme
 from .tooltip import Tooltip
-
-if TYPE_CHECKING:
-    from ....config.sim import SimConfig
-    from ...engine.simulation import Simulation
 
 #: The width, and the end of the labels, in pixels of the design.
 WIDTH, _LABELS = 292, 150

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import tkinter as tk
 from tkinter import ttk
-from typing import TYPE_CHECKING
 
+from ....config.sim import SimConfig
 from ..models.joysticks import (
     BUTTONS,
     FIRST_BUTTON,
@@ -20,9 +20,6 @@ from ..models.joysticks import (
 from . import theme as colors
 from .theme import Theme, fitting
 from .tooltip import Tooltip
-
-if TYPE_CHECKING:
-    from ....config.sim import SimConfig
 
 #: In pixels of the design.
 WIDTH, _PAD, _DIAL, _AXIS, _BUTTON = 288, 84, 60, 18, 18
