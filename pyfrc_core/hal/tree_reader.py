@@ -6,14 +6,16 @@ A trace reads them at each packet, so which function reads which value is looked
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from . import driver_station
 from .containers import LiveDict, LiveList, plain
 from .paths import join
 from .robot_devices import RobotDevices
 from .sim_device_list import Signature
 from .sim_devices import RobotDict, SimDevices
+
+if TYPE_CHECKING:
+    from . import driver_station
 
 #: The path of a value, and the function that reads it as recordings have it.
 _Leaf = tuple[str, Callable[[], Any]]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from ...hal import HalData
 from ..clock import Clock
@@ -12,10 +12,12 @@ from ..connection import DriverStationConnection
 from ..threads import cooperative
 from ..threads.robot_threads import RobotThread, RobotThreads
 from ..time.timed_loop import TimedLoop
-from . import hal_notifiers
 from .data_logs import DataLogs
 from .loop_watchdog import LoopOverruns
 from .notifier import PeriodicThread
+
+if TYPE_CHECKING:
+    from . import hal_notifiers
 
 
 class ExternalWrites(Protocol):

@@ -15,11 +15,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...compat.cpython_private import get_frame
 from ...errors import PyfrcError
-from ...hal import HalData
 from ...patch_table import PatchTable
 from ...wpi import network_writes
 from ..robot_time import PACKET_US
@@ -28,6 +27,9 @@ from .network_entries import NetworkEntries
 from .network_targets import NETWORK, parse_entry_target
 from .script import Step
 from .sensors import HOLD, INFINITE
+
+if TYPE_CHECKING:
+    from ...hal import HalData
 
 
 class HeldValues:

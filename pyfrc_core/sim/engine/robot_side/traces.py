@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ....hal import HalData
 from ....runtime.scripts.trace import TracedChanges
 from ....runtime.scripts.trace_lines import Change
 from ....wpi import network, station
@@ -19,6 +18,9 @@ from ..messages import MODE, POSE
 from ..scene import Pose
 from ..structs import SCHEMA
 from ..topic_values import TopicValues
+
+if TYPE_CHECKING:
+    from ....hal import HalData
 
 
 class NetworkTrace:
