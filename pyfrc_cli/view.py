@@ -29,9 +29,8 @@ def _address(context: click.Context, option: click.Parameter, value: str | None)
 @click.option(
     "--align",
     type=click.Choice(["enabled", "match", "start"]),
-    default="enabled",
     help="What further logs have at the same time as the first one: the first enabling, the match's beginning, or the "
-    "beginning of the log. Default: enabled.",
+    "beginning of the log. Default: enabled; a driver station's log is put on the time line of the robot's.",
 )
 @click.option(
     "--offset",

@@ -42,14 +42,15 @@ class ViewRequest:
     :param files: the logs, or a directory of one match; the first one is shown, with the driver station's that fit to
         it; the others are its branches
     :param robot: the robot that is shown instead: a team's number or an address; empty: the project's
-    :param align: by what the others are aligned with the first one
+    :param align: by what the others are aligned with the first one, also those of the driver station; None: these are
+        put on its time line, and others are aligned by the first enabling
     :param offsets: what is added to the times of the others, in seconds; further ones are aligned
     :param page: where to write the log as a page, instead of serving it
     """
 
     files: tuple[Path, ...] = ()
     robot: str | None = None
-    align: Align = "enabled"
+    align: Align | None = None
     offsets: tuple[float, ...] = ()
     page: Path | None = None
     quiet: bool = False
@@ -229,7 +230,7 @@ def _aligned(
     branches = []
     for number, log in enumerate(others):
         given = request.offsets[number] if number < len(request.offsets) else None
-        if log.is_station and first.read is not None and not first.is_station and request.align == "enabled":
+        if log.is_station and first.read is not None and not first.is_station and request.align is None:
             alignment = align(first, log) if given is None else Alignment(given, "you have given --offset")
             if alignment.offset is not None:
                 first = join(first, log, alignment, height)
@@ -243,7 +244,7 @@ def _aligned(
             given = 0.0
         offset = given
         if offset is None:
-            offset = offset_of(log.run.histories["network"], first.run.histories["network"], request.align)
+            offset = offset_of(log.run.histories["network"], first.run.histories["network"], request.align or "enabled")
         if offset is None:
             say(
                 f"{log.run.name} begins together with {first.run.name}: one of them does not say when it was enabled.\n"
