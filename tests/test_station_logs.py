@@ -184,6 +184,9 @@ def test_a_directory_of_a_match_is_shown_on_one_line(tmp_path: Path) -> None:
     said.clear()
     view(ViewRequest((tmp_path / "z.wpilog", tmp_path / "a.dslog"), offsets=(17.0,), page=page), said.append)
     assert said[0] == "a.dslog is on the time line of z.wpilog: you have given --offset.\n"
+    said.clear()
+    view(ViewRequest((tmp_path / "z.wpilog", tmp_path / "a.dslog"), align="enabled", page=page), said.append)
+    assert said == [f"wrote {page}\n"]  # a branch, as asked for
 
 
 def test_a_log_that_is_dropped_on_a_page_is_put_where_pyfrc_view_puts_it(tmp_path: Path) -> None:
