@@ -7,7 +7,7 @@ import sys
 from collections.abc import Container
 
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject, RobotProject, sampled
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork") or sys.platform == "darwin", reason="there is no safe fork")
 
@@ -68,6 +68,16 @@ def test_of_the_output_of_tests_that_failed(project: RobotProject, isolation: st
     result = project.run("test", "--isolation", isolation, "-j", "1")
     assert "2 failed, 1 passed" in result.stdout
     check(result.output, 2, defaults=range(3) if isolation == "reuse" else (1,))
+
+
+@needs_fork
+@pytest.mark.parametrize("jobs", sampled(["1", "2"], "2"))
+def test_of_output_that_is_not_captured(project: RobotProject, jobs: str) -> None:
+    result = project.run("test", "-j", jobs, "--", "-s")
+    assert "2 failed, 1 passed" in result.stdout
+    check(result.output, 3)
+    assert "the robot's own line" in result.stdout
+    assert "the robot's own error" in result.stderr
 
 
 def test_of_a_simulation(project: RobotProject) -> None:

@@ -40,6 +40,7 @@ from .interpreters import start_interpreters
 from .messages import replay
 from .processes import TestProcess, forked_test, spawned_test
 from .reruns import reruns_notice
+from .uncaptured import UncapturedOutput, uncaptured_output
 
 #: A test file that has anything of these in it may touch the HAL even without a fixture.
 _ROBOT_LIBRARIES = frozenset({"wpilib", "hal", "ntcore", "commands2", "magicbot"})
@@ -65,6 +66,8 @@ class IsolatedTests:
         self._running: dict[pytest.Item, TestProcess] = {}
         self._announced: pytest.Item | None = None
         self._explained = False
+        #: Where tests print to, if pytest captures nothing.
+        self._output: UncapturedOutput | None = None
         #: Whether it need not be printed that interpreters take long to start: it was, or no person waits.
         self._loading_told = not has_terminal()
 
@@ -78,7 +81,7 @@ class IsolatedTests:
         if session.testsfailed and not session.config.option.continue_on_collection_errors:
             problems = session.testsfailed
             raise session.Interrupted(f"{problems} error{'s' if problems != 1 else ''} during collection")
-        with taking_turns():
+        with uncaptured_output(session.config) as self._output, taking_turns():
             try:
                 self._run_all(session)
             except KeyboardInterrupt:
@@ -131,7 +134,7 @@ class IsolatedTests:
             if item is waiting[0]:
                 self._announce(item)
             if forked:
-                self._running[item] = forked_test(item, plugin)
+                self._running[item] = forked_test(item, plugin, self._output)
             else:
                 if self._interpreters is None:
                     self._interpreters = start_interpreters(plugin.project)
@@ -166,7 +169,8 @@ class IsolatedTests:
             item = waiting.pop(0)
             self._announce(item)
             del self._running[item]
-            if not pytest_private.captures_output(session.config):
+            if self._output is not None:
+                self._output.flush()
                 process.show()
             _report(item, process, self._plugin.project.files, seed_section(self._plugin.options, item))
             process.close()

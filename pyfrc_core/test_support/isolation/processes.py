@@ -21,6 +21,7 @@ from ...processes.worker import ForkedWorker, Send, Worker
 from ...runtime.turns import acquire, lock_directory
 from ..pytest_plugin import PyFrcPlugin
 from .messages import ReportSender
+from .uncaptured import UncapturedOutput
 
 
 class Captured:
@@ -61,11 +62,14 @@ class TestProcess:
             sys.stdout.write(self.captured())
 
 
-def forked_test(item: pytest.Item, plugin: PyFrcPlugin) -> TestProcess:
-    """Begin a test in a fork of this process: everything imported is there already."""
+def forked_test(item: pytest.Item, plugin: PyFrcPlugin, output: UncapturedOutput | None) -> TestProcess:
+    """Begin a test in a fork of this process: everything imported is there already.
+
+    :param output: where it prints to, if pytest captures nothing
+    """
     captured = Captured()
     files = captured.stdout.fileno(), captured.stderr.fileno()
-    worker = ForkedWorker(partial(_run_in_fork, item, plugin, files))
+    worker = ForkedWorker(partial(_run_in_fork, item, plugin, files, output))
 
     def close() -> None:
         worker.close()
@@ -116,9 +120,18 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin, interpreters: Interpret
 # -- on the other side -----------------------------------------------------------------------------------------------
 
 
-def _run_in_fork(item: pytest.Item, plugin: PyFrcPlugin, files: tuple[int, int], send: Send, log: CrashLog) -> None:
+def _run_in_fork(
+    item: pytest.Item,
+    plugin: PyFrcPlugin,
+    files: tuple[int, int],
+    output: UncapturedOutput | None,
+    send: Send,
+    log: CrashLog,
+) -> None:
     acquire()
     capture_into(item.config, files)
+    if output is not None:
+        output.connect_this_process()
     plugin.crash_log = log
     log.enable_fault_handler()  # pytest has one of its own
     ReportSender(send, plugin.project).run(item)
