@@ -60,7 +60,7 @@ ROBOT = """
                 open(os.path.join(os.path.dirname(__file__), "missing.txt"))
     """
 
-CAMPAIGN = ("--seed", "101", "--runs", "16")
+CAMPAIGN = ("--seed", "101", "--runs", "32")
 
 
 def _pairs(options: Sequence[str]) -> Iterator[tuple[str, str]]:
