@@ -73,6 +73,8 @@ def test_a_person_looks_at_a_robot(browser: Any, tmp_path: Path) -> None:
             assert front.locator("img").evaluate("(image) => image.naturalWidth") == 32
             back = page.frame_locator("iframe[title='Camera Back']")
             back.get_by_text(f"No picture from 127.0.0.1:{silent}").wait_for()
+        # It ends while it is shown: its last picture does not stay as if it were the present.
+        front.get_by_text(f"No picture from {host}").wait_for()
         assert robot.get(WORD) == TELEOP
         # pyfrc has ended: what the robot does is not known any more.
         there.front_end.close()

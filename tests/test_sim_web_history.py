@@ -105,6 +105,25 @@ def test_two_runs_differ_first_where_one_changed_alone_or_otherwise() -> None:
     assert runs.first_difference(3, None) is None
 
 
+def test_a_plot_that_goes_on_has_the_gap_of_a_value_that_is_gone_as_one_that_is_loaded_has() -> None:
+    runs = Runs()
+    changes = (
+        Change(0.0, {"nt:/x": 1.0, "nt:/list": (5.0, 6.0)}),
+        Change(1.0, {}, ("nt:/x", "nt:/list")),
+        Change(2.0, {"nt:/x": "a text now"}),
+    )
+    paths = ("nt:/x", "nt:/list[1]")
+    begin = runs.position()
+    runs.take("network", changes, lambda event: None)
+    assert runs.samples(paths, begin)[0] == {
+        "nt:/x": [0.0, 1.0, 1.0, None, 2.0, "a text now"],
+        "nt:/list[1]": [0.0, 6.0, 1.0, None],
+    }
+    loaded = runs.plots(paths, -1.0, 3.0, 100, None) or {}
+    assert loaded["nt:/x"]["v"] == [1.0, None, "a text now"]
+    assert loaded["nt:/list[1]"]["v"] == [6.0, None]
+
+
 VALUES = {f"pwm[{number}].value": 0.5 for number in range(20)}
 
 

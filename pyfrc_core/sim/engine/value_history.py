@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, KeysView, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -174,7 +174,7 @@ class ValueHistory:
         """Return the number of the last packet until a moment; the one before the first if there is none."""
         return self._first + bisect_right(self._times, time) - 1
 
-    def paths(self) -> Iterable[str]:
+    def paths(self) -> KeysView[str]:
         """Return the paths of all values that there were."""
         return self._changes.keys()
 

@@ -24,7 +24,8 @@ def element_of(path: str) -> tuple[str, int | None]:
 def resolve(history: ValueHistory, path: str) -> tuple[str, int | None]:
     """Return the path that the history has, and the index of an element of its value, or None."""
     whole, index = element_of(path)
-    return (path, None) if index is None or path in history.now or whole not in history.now else (whole, index)
+    paths = history.paths()
+    return (path, None) if index is None or path in paths or whole not in paths else (whole, index)
 
 
 def picked(value: Any, index: int | None) -> Any:

@@ -287,7 +287,10 @@ class Runs:
             return only_in_one(self._histories, branch.histories, branch.begin, branch.offset, branch.compared)
 
     def samples(self, paths: Iterable[str], after: Position) -> tuple[dict[str, list[Any]], Position]:
-        """Return every change of some values since a position, as times and values in turn, and the next position."""
+        """Return every change of some values since a position, as times and values in turn, and the next position.
+
+        Where a value is gone, it is None.
+        """
         found: dict[str, list[Any]] = {}
         with self._lock:
             positions = self._position()
@@ -298,8 +301,7 @@ class Runs:
                 whole, index = resolve(history, path)
                 flat: list[Any] = []
                 for time, value in history.since(begin, whole):
-                    if (one := picked(value, index)) is not MISSING:
-                        flat += (time, one)
+                    flat += (time, _shown(picked(value, index)))
                 if flat:
                     found[path] = flat[-2 * MOST_POINTS :]
         return found, positions

@@ -1,26 +1,35 @@
 // The page of one camera: says so where no picture comes.
-const image = document.querySelector("img");
 const note = document.querySelector("p");
-const RETRY = 3000; // milliseconds
+const PATIENCE = 5000; // milliseconds until a picture has to be there, and until the next one is asked for
+let image = document.querySelector("img");
 const addresses = image.dataset.addresses.split(" ");
-let tried = 0;
+let asked = 0;
+let failed = 0;
 
-// A stream of pictures is loaded when its first one is there, and has an error when it ends.
-image.addEventListener("load", () => show(true));
-image.addEventListener("error", () => {
-  show(false);
-  tried += 1;
-  setTimeout(load, tried % addresses.length ? 0 : RETRY);
-});
-
-function show(isThere) {
-  image.hidden = !isThere;
-  note.hidden = isThere;
-}
-
+// Browsers do not say when a stream of pictures has ended, or stands still with its last one. So it is asked for again while
+// it is shown, and what comes first then replaces it.
 function load() {
-  const address = addresses[tried % addresses.length];
-  image.src = tried < addresses.length ? address : `${address}${address.includes("?") ? "&" : "?"}again=${tried}`;
+  const address = addresses[failed % addresses.length];
+  const next = image.cloneNode();
+  const late = setTimeout(() => take(false), PATIENCE);
+  const take = (isThere) => {
+    clearTimeout(late);
+    next.onload = next.onerror = null;
+    image.removeAttribute("src"); // ends its stream
+    image.replaceWith(next);
+    image = next;
+    image.hidden = !isThere;
+    note.hidden = isThere;
+    if (!isThere) {
+      image.removeAttribute("src");
+      failed += 1;
+    }
+    setTimeout(load, isThere || failed % addresses.length === 0 ? PATIENCE : 0);
+  };
+  next.onload = () => take(true);
+  next.onerror = () => take(false);
+  next.src = asked ? `${address}${address.includes("?") ? "&" : "?"}again=${asked}` : address;
+  asked += 1;
 }
 
 // The colours are those of the page around it.
@@ -31,4 +40,4 @@ const takeColours = () => {
 new MutationObserver(takeColours).observe(page, { attributeFilter: ["data-theme"] });
 takeColours();
 if (addresses[0]) load();
-else show(false);
+else note.hidden = false;
