@@ -1,13 +1,15 @@
 """How quickly the page of `pyfrc sim --ui web` shows what happens, and what its server costs.
 
-    python benchmarks/sim_page.py [--robot tests/robots/competition/rev_swerve] [--minutes 20]
+    python benchmarks/sim_page.py [--robot tests/robots/competition/rev_swerve] [--minutes 30] [--speed 1]
 
 Needs Chromium, and pyfrc's development requirements.
 
 The robot is a copy that has one motor more, which follows a key at once. In real time: from the key to the end of the
 frame that paints the motor's number, 40 times; frames a second for 5 s while 8 values are plotted and the robot drives;
-meanwhile, the processor time of the server's process. Then, after a practice match at speed 0, and for the rest of
-`--minutes` disabled: from choosing a moment to the end of the frame that paints its values in every panel, 60 times.
+meanwhile, the processor time of the server's process. Then, in a practice match at `--speed` (0: as fast as it goes),
+and for the rest of `--minutes` disabled: the memory of the page, of the server and of its other processes at some
+moments, and the processor time since the moment before; at the end, from choosing a moment to the end of the frame that
+paints its values in every panel, 60 times.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from time import monotonic
 from typing import Any
 
 CHECKOUT = Path(__file__).resolve().parent.parent
@@ -37,6 +40,8 @@ MOTOR = (
     ("    def robotPeriodic(self) -> None:\n", "        self.at_once.set(-wpilib.DriverStation.getStickAxis(0, 1))\n"),
 )
 PRESSES, MOMENTS, SECONDS = 40, 60, 5.0
+#: When memory is measured, in minutes of robot time.
+MARKS = (1, 4, 10, 20, 30)
 
 #: A promise of the end of the frame that is being made: its task runs after the browser has painted.
 PAINTED = """const painted = () => new Promise((resolve) => {
@@ -150,6 +155,35 @@ def processor_seconds(process: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def children_of(process: int) -> list[int]:
+    """Return a process with all that it has started."""
+    children = Path(f"/proc/{process}/task/{process}/children").read_text(encoding="ascii").split()
+    return [process, *(each for child in children for each in children_of(int(child)))]
+
+
+def megabytes(process: int) -> float:
+    """Return the memory of a process that is its own or in use, without what lies on a disk."""
+    fields = re.findall(r"(RssAnon|VmSwap):\s+(\d+)", Path(f"/proc/{process}/status").read_text(encoding="utf-8"))
+    return sum(int(size) for _, size in fields) / 1024
+
+
+def watch_memory(page: Any, process: int, minutes: float) -> None:
+    """Print memory and processor time until the robot has come to a moment."""
+    tools = page.context.new_cdp_session(page)
+    marks = [mark for mark in MARKS if mark < minutes] + [minutes]
+    before, since = processor_seconds(process), monotonic()
+    for mark in marks:
+        while page.evaluate(MODEL)[0] < 60 * mark:
+            page.wait_for_timeout(200)
+        share = (processor_seconds(process) - before) / (monotonic() - since)
+        before, since = processor_seconds(process), monotonic()
+        tools.send("HeapProfiler.collectGarbage")
+        heap = tools.send("Runtime.getHeapUsage")["usedSize"] / 2**20
+        server, *others = (megabytes(each) for each in children_of(process))
+        what = f"minute {mark:g}: page {heap:.1f} MB, server {server:.0f} MB, others {sum(others):.0f} MB"
+        print(f"{what:62} server {100 * share:.1f} % of a core, load {os.getloadavg()[0]:.0f}", flush=True)
+
+
 def opened(browser: Any, address: str, layout: str) -> Any:
     """Open the page with one of its layouts, when the robot has started."""
     page = browser.new_page(viewport={"width": 1366, "height": 768})
@@ -165,37 +199,50 @@ def line(what: str, found: list[float], unit: str) -> str:
     return f"{what:46} {statistics.median(found):6.1f} {unit}, 90 %: {sorted(found)[len(found) * 9 // 10]:6.1f} {unit}"
 
 
+def quick(browser: Any, robot: Path) -> None:
+    """Measure keys, frames and the server's part of a core."""
+    with serving(robot) as (process, address):
+        page = opened(browser, address, "Driving")
+        page.get_by_role("button", name="Enable", exact=True).click()
+        page.locator(".state.enabled").wait_for()
+        print(line("key to drawn motor", page.evaluate(KEY_TO_MOTOR, PRESSES), "ms"), flush=True)
+        page.get_by_title("Layout", exact=True).click()
+        page.get_by_role("menuitemcheckbox", name="Tuning").click()
+        plot_eight(page)
+        page.keyboard.down("w")
+        before = processor_seconds(process.pid)
+        frames, longest = page.evaluate(FRAMES, SECONDS)
+        share = (processor_seconds(process.pid) - before) / SECONDS
+        values, changed = page.evaluate(MODEL)[1], page.evaluate(CHANGED, 1)
+        print(f"{'frames while 8 values are plotted':46} {frames:6.1f} a second, the longest {longest:.0f} ms")
+        what = f"server, {values} values, {changed} in an update"
+        print(f"{what:46} {100 * share:6.1f} % of a core", flush=True)
+
+
+def plot_eight(page: Any) -> None:
+    """Plot eight values."""
+    axes = [f"joysticks[0].axes[{axis}]" for axis in range(4)]
+    page.evaluate(PLOT, [*axes, "pwm[19].value", "sim.pose[0]", "sim.pose[1]", "sim.pose[2]"])
+
+
 def main() -> None:
     """Measure, and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--robot", type=Path, default=ROBOT, help="a robot whose autonomous and teleop need no person")
     parser.add_argument("--minutes", type=float, default=2.5, help="the robot time after which moments are chosen")
+    parser.add_argument("--speed", type=float, default=0.0, help="robot seconds per second until then")
+    parser.add_argument("--only-long", action="store_true", help="without keys and frames")
     given = parser.parse_args()
     robot = given.robot
     with open_browser() as browser:
-        with serving(robot) as (process, address):
+        if not given.only_long:
+            quick(browser, robot)
+        with serving(robot, "--speed", f"{given.speed:g}") as (process, address):
             page = opened(browser, address, "Driving")
-            page.get_by_role("button", name="Enable", exact=True).click()
-            page.locator(".state.enabled").wait_for()
-            print(line("key to drawn motor", page.evaluate(KEY_TO_MOTOR, PRESSES), "ms"), flush=True)
-            page.get_by_title("Layout", exact=True).click()
-            page.get_by_role("menuitemcheckbox", name="Tuning").click()
-            axes = [f"joysticks[0].axes[{axis}]" for axis in range(4)]
-            page.evaluate(PLOT, [*axes, "pwm[19].value", "sim.pose[0]", "sim.pose[1]", "sim.pose[2]"])
-            page.keyboard.down("w")
-            before = processor_seconds(process.pid)
-            frames, longest = page.evaluate(FRAMES, SECONDS)
-            share = (processor_seconds(process.pid) - before) / SECONDS
-            values, changed = page.evaluate(MODEL)[1], page.evaluate(CHANGED, 1)
-            print(f"{'frames while 8 values are plotted':46} {frames:6.1f} a second, the longest {longest:.0f} ms")
-            what = f"server, {values} values, {changed} in an update"
-            print(f"{what:46} {100 * share:6.1f} % of a core", flush=True)
-        with serving(robot, "--speed", "0") as (process, address):
-            page = opened(browser, address, "Driving")
+            plot_eight(page)
             page.get_by_role("button", name="Practice", exact=True).click()
             page.locator(".state.enabled").wait_for(timeout=60_000)
-            while page.evaluate(MODEL)[0] < 60 * given.minutes:
-                page.wait_for_timeout(200)
+            watch_memory(page, process.pid, given.minutes)
             page.keyboard.press("F5")
             page.get_by_role("button", name="Run", exact=True).first.wait_for()
             what = f"a moment of {given.minutes:g} minutes, in every panel"

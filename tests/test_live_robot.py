@@ -27,6 +27,7 @@ from pyfrc_core.season import CURRENT
 from pyfrc_core.sim.live.addresses import addresses_for
 from pyfrc_core.sim.live.robot import LiveRobot
 from pyfrc_core.wpi import network, network_client
+from pyfrc_core.wpi.network_news import Connected, Received
 
 
 @pytest.fixture
@@ -228,6 +229,29 @@ def test_a_flood_of_changes_leaves_the_page_alive(robot: NetworkRobot, tmp_path:
         page.until(lambda: page.values["nt:/flood/0"] == last)
         assert changes[0] > 90_000
         assert sum(len(curve(page, f"nt:/flood/{number}")) for number in range(250)) == changes[0]
+
+
+def test_values_that_come_late_are_said_to_be_late(tmp_path: Path) -> None:
+    class Flooded:
+        """A client with what was published in the first second, ten seconds later."""
+
+        now_us = 10_000_000
+
+        def read(self) -> list[Any]:
+            return [Received(f"/{number}", "double", 1.0, 1_000_000) for number in range(2000)]
+
+    printed: list[str] = []
+    where = addresses_for("10.12.34.2", None)
+    found = LiveRobot(Project(tmp_path / "robot.py"), where, lambda host: None, printed.append)
+    found._connected(Connected("10.12.34.2", 5810))
+    found._runs.connect(-10.0, 1)
+    client: Any = Flooded()
+    for _ in range(3):
+        found._look(client)
+    assert "seconds late" in found.status.note
+    assert sum("seconds late" in text for text in printed) == 1
+    found._connected(Connected("10.12.34.2", 5810))
+    assert not found.status.note
 
 
 #: A robot at an address that only this computer's Driver Station knows, and what finds it by its team's number.

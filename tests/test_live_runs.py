@@ -211,3 +211,13 @@ def test_structs_come_as_their_parts(table: str) -> None:
     robot.connect(point, schema)
     assert robot.changes("nt:/p/x") == [(0.0, 1.0)]
     assert "nt:/p" not in values_of(robot.read)
+
+
+def test_how_late_many_values_are_is_known() -> None:
+    robot = Robot()
+    robot.connect(TYPE)
+    many = [number(f"/{each}", 1.0, ON + 1_000_000) for each in range(2000)]
+    robot.take(*many, clock_us=ON + 9_000_000)
+    assert robot.runs.behind == 8
+    robot.take(number("/0", 2.0, ON + 2_000_000), clock_us=ON + 10_000_000)  # one value may have any time
+    assert robot.runs.behind == 0

@@ -39,6 +39,8 @@ _LOOK_SECONDS, _TIME_SECONDS = 0.02, 0.1
 _PATIENCE_SECONDS = 2.0
 #: How long to wait for names and connections of a search, in wall seconds.
 _SEARCH_SECONDS = 4.0
+#: How late values may be before that is said, in seconds.
+_LATE_SECONDS = 3.0
 #: How long to wait before the next connection to a console, in wall seconds.
 _BETWEEN_SECONDS = 2.0
 
@@ -120,6 +122,8 @@ class LiveRobot:
         self._console: RobotConsole | None = None
         self._is_console_missing = False
         self._reported_at = 0.0
+        #: Whether values of this connection were late.
+        self._is_late = False
         #: Why there is no robot, as soon as that is known.
         self._why = ""
         #: The people who may set values now.
@@ -210,6 +214,9 @@ class LiveRobot:
     def _take(self, client: network_client.Client, news: list[Received | Gone]) -> None:
         if self._runs.take(news, monotonic(), client.now_us):
             self._say(f"0:00.00 is where the robot's own clock shows {self._runs.zero_us / 1e6:.2f} s.")
+        if self._runs.behind > _LATE_SECONDS and not self._is_late:
+            self._is_late = True
+            self._warn("Values are seconds late: the robot publishes more than this computer, or the network, takes in.")
 
     def _explain(self) -> None:
         if not self._over.wait(_PATIENCE_SECONDS) and self.status.network_address is None:
@@ -218,15 +225,18 @@ class LiveRobot:
     def _tell_why(self, why: str) -> None:
         """Say why there is no robot, if there still is none."""
         if self.status.network_address is None and not self._runs.number:
-            text = f"No robot yet; still trying. {why}."
-            self._tell(f"{text}\n")
-            self.status = replace(self.status, note=text)
-            self._report()
+            self._warn(f"No robot yet; still trying. {why}.")
+
+    def _warn(self, text: str) -> None:
+        self._tell(f"{text}\n")
+        self.status = replace(self.status, note=text)
+        self._report()
 
     def _connected(self, to: Connected) -> None:
         shown = _shown((to.host, to.port))
         self.status = replace(self.status, network_address=shown, note="")
         self._say(f"Connected to {shown}.")
+        self._is_late = False
         if self._is_console_missing:
             return
         address = self._console_of(to.host)

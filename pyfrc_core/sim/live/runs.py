@@ -10,7 +10,7 @@ is back.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from ...wpi.network_news import Gone, Received
@@ -26,6 +26,8 @@ _FIRST_SECONDS = 0.5
 _TOGETHER_US = 5_000
 #: How far the robot's clock may be behind the last value, in microseconds: computers guess it.
 _INEXACT_US = 500_000
+#: From how many values at once on their times say how late they are: one of them may have any time.
+_MANY = 1000
 
 Entry = RunBegan | Change
 
@@ -59,6 +61,8 @@ class RobotRuns:
         #: The topics that are gone, unless the connection is being lost.
         self._going: dict[str, None] = {}
         self.is_connected = False
+        #: How long before they were taken over the last values were set, in seconds.
+        self.behind = 0.0
 
     def _begin_topics(self) -> None:
         self._topics = TopicValues()
@@ -75,7 +79,7 @@ class RobotRuns:
     def connect(self, wall: float, clock_us: int | None) -> None:
         """Note that the connection was made."""
         self.is_connected, self._first, self._first_until = True, [], wall + _FIRST_SECONDS
-        self._connected_us = clock_us
+        self._connected_us, self.behind = clock_us, 0.0
 
     def lose(self) -> None:
         """Note that the connection was lost. What is known stays."""
@@ -85,7 +89,7 @@ class RobotRuns:
             self._end = max(self._end, self.now)
             self._add_network(Change(self._end, {MODE: NO_CONNECTION}))
 
-    def take(self, news: Iterable[Received | Gone], wall: float, clock_us: int | None) -> bool:
+    def take(self, news: Sequence[Received | Gone], wall: float, clock_us: int | None) -> bool:
         """Take over what was received, and return whether a program was found to have started.
 
         :param wall: the time of this computer, in seconds
@@ -104,6 +108,7 @@ class RobotRuns:
         else:
             self._take_values(self._without_gone(news), clock_us)
         moment = 0.0 if clock_us is None else (clock_us - self.zero_us) / 1_000_000
+        self.behind = moment - self._end if len(news) >= _MANY else 0.0
         self.now = max(self.now, self._end, moment)
         return began
 
