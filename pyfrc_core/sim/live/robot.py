@@ -216,7 +216,7 @@ class LiveRobot:
             self._say(f"0:00.00 is where the robot's own clock shows {self._runs.zero_us / 1e6:.2f} s.")
         if self._runs.behind > _LATE_SECONDS and not self._is_late:
             self._is_late = True
-            self._warn("Values are seconds late: the robot publishes more than this computer, or the network, takes in.")
+            self._warn("Values are seconds late: the robot publishes more than this computer or the network takes in.")
 
     def _explain(self) -> None:
         if not self._over.wait(_PATIENCE_SECONDS) and self.status.network_address is None:
