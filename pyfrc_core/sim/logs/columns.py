@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, KeysView, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cached_property
@@ -158,7 +158,7 @@ class LogHistory(ValueHistory):
         column = self._columns.get(path)
         return MISSING if column is None else column.at(self._packet_at(time))
 
-    def paths(self) -> Iterable[str]:
+    def paths(self) -> KeysView[str]:
         """Return the paths of all values."""
         return self._columns.keys()
 

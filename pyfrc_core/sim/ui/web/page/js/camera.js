@@ -10,7 +10,8 @@ let failed = 0;
 // it is shown, and what comes first then replaces it.
 function load() {
   const address = addresses[failed % addresses.length];
-  const next = image.cloneNode();
+  const next = new Image();
+  next.alt = image.alt;
   const late = setTimeout(() => take(false), PATIENCE);
   const take = (isThere) => {
     clearTimeout(late);
