@@ -51,8 +51,8 @@ class Column:
         count = len(self.moments)
 
         def decode(first: int, last: int) -> Sequence[Any]:
-            values = self.decode(first, min(last, count))
-            return values if last <= count else [*values, MISSING]
+            values = self.decode(first, min(last, count)) if first < count else []
+            return [*values, MISSING] if first <= count < last else values
 
         return Column(self.moments + array("q", [end + 1]), decode, has_end=True)
 
