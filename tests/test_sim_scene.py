@@ -230,6 +230,14 @@ def test_the_field_as_configured(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.parametrize(("given", "log"), [("{}", "blue"), ('{"coordinates": "pyfrc"}', "pyfrc")])
+def test_places_of_a_log_are_written_as_robot_code_has_them_unless_the_file_says_how(
+    tmp_path: Path, given: str, log: str
+) -> None:
+    assert field(tmp_path, f'{{"pyfrc": {{"field": {given}}}}}').coordinates == "pyfrc"
+    assert field_of(Project(tmp_path / "robot.py"), "blue").coordinates == log
+
+
 def test_an_image_that_is_not_there_is_warned_of(tmp_path: Path) -> None:
     with pytest.warns(SettingsWarning, match="nowhere.png"):
         assert field(tmp_path, '{"pyfrc": {"field": {"image": "nowhere.png"}}}').image is None

@@ -97,7 +97,7 @@ def test_values_are_plotted_zoomed_and_saved(person: Seen) -> None:
     assert any(line.split(",")[1] == "1" for line in lines[1:])
     person.button("Follow again").click()
     page.get_by_label("Axis of pwm[0].value").click()
-    page.get_by_label("Axis of pwm[0].value").filter(has_text="R").wait_for()
+    page.get_by_label("Axis of pwm[0].value").filter(has_text="right axis").wait_for()
     page.get_by_label("Remove dio[3].value").click()
     page.reload()
     page.locator(".curve-name", has_text="left motor").wait_for()

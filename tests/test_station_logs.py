@@ -199,7 +199,7 @@ def test_a_log_that_is_dropped_on_a_page_is_put_where_pyfrc_view_puts_it(tmp_pat
             _, answer = send_log(server, name, dropped.file.read_bytes())
             page.until(lambda page=page: page.parts.get("branches"))
             assert page.parts["branches"][0]["offset"] == pytest.approx(offset, abs=0.03)
-        assert "aligned where they agree: 4 enablings and disablings agree within 0.0" in answer["text"]
+        assert "both show the same moment: 4 enablings and disablings agree within 0.0" in answer["text"]
     elsewhere = stations_log(tmp_path / "c.dslog", shifted(MATCH, -10.0), 170.0, NOON + timedelta(days=1))
     with served_source(LogSource(Project(tmp_path / "robot.py"), robot)) as server:
         _, answer = send_log(server, "c.dslog", elsewhere.file.read_bytes())

@@ -190,6 +190,7 @@ def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:
         page.set_default_timeout(PATIENCE * 1000)
         page.goto(server.address)
         page.locator(".recorded code", has_text="match.wpilog").wait_for()
+        page.locator(".run-end", has_text="match 0:00.0").wait_for()  # where autonomous was enabled
         assert page.get_by_role("button", name="Enable", exact=True).count() == 0
         assert page.get_by_role("tab", name="Keys", exact=True).count() == 0
         page.get_by_role("tab", name="NetworkTables", exact=True).click()
@@ -244,11 +245,11 @@ def test_arrow_keys_go_on_from_where_a_person_has_clicked(tmp_path: Path, browse
             press(key)
             page.locator(f".timeline[aria-valuenow='{expected}']").wait_for()
 
-        page.locator(".recorded code", has_text="match.wpilog").wait_for()
+        page.locator(".timeline[aria-valuenow='2.02']").wait_for()
         box = timeline.bounding_box()
         assert box is not None
         page.mouse.click(box["x"] + box["width"] * 0.3, box["y"] + 14)
-        page.locator(".timeline:not([aria-valuetext^=live])").wait_for()
+        page.locator(".timeline:not([aria-valuenow='2.02'])").wait_for()
         goes("ArrowRight", 0.02)
         goes("PageUp", 1)
         goes("ArrowLeft", -0.02)
@@ -360,10 +361,10 @@ def test_a_robot_is_chosen_and_states_of_the_other_log_are_drawn_below_those_of_
         page.goto(server.address)
         page.locator(".recorded code", has_text="a.wpilog").wait_for()
         # A person says which pose is the robot; those of the same name have their table.
-        for item, feet in (("Robot: Other/Robot", "20.00 ft"), ("Robot: Mine/Robot", "10.00 ft")):
+        for item, x in (("Robot: Other/Robot", "6.10 m"), ("Robot: Mine/Robot", "3.05 m")):
             page.get_by_title("What is drawn", exact=True).click()
             page.locator(".menu-list button", has_text=item).click()
-            page.locator(".pose", has_text=feet).wait_for()
+            page.locator(".pose", has_text=x).wait_for()
         for name in ("nt:/on", "nt:/state"):
             page.get_by_role("button", name="Add value").first.click()
             page.keyboard.type(name)

@@ -15,6 +15,7 @@ const { playback } = await import("#js/playback.js");
 const { driveOn } = await import("#js/past.js");
 const { Menu } = await import("#js/popup.js");
 const { PlotPicker } = await import("#js/plot_picker.js");
+const { addToPlot } = await import("#js/plotting.js");
 const { unwatch, watch } = await import("#js/series.js");
 const { settings } = await import("#js/settings.js");
 
@@ -138,6 +139,31 @@ test("everything is asked for while a person searches", () => {
   picker.state = { open: false, search: "" };
   picker.componentDidUpdate();
   assert.deepEqual(model.needs.beginnings, []);
+});
+
+test("what can be plotted is offered: what there was at the moment that is shown, and a list of texts whole", () => {
+  const offered = (search) => render(PlotPicker, { add() {} }, { open: true, search }).filter((each) => each.type === "button" && each.props.title).map(({ props }) => props.title);
+  Object.assign(model.hello.options, { buttons: { first: 1 } });
+  model.take({ type: "update", values: { "nt:/Names": [], "nt:/Ids": [], "nt:/Modes": ["a"], "nt:/Pose": [1, 2], "joysticks[0].buttons": [false, false, true] } });
+  assert.deepEqual(offered("names"), ["nt:/Names"]); // empty at the end
+  model.show({ t: 4, values: new Map(Object.entries({ "nt:/Names": ["Score"], "nt:/Ids": [7], "nt:/Gone": 1 })) });
+  assert.deepEqual(offered("nt: "), ["nt:/Names", "nt:/Names[0]", "nt:/Ids[0]", "nt:/Modes", "nt:/Modes[0]", "nt:/Pose[0]", "nt:/Pose[1]", "nt:/Gone"]);
+  assert.deepEqual(offered("button"), ["joysticks[0].buttons[1]", "joysticks[0].buttons[2]"]);
+});
+
+test("a click leaves the list of values open, and a key closes it", () => {
+  const done = [];
+  const picker = new PlotPicker({});
+  picker.close = () => done.push("closed");
+  model.take({ type: "update", values: { "nt:/Speed": 1 } });
+  const button = one(elements(picker.render({ stays: true, add: (path) => done.push(path) }, { open: true, search: "speed" })), "button", { title: "nt:/Speed" });
+  for (const detail of [1, 0]) button.props.onClick({ detail });
+  assert.deepEqual(done, ["nt:/Speed", "closed", "nt:/Speed"]);
+});
+
+test("values whose units are known to differ have an axis of their own", () => {
+  for (const name of ["Yaw", "Arm/goalRad", "HeadingDeg", "pose/rotation/value", "Gyro/Degrees", "Heading (deg)", "Battery"]) addToPlot(`nt:/${name}`);
+  assert.deepEqual(settings.get("plots")["plot:1"].curves.map(({ axis }) => axis), ["left", "left", "right", "left", "right", "right", "left"]);
 });
 
 test("the panels are as they were arranged, unless the window is narrow or low", () => {

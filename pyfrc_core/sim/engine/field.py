@@ -13,17 +13,19 @@ from .commands import ROBOT_ON_FIELD
 from .scene import Field, Pose, Shape
 
 if TYPE_CHECKING:
-    from ...config.sim import FieldConfig, FieldObject
+    from ...config.sim import Coordinates, FieldConfig, FieldObject
     from ...project import Project
     from ...season import FieldPart
 
 
-def field_of(project: Project) -> Field:
+def field_of(project: Project, coordinates: Coordinates = "pyfrc") -> Field:
     """Return the project's field, without tags.
 
+    :param coordinates: how the page writes places where ``sim/config.json`` does not say
     :raises SettingsError: when ``sim/config.json`` is invalid
     """
     config = project.sim_config
+    given = config.field.model_fields_set
     start = config.start
     starts = {start.name: Pose(start.x, start.y, math.radians(start.angle))}
     if len(config.robot.start_positions) > 1:
@@ -37,7 +39,7 @@ def field_of(project: Project) -> Field:
         starts=starts,
         image=None if config.field.image is None else field_picture(project.root, config.field.image)[0],
         objects=tuple(_shape(each) for each in config.field.objects),
-        coordinates=config.field.coordinates,
+        coordinates=config.field.coordinates if "coordinates" in given else coordinates,
         parts=_season_parts(config.field),
     )
 

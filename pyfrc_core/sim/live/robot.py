@@ -110,7 +110,7 @@ class LiveRobot:
         tell: Callable[[str], object] = lambda text: None,
     ) -> None:
         self.project, self.title = project, where.whose
-        self.field = field_of(project)
+        self.field = field_of(project, "blue")  # as robot code has them
         self.reports = ReportSignal()
         self.status = Status(state="running")
         self._where, self._console_of, self._tell = where, console, tell

@@ -46,7 +46,7 @@ class LogSource:
         self.abilities, self.what_if = Abilities("log", over=True, replays=what_if is not None), what_if
         self.project, self.recorded, self.branches = project, log.run, branches
         self.title, self.when = log.run.name, log.when
-        self.field = field_of(project)
+        self.field = field_of(project, "blue")  # as robot code has written them
         self.reports = ReportSignal()
         self.status = Status(state="paused", length=log.run.end, starts=1)
         self.snapshot: Snapshot | None = self._snapshot(log.run)

@@ -14,6 +14,7 @@ from ....season import CURRENT
 from ....text_files import keep_out_of_version_control, write_whole
 from ...engine.messages import VALUE
 from ...engine.source import Source
+from ...logs.align import moment_of
 from ..models.joysticks import FIRST_BUTTON, JOYSTICKS, MOST_BUTTONS, axis_labels, button_labels
 from ..models.keyboard import BUTTON_KEYS, BUTTON_KEYS_TEXT, ENABLE_CHORD, GENTLE, LAYOUTS, layout_for
 from ..models.time_controls import FASTEST, SLOWEST
@@ -43,7 +44,7 @@ def greeting(source: Source, client: int, read_only: bool, watching: bool = Fals
     :param read_only: whether the page cannot drive
     :param watching: whether saved files bring new code
     """
-    project, abilities = source.project, source.abilities
+    project, abilities, recorded = source.project, source.abilities, source.recorded
     return {
         "type": "hello",
         "protocol": PROTOCOL,
@@ -58,6 +59,7 @@ def greeting(source: Source, client: int, read_only: bool, watching: bool = Fals
         "source": {
             "title": source.title,
             "when": None if source.when is None else source.when.isoformat(timespec="minutes"),
+            "begins": None if recorded is None else moment_of(recorded.histories["network"], "match"),
             **asdict(abilities),
         },
         "options": _options(project, watching),

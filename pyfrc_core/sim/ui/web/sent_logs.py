@@ -79,7 +79,7 @@ class SentLogs:
         branch = collector.runs.add_branch(replace(opened.run, offset=offset or 0.0))
         problem = f" But {opened.problem}." if opened.problem else ""
         if opened.is_station and offset is not None:
-            problem += f" With the robot's log as one, pyfrc view shows it: pyfrc view LOG {quoted(name)}"
+            problem += f" For plots of both together, name both when you start: pyfrc view LOG {quoted(name)}"
         collector.announce(f"{name} is a branch, aligned {how}.")
         return {"branch": branch, "text": f"{name} is shown beside this, aligned {how}.{problem}"}
 
@@ -91,7 +91,7 @@ class SentLogs:
             offset, how = align(robot, station)
             if offset is None:
                 return None, f"at their start: {how}"
-            return offset if opened.is_station else -offset, f"where they agree: {how}"
+            return offset if opened.is_station else -offset, f"so that both show the same moment: {how}"
         offset = offset_of(opened.run.histories["network"], self._collector.runs.network, "enabled")
         how = "where the robots were first enabled" if offset is not None else "at their start, since one says no mode"
         return offset, how

@@ -1,6 +1,6 @@
 // Why the robot program has ended: the user's own line first, and the ways to go on.
-import { clock } from "#js/format.js";
 import { goTo } from "#js/input/moment_keys.js";
+import { momentText } from "#js/match_clock.js";
 import { model } from "#js/model.js";
 import { commandLive } from "#js/past.js";
 import { SourceLink } from "#js/source.js";
@@ -11,7 +11,7 @@ const BACK = 2; // seconds
 const UNREADABLE = /\b(SyntaxError|IndentationError|TabError)\b/;
 
 export class FailureBar extends Live {
-  parts = ["status", "shown"];
+  parts = ["status", "shown", "series"];
 
   render() {
     const failure = model.status.state === "failed" ? model.status.failure : null;
@@ -23,7 +23,7 @@ export class FailureBar extends Live {
         <${Icon} name="warning" />
         <div class="failure-text column fill">
           <strong>${failure.headline}</strong>
-          <span>The robot program ended at ${clock(failure.t)}. ${failure.file && html`<${SourceLink} file=${failure.file} line=${failure.line} />`}
+          <span>The robot program ended at ${momentText(failure.t)}. ${failure.file && html`<${SourceLink} file=${failure.file} line=${failure.line} />`}
             ${watch && " Save the corrected file, and the simulation goes on."}</span>
         </div>
         <div class="failure-actions">

@@ -8,6 +8,7 @@ import { Dock } from "#js/layout/dock.js";
 import { model } from "#js/model.js";
 import { Notice } from "#js/notice.js";
 import { startDrops } from "#js/open_log.js";
+import { PACKET, look } from "#js/past.js";
 import { RecordedTimeBar, startPlaybackKeys } from "#js/recorded_bar.js";
 import { applyTheme, settings } from "#js/settings.js";
 import { StationBar } from "#js/station.js";
@@ -38,12 +39,14 @@ const WAITING = {
 
 function receive(message) {
   if (message.type === "problem") return model.set("problem", message.text);
-  if (message.type === "hello" && !model.hello) {
+  const isFirst = message.type === "hello" && !model.hello;
+  if (isFirst) {
     settings.load(message.layout);
     applyTheme();
     document.title = `${message.project.name} – ${message.source.title}`;
   } else if (message.type === "hello") settings.saveUnsaved();
   model.take(message);
+  if (isFirst && message.source.begins !== null) look(message.source.begins + PACKET);
 }
 
 // A button that was clicked with the mouse does not keep the keyboard, so that the space bar stays the emergency stop.

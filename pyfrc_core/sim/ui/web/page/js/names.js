@@ -27,13 +27,16 @@ export function unitOfPath(path) {
 }
 
 const OWN_UNITS = { "sim.pose[0]": "ft", "sim.pose[1]": "ft", "sim.pose[2]": "rad" };
-// The units of the parts of WPILib's structs.
+// The units of the parts of WPILib's structs, and of other values.
 /** @type {[RegExp, string][]} */
 const STRUCT_UNITS = [
   [/^nt:.*\/translation\/[xyz]$/, "m"],
   [/^nt:.*\/(rotation|angle)\/value$/, "rad"],
   [/^nt:.*\/(v[xy]|\d+\/(speed|velocity))$/, "m/s"],
   [/^nt:.*\/omega$/, "rad/s"],
+  // What a name says at its end.
+  [/^nt:.*([^a-zA-Z]deg|Deg|[dD]egrees|°)\W*$/, "°"],
+  [/^nt:.*([^a-zA-Z]rad|Rad|[rR]adians)\W*$/, "rad"],
 ];
 const OWN = { "sim.mode": "Mode", "sim.pose[0]": "Robot x", "sim.pose[1]": "Robot y", "sim.pose[2]": "Robot angle" };
 const CONTROLS = { axes: "axis", buttons: "button", povs: "POV" };

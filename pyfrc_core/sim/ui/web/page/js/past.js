@@ -5,7 +5,7 @@ import { NO_CONNECTION } from "#js/gaps.js";
 import { model } from "#js/model.js";
 import { isRecorded } from "#js/recorded.js";
 
-const PACKET = 0.02; // seconds
+export const PACKET = 0.02; // seconds
 const WITHOUT_STATION = { [NO_CONNECTION]: "No connection", "unknown mode": "Connected" };
 
 let wanted = null;

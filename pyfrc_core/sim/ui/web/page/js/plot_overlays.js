@@ -23,7 +23,7 @@ export function drawBands(canvas, bands, { width, inside, band, range: [from, to
   const x = (t) => inside.left + ((t - from) / (to - from)) * inside.width;
   context.textBaseline = "middle";
   context.font = font(11);
-  if (other !== undefined) write(context, `Paler: ${other}`, inside.left + 6, GAP + CAPTION / 2, inside.width - 12);
+  if (other !== undefined) write(context, `The paler bands are from ${other}`, inside.left + 6, GAP + CAPTION / 2, inside.width - 12);
   let seen = new Map(); // value: its number; a state looks the same in both
   bands.forEach((one, index) => {
     const top = begin + index * (band + GAP);

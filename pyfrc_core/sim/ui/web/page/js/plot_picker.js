@@ -9,6 +9,7 @@ import { Icon, html } from "#js/view.js";
 
 const MOST = 60;
 const LAST = /^nt:\/(LiveWindow|\.schema)|^event\.|\/\.\w+$|raw_value$/;
+const BUTTONS = /^joysticks\[\d+\]\.buttons$/; // robot code counts them from the season's first one
 const FROM_OUTSIDE = /^nt:\/(FMSInfo|DS|DSLog|DriverStation)\//;
 
 export class PlotPicker extends Popup {
@@ -30,8 +31,8 @@ export class PlotPicker extends Popup {
 
   begin = (event) => event.newState === "open" && this.setState({ open: true, search: "" });
 
-  // add(path): called with the value that was chosen; more: [{ key, name, note, add() }], above the values
-  render({ label = "Add value", more = [], add }, { open, search }) {
+  // add(path): called with the value that was chosen; stays: whether a click leaves the list open; more: [{ key, name, note, add() }], above the values
+  render({ label = "Add value", more = [], stays = false, add }, { open, search }) {
     const found = open ? searched(search) : [];
     const others = open ? more.filter(({ name, note }) => matches(`${name} ${note}`, search)) : [];
     return html`<div class="menu picker" ref=${this.element} onKeyDown=${this.pressed}>
@@ -39,8 +40,8 @@ export class PlotPicker extends Popup {
       <div class="menu-list" ...${this.list}>${open && html`
         <${SearchBox} label="Search all values" text=${search} search=${this.search} />
         <ul>${others.map(({ key, name, note, add: act }) => html`<li key=${key}><button title=${key} onClick=${() => this.choose(act)}><b>${name}</b><small>${note}</small></button></li>`)}
-          ${found.map((path) => html`<li key=${path}><button title=${path} onClick=${() => this.choose(() => add(path))}>
-          <span class="long-name"><bdi>${nameOf(path)}</bdi></span><small>${valueText(valueIn(model.values, path)).slice(0, 24)}</small></button></li>`)}</ul>
+          ${found.map((path) => html`<li key=${path}><button title=${path} onClick=${({ detail }) => (stays && detail ? add(path) : this.choose(() => add(path)))}>
+          <span class="long-name"><bdi>${nameOf(path)}</bdi></span><small>${valueText(valueIn(model.shown.values, path)).slice(0, 24)}</small></button></li>`)}</ul>
         ${found.length === MOST && html`<p class="faint">Only ${MOST} values are listed: search for others.</p>`}
         ${!found.length && !others.length && html`<p class="faint">No value is called that.</p>`}`}
       </div>
@@ -78,6 +79,16 @@ function allPaths() {
     return outputs.has(path) || path.startsWith("sim.") ? 1 : sensors.has(path) ? 2 : 3;
   };
   const groups = [[], [], [], [], []];
-  for (const [path, value] of model.values) groups[rank(path)].push(...(Array.isArray(value) ? elementsOf(path, value) : [path]));
+  for (const path of new Set([...model.values.keys(), ...model.shown.values.keys()])) groups[rank(path)].push(...valuesOf(path));
   return groups.flat();
+}
+
+// A list's elements, as many as it has now or at the moment that is shown; a list of texts or one that is empty can be
+// plotted whole, as a text.
+function valuesOf(path) {
+  const lists = [model.values, model.shown.values].map((values) => values.get(path)).filter(Array.isArray);
+  if (!lists.length) return [path];
+  const list = lists.reduce((one, other) => (other.length > one.length ? other : one));
+  const elements = elementsOf(path, list).slice(BUTTONS.test(path) ? model.hello.options.buttons.first : 0);
+  return list.every((each) => typeof each === "string") ? [path, ...elements] : elements;
 }

@@ -1,8 +1,9 @@
 // Which values are plotted where: each plot panel has a list of curves in the settings.
-import { CURVE_COLORS, LINES, isComputed } from "#js/curves.js";
+import { CURVE_COLORS, LINES, isComputed, unitOf } from "#js/curves.js";
 import { showPanel } from "#js/layout/open.js";
 import { panelsOf } from "#js/layout/presets.js";
 import { model } from "#js/model.js";
+import { unitOfPath } from "#js/names.js";
 import { settings } from "#js/settings.js";
 
 const PATH_TYPE = "application/x-pyfrc-path";
@@ -52,8 +53,15 @@ export function changePlot(id, change) {
 // Add a value to a plot, or to the first one that is open.
 export function addToPlot(path, id = openPlot()) {
   if (!path) return;
-  if (!plotOf(id).curves.some((curve) => curve.path === path && !isComputed(curve))) addCurve(id, { path, axis: "left" });
+  if (!plotOf(id).curves.some((curve) => curve.path === path && !isComputed(curve))) addCurve(id, { path, axis: axisFor(path, plotOf(id).curves) });
   showPanel(id);
+}
+
+// The right axis if what is known at the left one has other units: degrees make a curve in radians look flat.
+function axisFor(path, curves) {
+  const unit = unitOfPath(path);
+  const others = curves.filter(({ axis }) => axis === "left").map(unitOf).filter(Boolean);
+  return unit && others.length && !others.includes(unit) ? "right" : "left";
 }
 
 // Add a curve, even one of a value that the plot shows already.

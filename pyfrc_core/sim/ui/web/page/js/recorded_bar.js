@@ -2,6 +2,7 @@
 import { BranchesMenu } from "#js/branches.js";
 import { command } from "#js/connection.js";
 import { clock, speedText } from "#js/format.js";
+import { matchText } from "#js/match_clock.js";
 import { model } from "#js/model.js";
 import { live, look, lookByPackets } from "#js/past.js";
 import { playback } from "#js/playback.js";
@@ -21,7 +22,7 @@ export function SourceLabel() {
 }
 
 export class RecordedTimeBar extends Live {
-  parts = ["status", "shown", "hello", "playback", "branches", "compared", "compared-series"];
+  parts = ["status", "shown", "hello", "playback", "branches", "compared", "compared-series", "series"];
 
   render() {
     const { past, status, hello: { source } } = model;
@@ -39,7 +40,7 @@ export class RecordedTimeBar extends Live {
         <button class="quiet" title="Look at the packet after" aria-label="Look at the packet after" onClick=${step(1)}><${Icon} name="step" /></button>
         <button class="quiet" title="To the end" aria-label="To the end" onClick=${toEnd}><${Icon} name="last" /></button>
         <time class="clock" title="Robot time">${clock(past ? past.t : model.t)}</time>
-        <span class="run-end">${past ? "" : source.kind === "log" ? "End of the log" : "End of the run"}</span>
+        <span class="run-end" title=${past && "Since autonomous was enabled"}>${past ? matchText(past.t) : source.kind === "log" ? "End of the log" : "End of the run"}</span>
         <label class="speed" title="Robot seconds per second">Speed
           <input type="range" min="0" max="1" step="0.005" value=${position} aria-label="Speed" aria-valuetext=${speedText(speed)}
             onInput=${(event) => { playback.position = Number(event.target.value); }} />

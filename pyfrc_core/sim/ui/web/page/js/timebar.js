@@ -5,6 +5,7 @@ import { BranchesMenu } from "#js/branches.js";
 import { clock, speedText } from "#js/format.js";
 import { link } from "#js/link.js";
 import { Menu } from "#js/popup.js";
+import { matchText, momentText } from "#js/match_clock.js";
 import { model } from "#js/model.js";
 import { commandLive, driveOn, live, lookByPackets } from "#js/past.js";
 import { positionOf, speedAt } from "#js/speeds.js";
@@ -61,7 +62,8 @@ class Clock extends Live {
 
   render() {
     this.interval = model.past ? 0 : LIVE_INTERVAL;
-    return html`<time class="clock" title="Robot time">${clock(model.past?.t ?? model.t)}</time>`;
+    const t = model.past?.t ?? model.t;
+    return html`<time class="clock" title="Robot time">${clock(t)}</time><span class="match-time" title="Since autonomous was enabled">${matchText(t)}</span>`;
   }
 }
 
@@ -92,7 +94,7 @@ class ToPresent extends Live {
 
 async function mark() {
   const t = model.past?.t ?? model.t;
-  const text = await askText(`A mark at ${clock(t)}`, "");
+  const text = await askText(`A mark at ${momentText(t)}`, "");
   if (text) command("mark", { t, text });
 }
 
@@ -112,9 +114,9 @@ class Figures extends Live {
 
 function figures(status) {
   const milliseconds = (seconds) => `${((seconds ?? 0) * 1000).toFixed(1)} ms`;
-  const reached = status.state === "running" ? `${(status.reached ?? 0).toFixed(status.speed === 0 ? 0 : 2)}×` : "–";
+  const reached = status.state === "running" ? `${(status.reached ?? 0).toFixed(status.speed === 0 ? 0 : 2)}×` : status.state;
   return html`<dl class="figures">
-    <div title="The speed that this computer reaches"><dt>Reached</dt><dd>${reached}</dd></div>
+    <div title="How fast robot time really goes: 1× is as fast as real time"><dt>Actual speed</dt><dd>${reached}</dd></div>
     <div title=${`The time that this computer takes for a packet; the worst of the last second: ${milliseconds(status.worst_packet_seconds)}`}>
       <dt>Packet</dt><dd>${milliseconds(status.packet_seconds)}</dd></div>
     <div class=${status.overruns ? "warn" : ""} title=${`Turns of the robot's loop that took longer than its period; the longest: ${milliseconds(status.worst_loop_seconds)}`}>

@@ -1,9 +1,10 @@
 // The timeline: modes as colours, marks, and the moment that the panels show.
 import { Drawn, font } from "#js/canvas.js";
 import { compared } from "#js/compare.js";
-import { clock, clockTick } from "#js/format.js";
+import { clockTick } from "#js/format.js";
 import { gapsOf, hatch } from "#js/gaps.js";
 import { lookByKey } from "#js/input/moment_keys.js";
+import { momentText } from "#js/match_clock.js";
 import { model } from "#js/model.js";
 import { isForgotten, length, live, look } from "#js/past.js";
 import { watch, unwatch } from "#js/series.js";
@@ -50,11 +51,11 @@ export class Timeline extends Drawn {
     this.interval = model.past ? 0 : LIVE_INTERVAL;
     const t = model.past?.t ?? Math.floor(model.t);
     return html`<div class="timeline" role="slider" tabindex="0" aria-label="Timeline" aria-valuemin="0"
-        aria-valuemax=${Math.ceil(length())} aria-valuenow=${t.toFixed(2)} aria-valuetext=${model.past ? clock(t) : `live, ${clockTick(t)}`}
+        aria-valuemax=${Math.ceil(length())} aria-valuenow=${t.toFixed(2)} aria-valuetext=${model.past ? momentText(t) : `live, ${clockTick(t)}`}
         onPointerDown=${this.begin} onPointerMove=${this.move} onPointerUp=${this.end} onPointerLeave=${this.leave} onKeyDown=${this.key}>
       <canvas ref=${this.canvas}></canvas>
       ${hover && html`<div class="timeline-tip column" style=${{ left: `${hover.left}px` }}>
-        <b>${clock(hover.t)}</b>${isForgotten(hover.t) && html`<span>Values forgotten</span>`}${this.marksNear(hover.t).map((mark, index) => html`<span key=${index} class=${`mark-${mark.kind}`}>${mark.text}</span>`)}</div>`}
+        <b>${momentText(hover.t)}</b>${isForgotten(hover.t) && html`<span>Values forgotten</span>`}${this.marksNear(hover.t).map((mark, index) => html`<span key=${index} class=${`mark-${mark.kind}`}>${mark.text}</span>`)}</div>`}
     </div>`;
   }
 

@@ -100,7 +100,7 @@ export class FieldPanel extends Drawn {
         <canvas ref=${this.canvas}></canvas>
       </div>
       ${!bare && html`<div class="field-line flex">
-        <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose.x)} ${pose.unit}</b><i>y</i><b>${numberText(pose.y)} ${pose.unit}</b><i class="long">heading</i><b>${numberText(pose.degrees, 1)}°</b>` : WITHOUT_POSE[model.hello.source?.kind] ?? ""}</span>
+        <span class="pose" title=${COORDINATES[coordinates]}>${pose ? html`<i>x</i><b>${numberText(pose.x)} ${pose.unit}</b><i>y</i><b>${numberText(pose.y)} ${pose.unit}</b><i class="long">heading</i><b>${numberText(pose.degrees, 1)}°</b>` : WITHOUT_POSE[model.hello.source?.kind] ?? ""}</span>
         <button class="quiet" title="Show the whole field: double click" aria-label="Show the whole field" onClick=${this.whole}><${Icon} name="fit" /></button>
         <${Menu} label="Show" title="What is drawn" items=${layers} />
       </div>`}

@@ -96,7 +96,7 @@ export class PlotPanel extends Live {
         ${this.zoom && html`<button class="quiet" onClick=${() => this.follow(seconds)}>Follow again</button>`}
         <div class="spacer"></div>
         <${AbsentCurves} curves=${absent} remove=${() => this.set({ curves: this.curves })} />
-        <${PlotPicker} add=${(path) => addToPlot(path, id)} />
+        <${PlotPicker} stays add=${(path) => addToPlot(path, id)} />
         ${curves.length > 0 && html`<${PlotAxes} axes=${this.axes()} ranges=${() => this.ranges} limits=${this.limits} setRange=${this.setRange}
           hold=${Boolean(this.zoom)} setHold=${(hold) => (hold ? this.zoomTo(...this.range()) : this.follow(seconds))} />
         <button class=${classes({ quiet: true, chosen: isTable })} aria-pressed=${Boolean(isTable)} title="Minimum, mean and maximum of what is in view" onClick=${() => this.set({ table: !isTable })}>Table</button>`}
