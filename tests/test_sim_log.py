@@ -171,8 +171,11 @@ def test_what_differs_is_named_anew_after_each_enabling_and_shortly(make_project
     change(project, "robot.py", "GAIN = 0.5", "GAIN = 0.75")
     said = log_of(project, "match.wpilog")
     # The lift's output is one value of a device that has more, which are named once.
-    assert "differs first at 0:02.00, in Elevator/setpoint: " in said
-    assert "then in pwm[1].value (0:02.00)\n" in said
+    differing = "differs in 2 values, those that change rarely first:\n  Elevator/setpoint (0:02.00): "
+    assert [line.partition(": ")[0] for line in said[said.index(differing) :].splitlines()[1:3]] == [
+        "  Elevator/setpoint (0:02.00)",
+        "  pwm[1].value (0:02.00)",
+    ]
     assert "after it was enabled at 0:04.00, in Elevator/setpoint (0:05.00), pwm[1].value (0:05.00)\n" in said
     of_encoder = [line for line in said.splitlines() if "DutyCycleEncoder[5]" in line]
     assert [line.partition(",")[0] for line in of_encoder] == ["sensors from the log"]
@@ -181,8 +184,9 @@ def test_what_differs_is_named_anew_after_each_enabling_and_shortly(make_project
     change(project, "robot.py", '"before"', '"after"')
     change(project, "robot.py", '"Elevator/setpoint"', '"Elevator/goal"')
     said = log_of(project, "match.wpilog")
-    assert re.search(r"in name \d+: \.\.\..{,20} before in match.wpilog, \.\.\..{,20} after here", said)
-    assert "and 4 more (-v names all)" in said
+    assert (
+        len(re.findall(r"  name \d+ \(.*: \.\.\..{,20} before in match.wpilog, \.\.\..{,20} after here\n", said)) == 12
+    )
     assert "in match.wpilog only: Elevator/setpoint (0:01.00)\nhere only: Elevator/goal (0:01.00)\n" in said
     change(project, "robot.py", "GAIN if", "(GAIN if wpilib.Timer.getFPGATimestamp() > 4 else 0.5) if")
     said = project.run("-v", *SIM, "--log", "match.wpilog").stdout
@@ -413,7 +417,7 @@ def test_the_log_of_a_robot_is_shown_on_the_times_of_the_simulation(played: Robo
     # Its code has not set the robot's place, so the log has it in a corner.
     assert "Field/Robot" not in (played.path / "again.jsonl").read_text("utf-8")
     # At 0.85, since 5 % of the range are 0.05.
-    assert "differs first at 0:06.84, in Elevator/setpoint: 0.854 in match.wpilog, 0.8 here" in said
+    assert "\n  Elevator/setpoint (0:06.84): 0.854 in match.wpilog, 0.8 here" in said
     assert "--ignore" not in said
     assert "differs slightly" not in said
     said = log_of(played, "match.wpilog", "--tolerance", "25")
@@ -427,10 +431,10 @@ def test_the_log_of_a_robot_is_shown_on_the_times_of_the_simulation(played: Robo
 def test_what_a_person_has_set_on_a_dashboard_is_named(played: RobotProject) -> None:
     change(played, "robot.py", '"kP", 1.0)\n\n', '"kP", 0.5)\n\n')
     said = log_of(played, "match.wpilog")
-    assert "in kP: 1 in match.wpilog, 0.5 here" in said
+    assert re.search(r"  kP \(.*\): 1 in match.wpilog, 0.5 here\n", said)
     said = log_of(played, "match.wpilog", "--input", "SmartDashboard/kP")
-    assert "in Elevator/setpoint" in said
-    assert "in kP" not in said
+    assert "\n  Elevator/setpoint (" in said
+    assert "\n  kP (" not in said
     result = played.run_here(*SIM, "--log", "match.wpilog", "--input", "Nope/kP")
     assert (result.code, result.first_error) == (2, "--input Nope/kP: match.wpilog has no value of this name")
     assert "It has SmartDashboard/kP." in result.stderr
@@ -592,6 +596,19 @@ def test_a_value_of_a_log_may_be_late_and_noisy(here: list, log: list, differs: 
     found.compare(history(*here), history(*log), "nt:/x")
     assert found.time == differs
     assert found.compared == 1
+
+
+@pytest.mark.parametrize(("share", "first", "time"), [(0.05, "nt:/limit", 3.0), (0.0, "nt:/battery", 0.0)])
+def test_where_runs_do_not_repeat_what_changes_rarely_comes_first(share: float, first: str, time: float) -> None:
+    found = FirstDifference(0.0, 4.0, Comparison(True, share, 0.06))
+    here, log = ValueHistory(), ValueHistory()
+    for now, value in STEPS:
+        here.add(now, {"nt:/battery": 12.0, "nt:/limit": 2.0})
+        log.add(now, {"nt:/battery": value, "nt:/limit": 2.0 if now < 3.0 else 1.0})
+    for path in ("nt:/battery", "nt:/limit"):
+        found.compare(here, log, path)
+    plain = found.plain(str)
+    assert (plain["t"], plain["paths"], plain["count"]) == (time, [first], 2)
 
 
 @pytest.mark.parametrize(

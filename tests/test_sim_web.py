@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import math
+import threading
 from pathlib import Path
 
 import pytest
 from sim_robots import FILES
-from web_pages import Page, served
+from web_pages import PATIENCE, Page, served
 from websockets.exceptions import ConnectionClosed
 
 from pyfrc_core.project import find_project
@@ -213,6 +214,23 @@ def test_driving_on_from_the_past_keeps_the_former_run_as_a_branch(make_project)
         only = page.ask(type="first_difference", branch=branch["id"], paths=["sim.mode", "dio[3].value"])
         assert (only["t"], only["paths"]) == (None, [])
         assert page.ask(type="first_difference", branch=77)["type"] == "error"
+
+
+def test_other_questions_are_answered_while_runs_are_compared(make_project, monkeypatch) -> None:
+    asked = threading.Event()
+
+    def compare(*_: object) -> dict[str, object]:
+        assert asked.wait(PATIENCE)
+        return {"t": 7.0}
+
+    monkeypatch.setattr(Runs, "plain_difference", compare)
+    with served(make_project(DASHBOARD)) as server, server.page() as page:
+        page.socket.send(json.dumps({"type": "first_difference", "branch": 1, "id": 9000}))
+        assert page.ask(type="ping")["type"] == "answer"  # else the server ends the connection, since it reads nothing
+        asked.set()
+        while (answer := json.loads(page.socket.recv())).get("id") != 9000:
+            pass
+        assert answer["t"] == 7.0
 
 
 def test_a_page_that_does_not_read_gets_merged_updates(make_project) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 from ..runtime.robot_time import PACKET_US
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
     from .log_run import LogRun
     from .ui.web.collector import Collector
 
-#: The most values that differ, and the most sensors, that are named.
-_MOST_NAMED = 8
+#: The most values that differ, and the most sensors, that are named; and of those values, shown with both values.
+_MOST_NAMED, _MOST_SHOWN = 8, 20
 #: A name of a time that code takes, which may differ in each run.
 _DURATION = re.compile(r"time|duration|latency|elapsed|period|(^|[^a-z])(ms|dt|fps)($|[^a-z])", re.IGNORECASE)
 _SOURCES = {
@@ -33,6 +34,8 @@ _SOURCES = {
     "replay": "inputs of subsystems, which only the replay of AdvantageKit or PyKit gives to the code",
 }
 
+#: The kinds that are said before the result: what follows from them cannot be compared.
+_LIMITS = ("nothing", "real time", "replay")
 #: The kinds of which the names are not those of sensors, but what is listed.
 _NAMED_ALREADY = ("real time", "replay")
 
@@ -63,7 +66,11 @@ class LogReport:
         only = None if branch is None else runs.only_in_one(branch.number)
         if branch is None or found is None or only is None:
             return
+        sensors = runs.sensors(branch.number)
+        by_source = sensors if self._most is None else _devices_by_source(sensors)
+        said = {kind: self._listed(f"{_SOURCES[kind]}:", names) for kind, names in by_source.items() if names}
         yield from limits(self._log.name, found, only)
+        yield from (said.pop(kind) for kind in _LIMITS if kind in said)
         yield from self._differences(found, branch.number, is_mostly_compared(found, only))
         if found.never:
             yield self._listed("in both, but never at the same time:", sorted(map(name_of, found.never)))
@@ -72,10 +79,7 @@ class LogReport:
                 yield self._listed(where, (_with_time((each.path, each.time)) for each in topics))
         if found.by.ignored:
             yield self._listed("not compared, as you asked:", found.by.ignored)
-        sensors = runs.sensors(branch.number)
-        for kind, names in (sensors if self._most is None else _devices_by_source(sensors)).items():
-            if names:
-                yield self._listed(f"{_SOURCES[kind]}:", names)
+        yield from said.values()
 
     def _differences(self, found: FirstDifference, branch: int, mostly: bool) -> Iterator[str]:
         log, by = self._log, found.by
@@ -89,9 +93,16 @@ class LogReport:
             yield f"{'no difference' if mostly else 'what was compared does not differ'}{self._until()}: {values}"
             yield from self._slight(found)
             return
-        (path, time), *others = differing
-        there, here = differing_texts(*found.values[path])
-        yield f"differs first at {clock(time)}, in {name_of(path)}: {there} in {log.name}, {here} here"
+        path, time = differing[0]
+        if found.by_rarity:
+            most = len(differing) if self._most is None else _MOST_SHOWN
+            shown, others = differing[:most], differing[most:]
+            title = f"differs in {counted(len(differing), 'value')}, those that change rarely first:"
+            yield "\n  ".join((title, *(self._moment(found, each) for each in shown)))
+        else:
+            others = differing[1:]
+            there, here = differing_texts(*found.values[path])
+            yield f"differs first at {clock(time)}, in {name_of(path)}: {there} in {log.name}, {here} here"
         if any(since <= time for since, _ in by.limits):
             yield "this may come from what cannot be compared"
         if others:
@@ -118,7 +129,8 @@ class LogReport:
         :param named: what has been named, with when it differs first
         """
         before = enabled - PACKET_US / 1_000_000
-        if before <= named[0][1] or (found := self._collector.runs.first_difference(branch, None, before)) is None:
+        first = min(time for _, time in named)
+        if before <= first or (found := self._collector.runs.first_difference(branch, None, before)) is None:
             return
         if later := [each for each in self._named(found) if each[1] > before and each not in named]:
             yield self._listed(f"after it was enabled at {clock(enabled)}, in", self._moments(found, later))
@@ -139,12 +151,13 @@ class LogReport:
             one_each.setdefault((path if path.startswith(VALUE) else device_of(path), time), (path, time))
         return list(one_each.values())
 
-    def _moments(self, found: FirstDifference, differing: Iterable[tuple[str, float]]) -> Iterator[str]:
-        """Yield values with when they differ and, if all are named, with what they are then."""
-        for path, time in differing:
-            both = differing_texts(*found.values[path])
-            whole = "" if self._most is not None else f": {both[0]} in {self._log.name}, {both[1]} here"
-            yield _with_time((path, time)) + whole
+    def _moments(self, found: FirstDifference, differing: list[tuple[str, float]]) -> Iterator[str]:
+        """Return values with when they differ and, if all are named, with what they are then."""
+        return map(_with_time if self._most is not None else partial(self._moment, found), differing)
+
+    def _moment(self, found: FirstDifference, moment: tuple[str, float]) -> str:
+        there, here = differing_texts(*found.values[moment[0]])
+        return f"{_with_time(moment)}: {there} in {self._log.name}, {here} here"
 
     def _listed(self, what: str, names: Iterable[str]) -> str:
         """Return what is said of some names: in one line, or if all are named, each in a line of its own."""

@@ -109,9 +109,10 @@ test("what could not be compared comes before the result, and nothing is the sam
   const text = (first) => elements(FirstDifference({ first })).find((each) => each.type === "span").props.children;
   const none = { t: null, paths: [], others: [], until: 15, limits: ["no joysticks"], mostly: true, compared: 7 };
   assert.deepEqual(
-    [none, { ...none, limits: [] }, { ...none, mostly: false }, { ...none, compared: 0 }, { ...none, t: 13, paths: ["nt:/a"] }].map(text),
+    [none, { ...none, limits: [] }, { ...none, mostly: false }, { ...none, compared: 0 }, { ...none, t: 13, paths: ["nt:/a"] },
+      { ...none, t: 13, paths: ["nt:/a"], by_rarity: true, count: 20, limits: [] }].map(text),
     ["Partly compared. No difference up to 0:15.00", "No difference up to 0:15.00", "Partly compared. What was compared does not differ up to 0:15.00",
-      "Nothing to compare up to 0:15.00", "Partly compared. Differs first at 0:13.00, in a"],
+      "Nothing to compare up to 0:15.00", "Partly compared. Differs first at 0:13.00, in a", "20 values differ: a at 0:13.00"],
   );
 });
 

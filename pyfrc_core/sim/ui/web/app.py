@@ -157,7 +157,8 @@ class WebApp:
         )
         self._clients[number] = client
         self.wake()
-        tasks = {asyncio.create_task(client.send_updates()), asyncio.create_task(self._receive(socket, client))}
+        works = (client.send_updates(), client.compare(), self._receive(socket, client))
+        tasks = set(map(asyncio.create_task, works))
         try:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:

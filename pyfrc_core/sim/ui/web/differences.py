@@ -70,6 +70,8 @@ class FirstDifference:
     values: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     #: Of the values that differ by less than what counts, by how much at most, as a share of their range, and when.
     slight: dict[str, tuple[float, float]] = field(default_factory=dict)
+    #: How often those of `found` change, in the run in which they change more often.
+    changes: dict[str, int] = field(default_factory=dict)
     #: How many values were compared; and of a log, those that both runs have, but never at the same time.
     compared: int = 0
     never: set[str] = field(default_factory=set)
@@ -80,13 +82,23 @@ class FirstDifference:
         return min(self.found.values(), default=None)
 
     @property
+    def by_rarity(self) -> bool:
+        """Whether what changes rarely comes first: where runs do not repeat, what the sensors move differs at once."""
+        return self.by.share > 0
+
+    @property
     def paths(self) -> list[str]:
-        """The values that differ then: first what robot code sets."""
-        return [path for path, time in self.sorted() if time == self.time][:_MOST_NAMED]
+        """The values that differ first: among them, first what robot code sets."""
+        found = self.sorted()
+        return [path for path, time in found if time == found[0][1]][:_MOST_NAMED]
 
     def sorted(self) -> list[tuple[str, float]]:
-        """Return all values that differ, the earliest first."""
-        return sorted(self.found.items(), key=lambda each: (each[1], not each[0].startswith(VALUE), rank(each[0])))
+        """Return all values that differ, the earliest first, or those that change most rarely."""
+        return sorted(self.found.items(), key=self._order)
+
+    def _order(self, moment: tuple[str, float]) -> tuple[object, ...]:
+        path, time = moment
+        return self.changes[path] if self.by_rarity else 0, time, not path.startswith(VALUE), rank(path)
 
     def sorted_slight(self) -> list[tuple[str, float, float]]:
         """Return all values that differ slightly, with by how much and when, those that differ most first."""
@@ -104,7 +116,8 @@ class FirstDifference:
             texts = (value if is_number(value) else clean(str(value)) for value in both)
             others.append((path, time, *differing_texts(*texts)))
         slight = self.sorted_slight()[:_MOST_OTHERS]
-        return {"t": self.time, "paths": self.paths, "others": others, "slight": slight, "until": self.end}
+        first = {"t": others[0][1] if others else None, "paths": self.paths, "by_rarity": self.by_rarity}
+        return first | {"others": others, "count": len(self.found), "slight": slight, "until": self.end}
 
     def compare(self, one: ValueHistory, other: ValueHistory, path: str) -> None:
         """Look for a difference in this value."""
@@ -134,6 +147,7 @@ class FirstDifference:
             if not self.by.is_log and self.time is not None and time < self.time:
                 self.found.clear()  # later ones do not matter
             self.found[path], self.values[path] = time, (there, here)
+            self.changes[path] = max(len(left), len(right))
 
     def _difference(
         self, left: list[Held], right: list[Held], end: float, most: float, apart_of: Callable[..., float]

@@ -58,6 +58,8 @@ class PageClient:
         self.news = asyncio.Event()
         #: Messages are sent one at a time.
         self._sending = asyncio.Lock()
+        #: The comparisons that are asked for: one that waits, at most.
+        self._comparisons: asyncio.Queue[Message] = asyncio.Queue(1)
 
     async def send_updates(self) -> None:
         """Send what has changed, as fast as the page takes it, until it has gone."""
@@ -76,17 +78,38 @@ class PageClient:
                 await self._send({"type": "update", **update})
 
     async def receive(self, text: str) -> None:
-        """Carry out one message of the page."""
-        number: dict[str, Any] = {}
+        """Carry out one message of the page; `compare` does it for a comparison."""
         try:
             message = read_message(text)
-            number = {} if message.id is None else {"id": message.id}
+            compares = message.text("type") == "first_difference"
+        except CommandError as wrong:
+            await self._send_error({}, wrong)
+            return
+        if compares:
+            await self._comparisons.put(message)
+        else:
+            await self._respond(message)
+
+    async def compare(self) -> None:
+        """Compare runs until the page has gone: that takes many seconds, in which other messages have to be read.
+
+        Else the server does not read the page's signs of life, either, and ends the connection.
+        """
+        while True:
+            await self._respond(await self._comparisons.get())
+
+    async def _respond(self, message: Message) -> None:
+        number = {} if message.id is None else {"id": message.id}
+        try:
             answer = await self._with_signs(self._answer(message))
         except CommandError as wrong:
-            await self._send({"type": "error", **number, "message": str(wrong)[:_MOST_ERROR]})
+            await self._send_error(number, wrong)
             return
         if number:
             await self._send({"type": "answer", **number, **answer})
+
+    async def _send_error(self, number: dict[str, Any], wrong: CommandError) -> None:
+        await self._send({"type": "error", **number, "message": str(wrong)[:_MOST_ERROR]})
 
     async def close(self) -> None:
         """Say that the simulation was closed."""

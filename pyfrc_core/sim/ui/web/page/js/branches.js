@@ -6,7 +6,7 @@ import { clock, typedNumber } from "#js/format.js";
 import { Menu } from "#js/popup.js";
 import { model } from "#js/model.js";
 import { chooseLog } from "#js/open_log.js";
-import { FirstDifference, showDifferences } from "#js/panels/differences.js";
+import { FirstDifference, showDifferences, waiting } from "#js/panels/differences.js";
 import { isRecorded } from "#js/recorded.js";
 import { html } from "#js/view.js";
 
@@ -28,7 +28,8 @@ export function BranchesMenu() {
   }
   if (opens) items.push(...(items.length ? [{ separator: true }] : []), { text: "Show another log beside it…", act: chooseLog });
   const { first } = compared;
-  return html`${chosen && first && html`<${FirstDifference} first=${first} />`}
+  const waits = chosen && !first && chosen.compared;
+  return html`${chosen && first && html`<${FirstDifference} first=${first} />`}${waits && html`<span class="faint">${waiting()}</span>`}
     <${Menu} label=${model.branches.length ? `Branches ${model.branches.length}` : "Compare"} icon="branch" title=${model.isOver ? "Compare with another log" : "Compare with an earlier run"} items=${items} />`;
 }
 

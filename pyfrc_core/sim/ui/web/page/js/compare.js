@@ -1,11 +1,11 @@
 // The branch that the person compares with: a ghost on the field, dashed curves in the plots.
-import { ask } from "#js/connection.js";
+import { Disconnected, ask } from "#js/connection.js";
 import { model } from "#js/model.js";
 import { length } from "#js/past.js";
 import { valueAt } from "#js/series.js";
 
 const POINTS = 4000;
-const AGAIN = 2000; // milliseconds between two comparisons while the robot runs
+const AGAIN = 2000; // the fewest milliseconds between two comparisons while the robot runs
 
 class Compared {
   id = null;
@@ -63,17 +63,19 @@ class Compared {
     if (this.#waits || place === this.#compared) return;
     this.#waits = true;
     this.#compared = place;
+    const began = performance.now();
+    model.announce("compared-series");
     try {
       const answer = await ask("first_difference", { branch: id, paths: null });
       if (this.id === id) this.first = answer;
-    } catch {
-      // It may be gone.
+    } catch (error) {
+      if (error instanceof Disconnected) this.#compared = ""; // else it may be gone
     }
     model.announce("compared-series");
     setTimeout(() => {
       this.#waits = false;
       this.compare();
-    }, AGAIN);
+    }, Math.max(AGAIN, performance.now() - began)); // a long one has half of the time
   }
 }
 

@@ -1,4 +1,4 @@
-// Where another run differs from this one: first what could not be compared, then every value, and what moves the sensors.
+// Where another run differs from this one: first what could not be compared, then every value, and what moved the sensors.
 // A click on a value shows it everywhere: its moment, its curves in both runs around it, and its row in a panel.
 import { compared } from "#js/compare.js";
 import { clock } from "#js/format.js";
@@ -9,16 +9,20 @@ import { plotFound } from "#js/plotting.js";
 import { Live, html } from "#js/view.js";
 
 const PANEL = "differences";
-const SOURCES = [
-  ["log", "From the log"],
-  ["physics", "From physics.py"],
-  ["nothing", "Neither: not simulated"],
-  ["real time", "Simulated in real time: differs in each run"],
-  ["replay", "Only by the replay of AdvantageKit or PyKit"],
+const NOT_COMPARED = [
+  ["nothing", "Neither the log nor physics.py moves"],
+  ["real time", "Simulated in real time, differs in each run:"],
+  ["replay", "Only the replay of AdvantageKit or PyKit gives"],
 ];
+const SOURCES = [["log", "From the log:"], ["physics", "From physics.py:"]];
 
 export function showDifferences() {
   showPanel(PANEL, "joysticks");
+}
+
+// What is shown while there is no result.
+export function waiting() {
+  return model.status.state === "starting" ? "Compared when the replay has ended" : "Comparing with the log…";
 }
 
 function show(path, t) {
@@ -42,7 +46,8 @@ export function FirstDifference({ first }) {
 }
 
 // What the comparison has found, up to when: "no difference" only where most of what a log has was compared.
-function result({ t, paths, until, compared: count, mostly = true }) {
+function result({ t, paths, until, compared: count, mostly = true, by_rarity, count: differing }) {
+  if (t !== null && by_rarity) return `${differing} ${differing === 1 ? "value differs" : "values differ"}: ${pathText(paths[0])} at ${clock(t)}`;
   if (t !== null) return `Differs first at ${clock(t)}, in ${pathText(paths[0])}`;
   const same = count === 0 ? "Nothing to compare" : mostly ? "No difference" : "What was compared does not differ";
   return `${same} up to ${clock(until)}`;
@@ -53,19 +58,28 @@ export class DifferencesPanel extends Live {
 
   render() {
     const { branch, first } = compared;
+    if (!first && branch?.compared) return html`<div class="content"><p class="empty">${waiting()}</p></div>`;
     if (!first) return html`<div class="content"><p class="empty">Choose a former run, or the log that drives this one, under “Branches”.</p></div>`;
     const { others, slight = [], limits = [], sensors = {} } = first;
-    const there = `In ${branch?.name}`;
+    const there = first.limits ? "log" : "there";
     return html`<div class="differences content scroll">
       ${limits.map((limit) => html`<p key=${limit} class="limit">${limit}.</p>`)}
+      ${NOT_COMPARED.map((source) => html`<${Sensors} key=${source} source=${source} sensors=${sensors} kind="limit" />`)}
       <h3>${result(first)}</h3>
+      ${first.by_rarity && others.length > 1 && html`<p class="faint">What changes rarely comes first.</p>`}
       <ul>${others.map(([path, t, before, here]) => html`<${Difference} key=${path} path=${path} t=${t}><small>${there} <b>${before}</b>, here <b>${here}</b></small><//>`)}</ul>
       ${slight.length > 0 && html`<h3>Differs slightly</h3>`}
       <ul>${slight.map(([path, share, t]) => html`<${Difference} key=${path} path=${path} t=${t}><small>At most by ${Number((share * 100).toPrecision(2))} % of its range</small><//>`)}</ul>
-      ${SOURCES.filter(([source]) => sensors[source]?.length).map(([source, text]) => html`<section key=${source}><h3>Sensors: ${text}</h3>
-        <ul>${sensors[source].map((path) => html`<li key=${path}>${path}</li>`)}</ul></section>`)}
+      ${SOURCES.map((source) => html`<${Sensors} key=${source} source=${source} sensors=${sensors} />`)}
     </div>`;
   }
+}
+
+function Sensors({ source: [source, text], sensors, kind = "" }) {
+  const names = sensors[source];
+  if (!names?.length) return null;
+  return html`<details class=${kind}><summary>${text} ${names.length} ${source === "replay" ? "inputs" : source === "real time" ? "devices" : "values of sensors"}</summary>
+    <ul>${names.map((name) => html`<li key=${name}>${name}</li>`)}</ul></details>`;
 }
 
 function Difference({ path, t, children }) {
