@@ -41,7 +41,7 @@ export class ChangesPanel extends Live {
   render(_, { reach, t, changes }) {
     this.interval = model.past ? 0 : LIVE_INTERVAL;
     return html`<div class="networktables content column changes">
-      <div class="changes-head flex"><span>Changed around ${momentText(Math.max(t, 0))}</span>
+      <div class="changes-head flex"><span>Around ${momentText(Math.max(t, 0))}</span>
         <${Select} aria-label="How far around" value=${reach} options=${REACHES.map((each) => [each, `± ${each} s`])} set=${(each) => this.setState({ reach: Number(each) })} /></div>
       <div class="scroll fill" role="list">${changes.map((change) => html`<${Change} key=${change.path} ...${change} />`)}
         ${!changes.length && html`<p class="empty">Nothing has changed then. What changes rarely comes first here.</p>`}</div>
