@@ -43,7 +43,7 @@ export class PlotPicker extends Popup {
           ${found.map((path) => html`<li key=${path}><button title=${path} onClick=${({ detail }) => (stays && detail ? add(path) : this.choose(() => add(path)))}>
           <span class="long-name"><bdi>${nameOf(path)}</bdi></span><small>${valueText(valueIn(model.shown.values, path)).slice(0, 24)}</small></button></li>`)}</ul>
         ${found.length === MOST && html`<p class="faint">Only ${MOST} values are listed: search for others.</p>`}
-        ${!found.length && !others.length && html`<p class="faint">No value is called that.</p>`}`}
+        ${!found.length && !others.length && html`<p class="faint">No value ${model.past ? "of this moment " : ""}is called that.</p>`}`}
       </div>
     </div>`;
   }

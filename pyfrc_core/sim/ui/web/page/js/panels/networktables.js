@@ -36,7 +36,7 @@ export class NetworkTablesPanel extends Finding {
     visit(tree, 0);
     return html`<div class="networktables content column" ref=${this.element}>
       <${SearchBox} label="Search NetworkTables" text=${search} search=${this.search} />
-      <div class="scroll fill" role="tree">${rows}${!rows.length && html`<p class="empty">${search ? "No value is called that." : "The robot has published nothing yet."}</p>`}</div>
+      <div class="scroll fill" role="tree">${rows}${!rows.length && html`<p class="empty">${search ? `No value ${model.past ? "of this moment " : ""}is called that.` : "The robot has published nothing yet."}</p>`}</div>
     </div>`;
   }
 
