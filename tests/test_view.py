@@ -170,8 +170,13 @@ def test_what_changes_rarely_comes_first_among_the_changes_around_a_moment(tmp_p
             "before": "DRIVING",
             "after": "BLOCKED",
             "count": 2,
+            "near": 1,
         }
-        assert [change["path"] for change in changes[1:]] == ["nt:/SmartDashboard/speed"]
+        (often,) = changes[1:]  # of many changes, the first
+        assert (often["path"], often["near"] > 8) == ("nt:/SmartDashboard/speed", True)
+        few = page.ask(type="changes", t=5.0, reach=0.15)["changes"]
+        assert len(few) == few[-1]["near"] == 3
+        assert few[0]["after"] == few[1]["before"]
 
 
 def test_only_who_may_drive_can_drop_a_log(tmp_path: Path) -> None:

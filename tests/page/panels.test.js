@@ -8,6 +8,8 @@ const { model } = await import("#js/model.js");
 const { connect } = await import("#js/connection.js");
 const { PlotButton, Select, Switch, TextBox } = await import("#js/controls.js");
 const { Dock } = await import("#js/layout/dock.js");
+const { changeText } = await import("#js/format.js");
+const { grouped } = await import("#js/panels/console.js");
 const { FirstDifference } = await import("#js/panels/differences.js");
 const { frontOf } = await import("#js/layout/open.js");
 const { MatchPanel } = await import("#js/panels/match.js");
@@ -114,6 +116,17 @@ test("what could not be compared comes before the result, and nothing is the sam
     ["Partly compared. No difference up to 0:15.00", "No difference up to 0:15.00", "Partly compared. What was compared does not differ up to 0:15.00",
       "Nothing to compare up to 0:15.00", "Partly compared. Differs first at 0:13.00, in a", "20 values differ: a at 0:13.00"],
   );
+});
+
+test("of a list, a change is that of its elements", () => {
+  assert.equal(changeText(["Drive", "Hold", "Hold"], ["Drive", "Hold", "Lock"]), "2: Hold → Lock");
+  assert.equal(changeText([false], [false, true]), "1: – → true");
+  assert.equal(changeText(null, [1]), "– → [1]");
+});
+
+test("equal lines that follow each other soon are one, with their number and the last moment", () => {
+  const lines = [[1, "a"], [1.2, "a"], [1.9, "a"], [2, "b"], [2.1, "a"], [4, "a"]].map(([t, text]) => ({ t, text, level: "warning" }));
+  assert.deepEqual(grouped(lines).map(({ line, count, until }) => [line.t, line.text, count, until]), [[1, "a", 3, 1.9], [2, "b", 1, 2], [2.1, "a", 1, 2.1], [4, "a", 1, 4]]);
 });
 
 test("arrow keys move in a list, around its ends, and only while it is open", () => {

@@ -337,7 +337,7 @@ class Simulation(Controls, SimulationSource):
             elif isinstance(message, Ready):
                 self._tags = message.tags
                 self.field = replace(self.field, tags=message.tags)
-                note = " ".join(message.notes) or self._status.note
+                note = "\n".join(message.notes) or self._status.note
                 self._status = replace(self._status, network_address=message.network_address, note=note)
                 if self.options.recording:  # otherwise another process of the robot is unlikely
                     assert self._processes is not None

@@ -123,5 +123,5 @@ def status_after(status: Status, update: Update, length_us: int) -> Status:
         overruns=update.overruns,
         worst_loop_seconds=update.worst_loop_seconds,
         length=length_us / 1_000_000,
-        note=" ".join(update.notes) or status.note,
+        note="\n".join(update.notes) or status.note,
     )

@@ -245,7 +245,8 @@ class Headless(FrontEnd):
         status = simulation.status
         if status.note not in ("", self._noted):
             self._noted = status.note
-            self._say_line(f"warning: {status.note}")
+            for note in status.note.splitlines():
+                self._say_line(f"warning: {note}")
         stands = status.standstill
         if stands is not None and stands.loading and (self._quiet or not has_terminal()):
             stands = None

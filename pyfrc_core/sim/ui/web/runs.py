@@ -22,6 +22,8 @@ MOST_BYTES = 256 << 20
 _ROUNDING = 1e-6
 #: The most changes around a moment that are named.
 _MOST_CHANGES = 100
+#: The most changes of one value there that are each named.
+_MOST_EACH = 8
 #: The most former runs that are kept.
 _MOST_FORMER = 12
 #: The number of the first branch that is no former run.
@@ -307,7 +309,9 @@ class Runs:
         return found, positions
 
     def changes_around(self, time: float, reach: float) -> list[dict[str, Any]]:
-        """Return the first change of each value that has changed around a moment, what changes rarely first.
+        """Return the changes around a moment, those of values that change rarely first.
+
+        Of a value that changes there more than `_MOST_EACH` times, only the first one, with how many there are.
 
         :param reach: in seconds before and after the moment
         """
@@ -320,13 +324,15 @@ class Runs:
             for path in paths:
                 with self._lock:  # for each value: a collector must not wait for all of them
                     before = history.value_at(path, time - reach)
-                    changes = zip(*history.changes(path, time - reach, time + reach + _ROUNDING), strict=True)
-                    first = next(((at, value) for at, value in changes if not same(value, before)), None)
+                    changes = []
+                    for at, value in zip(*history.changes(path, time - reach, time + reach + _ROUNDING), strict=True):
+                        if not same(value, before):
+                            changes.append({"t": at, "before": _shown(before), "after": _shown(value)})
+                            before = value
                     count = history.change_count(path)
-                if first is not None:
-                    values = {"before": _shown(before), "after": _shown(first[1])}
-                    found.append({"path": path, "t": first[0], "count": count, **values})
-        found.sort(key=lambda change: (change["count"], change["t"]))
+                each = {"path": path, "count": count, "near": len(changes)}
+                found += [each | change for change in changes[: len(changes) if len(changes) <= _MOST_EACH else 1]]
+        found.sort(key=lambda change: (change["count"], change["path"], change["t"]))
         return found[:_MOST_CHANGES]
 
     def change_counts(self, paths: Iterable[str]) -> dict[str, int]:

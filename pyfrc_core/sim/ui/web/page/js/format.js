@@ -95,6 +95,14 @@ export function valueText(value) {
   return `{${Object.entries(simple).map(([key, each]) => `${key}: ${valueText(each)}`).join(", ")}}`;
 }
 
+// A change of a value; of a list, its elements that have changed.
+export function changeText(before, after) {
+  if (!Array.isArray(before) || !Array.isArray(after)) return `${valueText(before)} → ${valueText(after)}`;
+  const indices = Array.from({ length: Math.max(before.length, after.length) }, (_, index) => index);
+  const changed = indices.filter((index) => valueText(before[index]) !== valueText(after[index]));
+  return changed.map((index) => `${index}: ${valueText(before[index])} → ${valueText(after[index])}`).join(", ");
+}
+
 export function speedText(speed) {
   return speed === 0 ? "max" : `${Number(speed.toPrecision(2))}×`;
 }

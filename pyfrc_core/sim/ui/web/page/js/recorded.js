@@ -57,20 +57,24 @@ function valuesAt(columns, t) {
 }
 
 const MOST_CHANGES = 100;
+const MOST_EACH = 8;
 
 // As `Runs.changes_around` has it.
 function changesAround(columns, t, reach) {
   const found = [];
   for (const [path, column] of columns) {
-    const before = column.at(t - reach);
+    let before = column.at(t - reach);
+    const changes = [];
     const end = indexAfter(column.t, t + reach + ROUNDING);
     for (let index = indexAfter(column.t, t - reach + ROUNDING); index < end; index++) {
       if (JSON.stringify(column.v[index]) === JSON.stringify(before)) continue;
-      found.push({ path, t: column.t[index], before: before ?? null, after: column.v[index] ?? null, count: column.t.length });
-      break;
+      changes.push({ path, t: column.t[index], before: before ?? null, after: column.v[index] ?? null, count: column.t.length });
+      before = column.v[index];
     }
+    const named = changes.length <= MOST_EACH ? changes : changes.slice(0, 1);
+    found.push(...named.map((change) => ({ ...change, near: changes.length })));
   }
-  return found.sort((one, other) => one.count - other.count || one.t - other.t).slice(0, MOST_CHANGES);
+  return found.sort((one, other) => one.count - other.count || one.path.localeCompare(other.path) || one.t - other.t).slice(0, MOST_CHANGES);
 }
 
 function curveOf({ columns, offset }, path, from, to) {

@@ -1,6 +1,6 @@
 // What has changed around the moment that is shown, what changes rarely first: a state, a fault, a command.
 import { ask } from "#js/connection.js";
-import { clock, valueText } from "#js/format.js";
+import { changeText, clock } from "#js/format.js";
 import { goTo } from "#js/input/moment_keys.js";
 import { momentText } from "#js/match_clock.js";
 import { model } from "#js/model.js";
@@ -10,6 +10,7 @@ import { carryPath } from "#js/plotting.js";
 import { Live, html } from "#js/view.js";
 
 const REACHES = [0.1, 0.5, 2]; // seconds before and after the moment
+const MOST_EACH = 8; // of a value that changes more often there, only the first change is named
 const LIVE_INTERVAL = 500; // milliseconds
 
 export class ChangesPanel extends Live {
@@ -43,16 +44,17 @@ export class ChangesPanel extends Live {
     return html`<div class="networktables content column changes">
       <div class="changes-head flex"><span>Around ${momentText(Math.max(t, 0))}</span>
         <${Select} aria-label="How far around" value=${reach} options=${REACHES.map((each) => [each, `± ${each} s`])} set=${(each) => this.setState({ reach: Number(each) })} /></div>
-      <div class="scroll fill" role="list">${changes.map((change) => html`<${Change} key=${change.path} ...${change} />`)}
+      <div class="scroll fill" role="list">${changes.map((change) => html`<${Change} key=${`${change.path} ${change.t}`} ...${change} />`)}
         ${!changes.length && html`<p class="empty">Nothing has changed then. What changes rarely comes first here.</p>`}</div>
     </div>`;
   }
 }
 
-function Change({ path, t, before, after, count }) {
+function Change({ path, t, before, after, count, near }) {
+  const named = near > MOST_EACH ? `${near} changes, first ` : "";
   return html`<div class="nt-row flex change" role="listitem" title=${`${path}, ${count} changes in all`} draggable="true" onDragStart=${(event) => carryPath(event, path)} data-path=${path}>
     <span class="row-label long-name"><bdi>${nameOf(path)}</bdi></span>
-    <span class="faint">${valueText(before)} → ${valueText(after)}</span>
+    <span class="faint">${named}${changeText(before, after)}</span>
     <span class="row-tools"><${PlotButton} name=${nameOf(path)} paths=${[path]} /></span>
     <button class="quiet when" title="Look at the moment of this change" onClick=${() => goTo(t)}>${clock(t)}</button></div>`;
 }
