@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from pyfrc_core.errors import PyfrcError
 from pyfrc_core.fuzz.campaign.packed_project import PackedProject, pack
 from pyfrc_core.project.locate import find_project
 
@@ -35,10 +33,3 @@ def test_all_files_of_a_match_are_there(packed: PackedProject, tmp_path: Path) -
     assert project.settings.fuzz.match_seconds == 2.5
     assert [file.name for file in project.invariant_files] == ["rules.py"]
     assert (project.root.parent / "tests" / "test_robot.py").is_file()
-
-
-def test_a_file_that_has_changed_on_its_way(packed: PackedProject, tmp_path: Path) -> None:
-    content, digest = packed.files["helper.py"]
-    changed = replace(packed, files={**packed.files, "helper.py": (content + b"#", digest)})
-    with pytest.raises(PyfrcError, match=r"helper\.py has changed"):
-        changed.unpack(tmp_path / "unpacked")
