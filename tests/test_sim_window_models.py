@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, get_args
 
@@ -21,11 +22,12 @@ from pyfrc_core.config.sim import SimConfig
 from pyfrc_core.hal.fields import RowKind
 from pyfrc_core.physics.pose import Pose
 from pyfrc_core.processes.standstill import Standstill
+from pyfrc_core.project import Project
 from pyfrc_core.sim import Field, Scene, Snapshot, Status
 from pyfrc_core.sim.engine.snapshot import Failure
 from pyfrc_core.sim.ui.models.devices import SETTABLE, Row, panels_of
 from pyfrc_core.sim.ui.models.driver_station_keys import DriverStationKeys
-from pyfrc_core.sim.ui.models.joysticks import RELEASED, Joysticks, axis_labels, button_labels
+from pyfrc_core.sim.ui.models.joysticks import RELEASED, Joysticks, axis_labels, button_labels, joystick_classes
 from pyfrc_core.sim.ui.models.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical, layout_for
 from pyfrc_core.sim.ui.models.viewport import Viewport
 from pyfrc_core.sim.ui.models.wording import (
@@ -305,8 +307,21 @@ def sticks() -> tuple[Joysticks, Told]:
 
 def test_labels_of_joysticks() -> None:
     assert axis_labels(CONFIG, 0) == {0: "0 X", 1: "Left side", 2: "2 Z", 3: "3 Throttle", 4: "4", 5: "5", 8: "Knob"}
-    assert button_labels(CONFIG, 0) == {1: "Trigger", 2: "Top", 3: "Shoot"}
-    assert button_labels(CONFIG, 5) == {1: "Trigger", 2: "Top"}
+    flight, xbox = frozenset({"Joystick"}), frozenset({"XboxController"})
+    assert button_labels(CONFIG, 0, flight) == {1: "Trigger", 2: "Top", 3: "Shoot"}
+    assert button_labels(CONFIG, 5, flight) == {1: "Trigger", 2: "Top"}
+    assert " ".join(button_labels(CONFIG, 5, xbox).values()) == "A B X Y LB RB Back Start LS RS"
+    assert button_labels(CONFIG, 0, xbox)[3] == "Shoot"
+    assert button_labels(CONFIG, 0, flight | xbox) == button_labels(CONFIG, 0, frozenset()) == {3: "Shoot"}
+
+
+def test_the_classes_of_joysticks_are_those_that_the_code_creates(tmp_path: Path) -> None:
+    project = Project(tmp_path / "robot.py")
+    assert joystick_classes(project) == frozenset()
+    project.main_file.write_text("stick = CommandXboxController(0)\nJoystickButton(stick, 1)\nPIDController(1, 0, 0)\n")
+    assert joystick_classes(project) == {"XboxController"}
+    (tmp_path / "oi.py").write_text("import wpilib\nleft = wpilib.Joystick(1)\n")
+    assert joystick_classes(project) == {"XboxController", "Joystick"}
 
 
 def test_what_the_robot_has_is_shown() -> None:

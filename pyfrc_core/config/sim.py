@@ -244,7 +244,7 @@ class Joystick(_ConfigPart):
     buttons: Annotated[dict[int, str], BUTTONS] = Field(
         default={},
         description="Labels of the buttons, by the number that robot code gives them. The first two are 'Trigger' and "
-        "'Top' unless named otherwise.",
+        "'Top' unless named otherwise; the simulator shows that where all joysticks are of the class Joystick.",
     )
 
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ....project import Project
+from ....project.walk import python_files
 from ....season import CURRENT
 from .devices import Values
 
@@ -20,6 +23,27 @@ _AXES, BUTTONS = 6, 12
 FIRST_BUTTON, MOST_BUTTONS = CURRENT.first_button, 32
 
 _AXIS_NAMES = ("X", "Y", "Z", "Throttle")
+
+#: WPILib's names of a flight stick's buttons, and what is written on those of an Xbox controller.
+_FLIGHT_STICK = {FIRST_BUTTON: "Trigger", FIRST_BUTTON + 1: "Top"}
+_XBOX_NAMES = {
+    "a": "A",
+    "b": "B",
+    "x": "X",
+    "y": "Y",
+    "left_bumper": "LB",
+    "right_bumper": "RB",
+    "back": "Back",
+    "start": "Start",
+    "left_stick": "LS",
+    "right_stick": "RS",
+}
+_XBOX = {
+    number: _XBOX_NAMES[name]
+    for number, name in enumerate(CURRENT.gamepad.buttons, FIRST_BUTTON)
+    if name in _XBOX_NAMES
+}
+_CLASSES = re.compile(r"\b(?:Command)?(XboxController|PS[45]Controller|StadiaController|GenericHID|Joystick|Gamepad)\(")
 
 #: The angle of a POV that is not pressed.
 RELEASED = -1
@@ -85,10 +109,24 @@ def _axis_name(axis: int) -> str:
     return f"{axis} {_AXIS_NAMES[axis]}" if axis < len(_AXIS_NAMES) else str(axis)
 
 
-def button_labels(config: SimConfig, stick: int) -> dict[int, str]:
-    """Return the labels of the buttons that have one."""
+def joystick_classes(project: Project) -> frozenset[str]:
+    """Return the classes of joysticks that a project's code names where it creates them; none without a program."""
+    if not project.main_file.is_file():  # of a log
+        return frozenset()
+    texts = (file.read_text("utf-8", "replace") for file in python_files(project.root))
+    return frozenset(name for text in texts for name in _CLASSES.findall(text))
+
+
+def button_labels(config: SimConfig, stick: int, classes: frozenset[str]) -> dict[int, str]:
+    """Return the labels of the buttons that have one.
+
+    :param classes: those of the joysticks in the project's code; of several, it is not known which one this is
+    """
     named = dict(config.joysticks[stick].buttons) if stick in config.joysticks else {}
-    return {FIRST_BUTTON: "Trigger", FIRST_BUTTON + 1: "Top"} | named
+    if classes == {"Joystick"}:
+        return _FLIGHT_STICK | named
+    named = {number: label for number, label in named.items() if _FLIGHT_STICK.get(number) != label}
+    return (_XBOX if classes == {"XboxController"} else {}) | named
 
 
 def direction(x: float, y: float) -> int:

@@ -43,8 +43,9 @@ class JoystickView:
         tooltip: Tooltip,
         config: SimConfig,
         sticks: Joysticks,
+        classes: frozenset[str],
     ) -> None:
-        self._theme, self._config, self._sticks = theme, config, sticks
+        self._theme, self._config, self._sticks, self._classes = theme, config, sticks, classes
         self._held: tuple[_Part, bool] | None = None
         self._shown: tuple[float, ...] = ()
         self._parts: list[tuple[_Part, tuple[float, float, float, float]]] = []
@@ -107,7 +108,7 @@ class JoystickView:
         self._shown = ()
         self._parts = []
         self._axes = axis_labels(self._config, stick)
-        names = button_labels(self._config, stick)
+        names = button_labels(self._config, stick, self._classes)
         small, left = self._theme.small, px(12)
         y = px(4)
         self._add(("pad", 0), left, y, left + px(_PAD), y + px(_PAD))
@@ -213,7 +214,7 @@ class JoystickView:
             return f"Axis {number}: {self._axes[number]}. It stays where you let it go."
         if kind == "pov":
             return "Click: pressed that way while you hold it. Right click: stays pressed."
-        name = button_labels(self._config, self.chosen.get()).get(number)
+        name = button_labels(self._config, self.chosen.get(), self._classes).get(number)
         return f"Button {number}{f', {name}' if name else ''}. {_BUTTON_HELP}"
 
     def _press(self, event: tk.Event[tk.Canvas], keeps: bool) -> None:

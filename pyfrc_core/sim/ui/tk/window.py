@@ -16,7 +16,7 @@ from ....interruption import interruption
 from ...engine.simulation import Simulation
 from ...engine.snapshot import Snapshot, Status
 from ..models.driver_station_keys import SUMMARY, DriverStationKeys
-from ..models.joysticks import Joysticks
+from ..models.joysticks import Joysticks, joystick_classes
 from ..models.wording import status_texts
 from .center_view import CenterView
 from .column import ScrollingColumn
@@ -113,7 +113,8 @@ class Window:
         self.match = MatchView(right, theme, tooltip, simulation, self.focus_field)
         self.match.frame.pack(side="top", fill="x")
         config = simulation.project.sim_config
-        self.joystick = JoystickView(right, theme, tooltip, config, self.sticks)
+        classes = joystick_classes(simulation.project)
+        self.joystick = JoystickView(right, theme, tooltip, config, self.sticks, classes)
         self.joystick.frame.pack(side="top", fill="x", pady=(gap, 0))
         self._driving = keys = DriverStationKeys(simulation, self.sticks, close=root.quit)
         self._keys = Keys(root, keys)

@@ -15,7 +15,7 @@ from ....text_files import keep_out_of_version_control, write_whole
 from ...engine.messages import VALUE
 from ...engine.source import Source
 from ...logs.align import moment_of
-from ..models.joysticks import FIRST_BUTTON, JOYSTICKS, MOST_BUTTONS, axis_labels, button_labels
+from ..models.joysticks import FIRST_BUTTON, JOYSTICKS, MOST_BUTTONS, axis_labels, button_labels, joystick_classes
 from ..models.keyboard import BUTTON_KEYS, BUTTON_KEYS_TEXT, ENABLE_CHORD, GENTLE, LAYOUTS, layout_for
 from ..models.time_controls import FASTEST, SLOWEST
 from ..models.wording import MODES, NO_OPMODE, STATIONS
@@ -70,7 +70,7 @@ def greeting(source: Source, client: int, read_only: bool, watching: bool = Fals
 
 def _options(project: Project, watching: bool) -> dict[str, Any]:
     """Return what a page offers: it depends on the project and the season."""
-    config, dashboards = project.sim_config, CURRENT.dashboards
+    config, dashboards, classes = project.sim_config, CURRENT.dashboards, joystick_classes(project)
     return {
         "watch": watching,
         "alliances": STATIONS,
@@ -85,7 +85,8 @@ def _options(project: Project, watching: bool) -> dict[str, Any]:
         },
         "speeds": {"slowest": SLOWEST, "fastest": FASTEST},
         "joysticks": [
-            {"axes": axis_labels(config, stick), "buttons": button_labels(config, stick)} for stick in range(JOYSTICKS)
+            {"axes": axis_labels(config, stick), "buttons": button_labels(config, stick, classes)}
+            for stick in range(JOYSTICKS)
         ],
         "buttons": {"first": FIRST_BUTTON, "most": MOST_BUTTONS},
         "gamepad": asdict(CURRENT.gamepad),
