@@ -10,7 +10,7 @@ import { carryPath } from "#js/plotting.js";
 import { Live, html } from "#js/view.js";
 
 const REACHES = [0.1, 0.5, 2]; // seconds before and after the moment
-const MOST_EACH = 8; // of a value that changes more often there, only the first change is named
+const MOST_EACH = 8; // of a value that changes more often there, how often
 const LIVE_INTERVAL = 500; // milliseconds
 
 export class ChangesPanel extends Live {
@@ -51,10 +51,10 @@ export class ChangesPanel extends Live {
 }
 
 function Change({ path, t, before, after, count, near }) {
-  const named = near > MOST_EACH ? `${near} changes, first ` : "";
+  const text = near > MOST_EACH ? `${near} changes` : changeText(before, after);
   return html`<div class="nt-row flex change" role="listitem" title=${`${path}, ${count} changes in all`} draggable="true" onDragStart=${(event) => carryPath(event, path)} data-path=${path}>
     <span class="row-label long-name"><bdi>${nameOf(path)}</bdi></span>
-    <span class="faint">${named}${changeText(before, after)}</span>
+    <span class="faint">${text}</span>
     <span class="row-tools"><${PlotButton} name=${nameOf(path)} paths=${[path]} /></span>
     <button class="quiet when" title="Look at the moment of this change" onClick=${() => goTo(t)}>${clock(t)}</button></div>`;
 }
