@@ -717,7 +717,9 @@ def test_a_person_sees_where_the_log_differs(recorded: RobotProject, browser: Br
         row.locator("button").click()
         page.locator(".devices .found").wait_for()
         page.locator("[data-panel='plot:1'] .legend li", has_text="setpoint").wait_for(state="detached")
-        page.locator(".differences section", has_text="From the log").get_by_text("encoder[0].count").wait_for()
+        sensors = page.locator(".differences details", has_text="From the log")
+        sensors.locator("summary").click()
+        sensors.get_by_text("encoder[0].count").wait_for()
         page.close()
         assert wrong == []
 
