@@ -97,7 +97,8 @@ class LogReport:
         if found.by_rarity:
             most = len(differing) if self._most is None else _MOST_SHOWN
             shown, others = differing[:most], differing[most:]
-            title = f"differs in {counted(len(differing), 'value')}, those that change rarely first:"
+            order = ", those that change rarely first" if len(differing) > 1 else ""
+            title = f"differs in {counted(len(differing), 'value')}{order}:"
             yield "\n  ".join((title, *(self._moment(found, each) for each in shown)))
         else:
             others = differing[1:]
