@@ -127,6 +127,11 @@ def test_the_lines_of_threads_generators_and_handlers_are_found(robot: Any, line
     assert set(reached(lines, lambda: robot.play(3), some)) == set(first) - some
 
 
+def test_functions_that_are_garbage_do_not_count(robot: Any, tmp_path: Path) -> None:
+    robot.never.itself, robot.never = robot.never, None  # as what a decorator has replaced; only the collector frees it
+    assert "never" not in {function.__name__ for function in RobotLines(RobotFiles(tmp_path)).functions}
+
+
 def test_nothing_is_observed_afterwards(robot: Any, lines: RobotLines) -> None:
     with traced_by(None):
         with lines.watched(frozenset(), lambda: 0) as found:

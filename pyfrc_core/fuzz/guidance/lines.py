@@ -37,6 +37,7 @@ class RobotLines:
         self.functions: list[FunctionType] = []
         #: Code objects and their lines. They are found by identity: a code object is hashed with all its constants.
         self._codes: dict[int, tuple[CodeType, dict[int, RobotLine]]] = {}
+        gc.collect()  # functions that are garbage, such as those that decorators have replaced, go by chance
         for thing in gc.get_objects():
             # Not `isinstance`, which reads `__class__`: lazy proxies import their module when it is read.
             if type(thing) is FunctionType and files.is_robot_code(thing.__code__.co_filename):
