@@ -96,8 +96,8 @@ def test_values_are_plotted_zoomed_and_saved(person: Seen) -> None:
     assert lines[0] == "t,pwm[0].value,dio[3].value"
     assert any(line.split(",")[1] == "1" for line in lines[1:])
     person.button("Follow again").click()
-    page.get_by_label("Axis of pwm[0].value").click()
-    page.get_by_label("Axis of pwm[0].value").filter(has_text="right axis").wait_for()
+    page.get_by_label("axis, of pwm[0].value").click()
+    page.get_by_label("axis, of pwm[0].value").filter(has_text="right axis").wait_for()
     page.get_by_label("Remove dio[3].value").click()
     page.reload()
     page.locator(".curve-name", has_text="left motor").wait_for()
@@ -209,7 +209,7 @@ def test_every_value_can_be_searched_and_plotted_by_keys_alone(person: Seen) -> 
     page.locator(".curve-name", has_text="Mode").wait_for()
     assert plotted(person) == ["Joystick 0 axis 1", "Robot angle", "Mode"]
     page.locator("[data-panel='plot:1'] canvas.plot-bands").wait_for()
-    page.get_by_label("Axis of sim.mode").wait_for(state="detached")  # a text has none
+    page.get_by_label("axis, of sim.mode").wait_for(state="detached")  # a text has none
 
 
 def test_a_crash_shows_the_line_and_the_way_back(person: Seen) -> None:

@@ -80,7 +80,7 @@ export class ConsolePanel extends Live {
 function Line({ line, count, until }) {
   return html`<div class=${`line ${line.level}`}>
     <button class="line-time" title="Look at this moment" onClick=${() => goTo(line.t)}>${clock(line.t)}</button>
-    <span class="line-text">${line.text || " "}${count > 1 && html` <small class="faint">×${count}, until ${clock(until)}</small>`}</span>
+    <span class="line-text">${line.text || " "}${count > 1 && html` <small>×${count}, until ${clock(until)}</small>`}</span>
     ${line.file && html`<${SourceLink} file=${line.file} line=${line.line} />`}
   </div>`;
 }

@@ -64,8 +64,8 @@ function Value({ curve, value }) {
 
 function Tools({ curve, plot, isNumber }) {
   const other = curve.axis === "left" ? "right" : "left";
-  return html`${isNumber(curve) && html`<button class="axis-choice" title=${`Put this curve on the ${other} axis`} aria-label=${`Axis of ${keyOf(curve)}`}
-      onClick=${() => plot.change(curve, { axis: other })}>${curve.axis === "left" ? "left axis" : "right axis"}</button>`}
+  return html`${isNumber(curve) && html`<button class="axis-choice" title=${`Put this curve on the ${other} axis`} aria-label=${`${curve.axis} axis, of ${keyOf(curve)}`}
+      onClick=${() => plot.change(curve, { axis: other })}>${curve.axis} axis</button>`}
     <button class="tool" aria-label=${`Remove ${keyOf(curve)}`} title="Remove" onClick=${() => plot.remove(curve)}><${Icon} name="close" /></button>`;
 }
 
