@@ -113,6 +113,7 @@ def test_a_robot_elsewhere_is_not_driven_but_its_values_can_be_set(tmp_path: Pat
                 "writes": True,
                 "over": False,
                 "replays": False,
+                "begins": None,
             }
             page.command("write", values={"nt:/kP": 0.25})
             assert robot.written == [{"nt:/kP": 0.25}]
