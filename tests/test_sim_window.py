@@ -268,7 +268,8 @@ def test_driving_by_keys_in_all_kinds_of_time(sit: Sit, tank: Path) -> None:
     user.until(lambda: user.snapshot.mode == "teleop")
     user.keys("keydown", "w")
     user.until(lambda: user.snapshot.scene.robot.x > start.x + 2)
-    assert user.snapshot.scene.robot.y == pytest.approx(start.y, abs=0.1)
+    robot = user.snapshot.scene.robot  # on a busy machine, much farther
+    assert abs(robot.y - start.y) < (robot.x - start.x) / 10
     user.press("F5")
     user.until(lambda: user.status.state == "paused")
     user.keys("keyup", "w")
