@@ -52,7 +52,9 @@ MOST_CELLS = 48
 
 _Cell = Annotated[int, Field(strict=True, ge=0, lt=MOST_CELLS)]
 _Cells = Annotated[int, Field(strict=True, ge=1, le=MOST_CELLS)]
-_Text = Annotated[str, Field(max_length=400)]
+#: The longest title and topic.
+LONGEST_TEXT = 400
+_Text = Annotated[str, Field(max_length=LONGEST_TEXT)]
 
 
 class _DashboardPart(BaseModel):

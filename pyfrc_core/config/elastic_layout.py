@@ -12,7 +12,7 @@ from pathlib import Path as File
 from typing import Any, NamedTuple
 
 from ..errors import PyfrcError
-from .dashboards import MOST_CELLS, Kind
+from .dashboards import LONGEST_TEXT, MOST_CELLS, Kind
 
 #: Where a project has it; robots serve their deploy directory.
 ELASTIC_LAYOUT = File("deploy", "elastic-layout.json")
@@ -55,8 +55,6 @@ _DEFAULTS: dict[str, Mapping[str, Any]] = {
 _SINGLE = ("input", "text", "number", "slider", "gauge", "lamp", "switch", "color", "time")
 #: The smallest grid: a single widget does not fill a screen.
 _FEWEST_COLUMNS, _FEWEST_ROWS = 8, 4
-#: The longest title and topic.
-_LONGEST = 400
 _LIMITS = {"min_value": "min", "max_value": "max"}
 _SETTINGS: dict[str, Mapping[str, str]] = {
     "slider": _LIMITS,
@@ -119,7 +117,7 @@ def _dashboard(given: list[Mapping[str, Any]], size: float, tab: str, missing: l
         if widget is None or min(x, y) < 0 or min(place["w"], place["h"]) < 1:
             missing.append(f'{kind} "{title}" in {tab}')
         else:
-            widgets.append({"title": title[:_LONGEST], **widget, **place})
+            widgets.append({"title": title[:LONGEST_TEXT], **widget, **place})
     columns = max((each["x"] + each["w"] for each in widgets), default=0)
     rows = max((each["y"] + each["h"] for each in widgets), default=0)
     return {"columns": max(columns, _FEWEST_COLUMNS), "rows": max(rows, _FEWEST_ROWS), "widgets": widgets}
@@ -161,7 +159,7 @@ def _topic(topic: str, properties: Mapping[str, Any]) -> str:
     """Return the topic, or the part of its struct that is shown, as dashboards name them."""
     parts = (properties.get("struct_meta") or {}).get("path", ())
     whole = "/".join((topic, *map(str, parts)))
-    return (whole if whole.startswith("/") else f"nt:{whole}")[:_LONGEST]
+    return (whole if whole.startswith("/") else f"nt:{whole}")[:LONGEST_TEXT]
 
 
 def _number(value: Any) -> float | None:

@@ -113,6 +113,8 @@ def _of_row(row: TableRow, device: TreeDevice, is_counted: bool, constants: Robo
 
 def _of_sim_device(name: str) -> Iterator[Input]:
     for value, is_output, sort, options in devices.sim_values(name):
+        if is_output:
+            continue
         kind = quantity_of(name, value, sort)
-        if not is_output and (kind != "option" or options):
+        if kind != "option" or options:
             yield Input(format_path(("CAN", name, value)), kind, format_path(("CAN", name)), options)

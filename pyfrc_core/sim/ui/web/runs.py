@@ -327,11 +327,12 @@ class Runs:
                     changes = []
                     for at, value in zip(*history.changes(path, time - reach, time + reach + _ROUNDING), strict=True):
                         if not same(value, before):
-                            changes.append({"t": at, "before": _shown(before), "after": _shown(value)})
+                            changes.append((at, before, value))
                             before = value
                     count = history.change_count(path)
                 each = {"path": path, "count": count, "near": len(changes)}
-                found += [each | change for change in changes[: len(changes) if len(changes) <= _MOST_EACH else 1]]
+                for at, earlier, value in changes if len(changes) <= _MOST_EACH else changes[:1]:
+                    found.append(each | {"t": at, "before": _shown(earlier), "after": _shown(value)})
         found.sort(key=lambda change: (change["count"], change["path"], change["t"]))
         return found[:_MOST_CHANGES]
 

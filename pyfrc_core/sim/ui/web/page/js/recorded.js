@@ -57,7 +57,7 @@ function valuesAt(columns, t) {
 }
 
 const MOST_CHANGES = 100;
-const MOST_EACH = 8;
+export const MOST_EACH = 8; // of a value that changes more often around a moment, only the first change is there
 
 // As `Runs.changes_around` has it.
 function changesAround(columns, t, reach) {

@@ -7,10 +7,10 @@ import { model } from "#js/model.js";
 import { nameOf } from "#js/names.js";
 import { PlotButton, Select } from "#js/controls.js";
 import { carryPath } from "#js/plotting.js";
+import { MOST_EACH } from "#js/recorded.js";
 import { Live, html } from "#js/view.js";
 
 const REACHES = [0.1, 0.5, 2]; // seconds before and after the moment
-const MOST_EACH = 8; // of a value that changes more often there, how often
 const LIVE_INTERVAL = 500; // milliseconds
 
 export class ChangesPanel extends Live {
