@@ -103,11 +103,10 @@ BY_WPILIB = """
     def packet():
         before = waits
         hal.simulation.step_timing(19_000_000)
-        attached = Station.get_ds_attached()
-        if attached:  # a packet of WPILib's simulation attaches the station
+        if Station.get_ds_attached():  # a packet of WPILib's simulation attaches the station
             hal.simulation.notify_driver_station_new_data()
         hal.simulation.step_timing(1_000_000)
-        while waits == before and not LOOP_IN_C and (attached or alarm_is_set()):
+        while waits == before and not LOOP_IN_C:  # a turn is over when the loop waits for the next one
             time.sleep(0.001)
 
 
