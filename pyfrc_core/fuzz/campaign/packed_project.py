@@ -6,10 +6,12 @@ import os
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 
+from ...log_formats import FOREIGN_LOGS, LOGS
 from ...passes.memory import project_files
 from ...project import Project
 
-_LOGS = (".hoot", ".rrd", ".wpilog")
+#: `.rrd`: recordings of Rerun.
+_LOGS = (*LOGS, *FOREIGN_LOGS, ".rrd")
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,6 @@ def pack(project: Project) -> PackedProject:
     for file in {*project_files(project), project.main_file}:
         name = Path(os.path.relpath(file, project.root)).as_posix()
         is_hidden = any(part.startswith(".") for part in name.split("/") if part != "..")
-        if not is_hidden and file.suffix not in _LOGS and file.is_file() and os.access(file, os.R_OK):
+        if not is_hidden and file.suffix.lower() not in _LOGS and file.is_file() and os.access(file, os.R_OK):
             files[name] = file.read_bytes()
     return PackedProject(replace(project), dict(sorted(files.items())))

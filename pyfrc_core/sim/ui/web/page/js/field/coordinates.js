@@ -1,6 +1,7 @@
 // How places on the field are written. The page, like `hal_data` and physics, computes in feet with y downwards and
 // clockwise radians; robot code has metres from a corner, with y upwards and counterclockwise angles.
 
+import { wrapped } from "#js/format.js";
 import { FOOT } from "#js/units.js";
 
 const DEGREES = 180 / Math.PI;
@@ -31,19 +32,15 @@ export function originOf(field, name, alliance) {
   return isFromRed(name, alliance) ? [field.width, 0] : [0, field.height];
 }
 
-// A pose as it is written: { x, y, degrees, unit }, with degrees from -180 to 180.
+// A pose as it is written: { x, y, degrees, unit }, with degrees above -180 and up to 180.
 export function written([x, y, radians], field, name, alliance) {
   const { feet, unit } = unitOf(name);
-  if (name === "pyfrc") return { x, y, degrees: half(radians * DEGREES), unit };
+  if (name === "pyfrc") return { x, y, degrees: wrapped(radians * DEGREES), unit };
   const fromRed = isFromRed(name, alliance);
   return {
     x: (fromRed ? field.width - x : x) / feet,
     y: (fromRed ? y : field.height - y) / feet,
-    degrees: half(-radians * DEGREES + (fromRed ? 180 : 0)),
+    degrees: wrapped(-radians * DEGREES + (fromRed ? 180 : 0)),
     unit,
   };
-}
-
-function half(degrees) {
-  return ((((degrees + 180) % 360) + 360) % 360) - 180;
 }
