@@ -10,9 +10,11 @@ import pytest
 from conftest import sampled
 from spelling import spelled
 
+from pyfrc_core.fuzz.match.work import MatchResult
 from pyfrc_core.fuzz.oracle.growth import NETWORK_TABLES, Growth, Growths
 from pyfrc_core.fuzz.oracle.hints import CampaignHints, LoopTimes, MatchHints
 from pyfrc_core.processes.fork import FORK_IS_SAFE
+from pyfrc_core.runtime.scripts.script import InputScript
 from pyfrc_core.runtime.time.timed_loop import Periodic
 
 ROBOT = """
@@ -169,6 +171,22 @@ def test_a_command_that_was_finished_once_is_no_hint() -> None:
     assert text == "robot.py:3: Climb.isFinished() was never true: the command ran for up to 9 s (5 matches)"
     campaign.add(MatchHints(finished=frozenset({"robot.py:3: Climb.isFinished()"})))
     assert not list(campaign.texts())
+
+
+def test_a_match_has_the_hints_of_all_its_starts() -> None:
+    script = InputScript((), 1)
+    lift, climb = "robot.py:3: Lift.isFinished()", "robot.py:9: Climb.isFinished()"
+    threads = (("robot.py:9", "camera"),)
+    first = MatchHints((Growth("log", 5, 60), Growth("arm.log", 1, 20)), {lift: 9, climb: 7}, frozenset({climb}), 0.03)
+    last = MatchHints((Growth("log", 9, 90),), {lift: 8}, frozenset({lift}), 0.01, threads=threads)
+    played = MatchResult(None, script, hints=last).with_parts_before(MatchResult(None, script, hints=first))
+    assert played.hints == MatchHints(
+        (Growth("log", 9, 90), Growth("arm.log", 1, 20)),
+        {lift: 9, climb: 7},
+        frozenset({lift, climb}),
+        0.03,
+        threads=threads,
+    )
 
 
 def test_what_is_said_of_growth_of_outputs_and_of_starts() -> None:

@@ -187,24 +187,11 @@ def _fuzz(
             restart=restart,
             names=dict(states.names),
         )
-        return _joined(before, played)
+        return played.with_parts_before(before)
 
 
 def _restart_after(before: MatchResult | None) -> Restart:
     return before.restart if before is not None and before.restart is not None else Restart(0, 0, ())
-
-
-def _joined(before: MatchResult | None, played: MatchResult) -> MatchResult:
-    """Return the result of a part with the results of those before."""
-    if before is None:
-        return played
-    return replace(
-        played,
-        reached=played.reached | before.reached,
-        inputs=before.inputs | played.inputs,
-        unrepeatable=before.unrepeatable or played.unrepeatable,
-        noted=(*before.noted, *played.noted),
-    )
 
 
 def _replay(project: Project, log: CrashLog, before: MatchResult | None, task: ReplayTask) -> MatchResult:
@@ -249,7 +236,7 @@ def _replay(project: Project, log: CrashLog, before: MatchResult | None, task: R
             published=_published(),
             overrides=_overrides(project),
         )
-        return _joined(before, result)
+        return result.with_parts_before(before)
 
 
 def _overrides(project: Project) -> tuple[str, ...]:

@@ -122,6 +122,19 @@ class MatchResult:
     names: dict[str, str] = field(default_factory=dict)
     overrides: tuple[str, ...] = ()
 
+    def with_parts_before(self, before: MatchResult | None) -> MatchResult:
+        """Return the result of a part, in which the program has started again, with those of the parts before."""
+        if before is None:
+            return self
+        return replace(
+            self,
+            reached=self.reached | before.reached,
+            inputs=before.inputs | self.inputs,
+            unrepeatable=before.unrepeatable or self.unrepeatable,
+            noted=(*before.noted, *self.noted),
+            hints=self.hints.with_those_before(before.hints),
+        )
+
     def each_failure(self) -> Iterator[MatchResult]:
         """Return a result for each failure, in order, with the inputs until it."""
         for failure, end_us in self.noted:

@@ -50,6 +50,18 @@ class MatchHints:
     period: float = PACKET_US / 1_000_000
     threads: tuple[tuple[str, str], ...] = ()
 
+    def with_those_before(self, before: MatchHints) -> MatchHints:
+        """Return the hints of a match whose robot program has started again. Threads are those at its end."""
+        growths = {each.name: each for each in (*before.growths, *self.growths)}
+        longest = Counter(self.unfinished) | Counter(before.unfinished)
+        return replace(
+            self,
+            growths=tuple(growths.values()),
+            unfinished=dict(longest),
+            finished=self.finished | before.finished,
+            loop_seconds=max(self.loop_seconds, before.loop_seconds),
+        )
+
 
 def threads_left(run: RobotRun) -> tuple[tuple[str, str], ...]:
     """End the robot program of a match that is over, if Python would wait for its threads; return those that remain."""
