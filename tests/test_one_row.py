@@ -13,8 +13,8 @@ import pytest
 
 from pyfrc_core.config.sim import SimConfig
 from pyfrc_core.fuzz.inputs.finders import SensorFinder
-from pyfrc_core.fuzz.inputs.values import Input
-from pyfrc_core.hal import device_table, rows, tree
+from pyfrc_core.fuzz.inputs.values import Input, RobotConstants
+from pyfrc_core.hal import accessors, device_table, rows, tree
 from pyfrc_core.hal.fields import INITIALIZED, DeviceField, DeviceKind, Measured, Output, Shown
 from pyfrc_core.hal.kinds import BOOL, FLOAT, text
 from pyfrc_core.runtime.robot import RobotRun
@@ -66,6 +66,7 @@ ROW = DeviceKind(
         Measured(
             "depth", "Depth", FLOAT, quantity="range", shown=Shown("slider", "Sonar {}", "{}: metres", 0, 9, 1, "m")
         ),
+        Measured("heat", "Heat", FLOAT, quantity="celsius", asked_by="Heat"),
         Output("light", "Light", BOOL, unset=False, off=False, shown=Shown("lamp", "Light {}", "Of {}")),
         DeviceField("name", "Name", text(8), stays=True),
     ),
@@ -82,7 +83,7 @@ def run(monkeypatch: pytest.MonkeyPatch) -> Iterator[RobotRun]:
     """A run on a controller that has three sonars, of which the robot has made the second."""
     caches = rows._rows, rows._kinds, rows.row_of, rows.gyros, tree
     for number in range(3):
-        _values[number] = {"initialized": number == 1, "depth": 0.0, "light": False, "name": ""}
+        _values[number] = {"initialized": number == 1, "depth": 0.0, "heat": 20.0, "light": False, "name": ""}
     monkeypatch.setattr(device_table, "KINDS", (*device_table.KINDS, ROW))
     for cached in caches:
         cached.cache_clear()
@@ -136,12 +137,17 @@ def test_a_device_is_one_row(run: RobotRun, tmp_path: Path) -> None:
     assert (difference.path, difference.recorded, difference.replayed) == ("sonar[1].light", False, True)
     # held as a sensor
     paths = [path for path, _ in run.hal_data.leaves() if path.startswith("sonar")]
-    assert [path for path in paths if is_sensor(path)] == ["sonar[1].depth"]
+    assert [path for path in paths if is_sensor(path)] == ["sonar[1].depth", "sonar[1].heat"]
     targets.write("hold:sonar[1].depth", 7.0, 0)
     targets.held.apply()
     assert hardware["depth"] == 7.0
     # varied by fuzz
     assert Input("sonar[1].depth", "range", "sonar[1]") in SensorFinder().find()
+    heat = Input("sonar[1].heat", "celsius", "sonar[1]")
+    assert heat not in SensorFinder().find()
+    assert heat in SensorFinder(RobotConstants(names=frozenset({accessors.getter_name("Heat")}))).find(), (
+        "it is asked for"
+    )
     # off while the robot is disabled
     with run.output_gate.closed_while_disabled():
         assert hardware["light"] is False
