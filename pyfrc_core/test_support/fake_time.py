@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from numbers import Real
 
-from ..runtime.clock import DEFAULT_TIME_LIMIT, NO_LIMIT_US, to_us
+from ..runtime.clock import NO_LIMIT_US, to_us
 from ..runtime.exceptions import TestEnded, TestFroze, TestRanTooLong
 from ..runtime.robot import RobotRun
 
@@ -57,7 +57,6 @@ class FakeTime:
         :raises RuntimeError: when the robot runs already
         """
         self.initialize()
-        self.set_time_limit(DEFAULT_TIME_LIMIT)
 
     def set_time_limit(self, time_limit: float | None) -> None:
         """Set how long a robot may run, in seconds; 500 by default, None for no limit.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import io
 import multiprocessing
 import os
 import select
@@ -17,20 +18,21 @@ from functools import partial
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
+from queue import SimpleQueue
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from pyfrc_core.errors import RobotCodeError, UsageError
-from pyfrc_core.processes import channel, spawn
+from pyfrc_core.processes import channel, frames, output_pipe, spawn
 from pyfrc_core.processes.call import Call, ForkedCall, begin_call, run_in_subprocess
 from pyfrc_core.processes.crash_report import CrashLog
 from pyfrc_core.processes.exit import (
     exit_by_signal,
 )
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork
-from pyfrc_core.processes.frames import decode, encode
+from pyfrc_core.processes.frames import FrameTooLargeError, decode, encode, read_frame
 from pyfrc_core.processes.interpreter import spawn_worker
 from pyfrc_core.processes.output_pipe import OutputPipe
 from pyfrc_core.processes.worker import ForkedWorker, Send, Work, Worker, wait_for_any
@@ -85,6 +87,21 @@ def test_objects_come_in_their_order_however_a_stream_is_cut() -> None:
     for cut in range(len(stream) + 1):
         whole = sum(sum(map(len, each[: count + 1])) <= cut for count in range(len(each)))
         assert list(decode(stream[:cut])) == sent[:whole]
+
+
+def test_what_is_too_large_is_no_object(monkeypatch: pytest.MonkeyPatch) -> None:
+    frame = encode("x" * 10)
+    size = len(frame) - 8
+    monkeypatch.setattr(frames, "MOST_BYTES", size)
+    assert (encode("x" * 10), list(decode(frame)), read_frame(io.BytesIO(frame))) == (frame, ["x" * 10], "x" * 10)
+    with pytest.raises(EOFError, match="the stream has ended"):
+        read_frame(io.BytesIO(frame[:-1]))
+    monkeypatch.setattr(frames, "MOST_BYTES", size - 1)
+    with pytest.raises(FrameTooLargeError, match=f"{size} bytes are more than the {size - 1} that one message may"):
+        encode("x" * 10)
+    assert list(decode(frame)) == []
+    with pytest.raises(EOFError, match="not the length of an object"):
+        read_frame(io.BytesIO(frame))
 
 
 # -- workers: messages, then the exit ----------------------------------------------------------------------------------
@@ -432,6 +449,29 @@ def test_what_is_printed_into_a_pipe_comes_out_in_order_and_without_marks() -> N
     assert "".join(text for text, _ in found) == "a\0b\0pyfrc-no"
     pipe.flush()
     pipe.close()
+
+
+def test_what_may_begin_a_mark_is_kept_until_its_rest_has_come(monkeypatch: pytest.MonkeyPatch) -> None:
+    pieces, shown = SimpleQueue[bytes](), SimpleQueue[tuple[str, Any]]()
+    monkeypatch.setattr(output_pipe, "read", lambda descriptor, most: pieces.get())
+    pipe = OutputPipe(lambda text, stamps: shown.put((text, list(stamps))))
+    name = pipe.stamp.partition("@")[0].encode()
+    for piece, expected in (
+        (b"a" + name[:4], "a"),
+        (name[4:], ""),
+        (b"@2", ""),
+        (b"0\0b\0c", "b\0c"),
+        (name + b"@", ""),
+        (b"7\0d" + name + b"@x", f"d{name.decode()}@x"),
+        (name + b"0", ""),
+        (b"\0", ""),
+    ):
+        pieces.put(piece)
+        if expected:
+            text, stamps = shown.get(timeout=PATIENCE)
+            assert (text, stamps) == (expected, {"b": [(0, 20)], "d": [(0, 7)]}.get(text[0], []))
+    pipe.close()
+    assert shown.empty()
 
 
 def test_forks_close_a_connection_where_there_are_forks(monkeypatch: pytest.MonkeyPatch) -> None:

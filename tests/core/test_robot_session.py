@@ -10,14 +10,19 @@ from typing import Any
 import pytest
 import wpilib
 
+from pyfrc_core.config.settings import MatchSettings
+from pyfrc_core.config.sim import FieldConfig
+from pyfrc_core.errors import UsageError
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.scripts.script import InputScript, Step
 from pyfrc_core.sim import SimOptions
 from pyfrc_core.sim.engine import commands
-from pyfrc_core.sim.engine.messages import Job, Ready, Replayed, Update, WindowClosed
+from pyfrc_core.sim.engine.messages import Job, Ready, Replayed, StationState, Update, WindowClosed
 from pyfrc_core.sim.engine.robot_side import pace, robot_process, session
+from pyfrc_core.sim.engine.robot_side import station as robot_side
 from pyfrc_core.sim.engine.robot_side.session import Ended, Session
+from pyfrc_core.wpi.opmodes import PublishedOpmode
 
 PACKET = 0.02
 
@@ -217,6 +222,67 @@ def test_a_wrong_joystick_value_is_refused_while_the_robot_is_disabled(play: Pla
     assert [note.partition(" = ")[0] for note in notes] == [f"joysticks[0].axes[{axis}]" for axis in (1, 99, 1)]
     assert "expected a number from -1 to 1, not 'up' (str)" in notes[0]
     assert (seen.last.mode, seen.last.station.sticks) == ("teleop", {})
+
+
+PRACTICE = "[tool.pyfrc.match]\nbefore = 0.02\nautonomous = 0.04\npause = 0.02\nteleop = 0.06\n"
+
+
+def test_a_practice_match_has_all_periods_until_the_driver_station_is_used(play: Play, tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_text(PRACTICE)
+    seen = play(commands.Practice(), *[commands.Resume(packets=1)] * 9, job=PAUSED)
+    found = [(each.mode, each.station.practice_since_us) for each in seen.updates if each.time_state.paused]
+    periods = ["disabled", "disabled", "autonomous", "autonomous", "disabled", *["teleop"] * 3]
+    assert found == [("disabled", None), *[(mode, 20_000) for mode in periods], *[("disabled", None)] * 2]
+
+
+@pytest.mark.parametrize("ends_it", [commands.ChooseMode("test"), commands.EmergencyStop(), commands.Enable(False)])
+def test_a_practice_match_ends_when_the_driver_station_is_used(ends_it: object, play: Play, tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_text(PRACTICE)
+    seen = play(commands.Practice(), *[commands.Resume(packets=1)] * 3, ends_it, commands.Resume(packets=2), job=PAUSED)
+    assert seen.last.mode.startswith("disabled")
+    assert seen.last.station.practice_since_us is None
+
+
+@pytest.mark.season_2026
+def test_the_opmode_of_a_mode_is_the_one_that_was_chosen_or_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    names, selected = ["Drive", "Aim"], [""]
+    theirs = robot_side.station
+    monkeypatch.setattr(theirs, "mode_name", lambda: "disabled teleop")
+    monkeypatch.setattr(theirs, "opmode_name", lambda: selected[-1])
+    monkeypatch.setattr(
+        theirs, "published_opmodes", lambda: [PublishedOpmode(each, "teleop", 1, "g") for each in names]
+    )
+    run: Any = SimpleNamespace(clock=SimpleNamespace(before_packet=[]))
+
+    def write(target: str, value: object) -> None:
+        assert target == "control.opmode"
+        selected.append(str(value))
+
+    def connected(script: InputScript, *opmodes: str) -> robot_side.Station:
+        selected[:] = [""]
+        made = robot_side.Station(run, MatchSettings(), FieldConfig(), write, StationState())
+        made.connect(script, opmodes)
+        return made
+
+    first = connected(InputScript((), 0))
+    assert [each.name for each in first.opmodes()] == ["Aim", "Drive"]
+    assert selected == ["", "Aim"]
+    assert first.carry_out(commands.ChooseOpmode("Drive", "teleop")) == ""
+    assert first.carry_out(commands.ChooseOpmode("Drive", "teleop")) == ""
+    assert selected == ["", "Aim", "Drive"]
+    refused = "There is no opmode 'Drve' for teleop: the robot has published 'Aim', 'Drive'."
+    assert first.carry_out(commands.ChooseOpmode("Drve", "teleop")) == refused
+    assert first.carry_out(commands.ChooseOpmode("x", "test")).endswith("for test: the robot has published none.")
+    names.remove("Drive")  # after a change of the code
+    selected.append("")
+    first._select_opmode("teleop")
+    assert selected[-1] == "Aim"
+    assert first.carry_out(commands.ChooseOpmode("", "teleop")) == ""
+    assert (selected[-1], first.state.opmodes) == ("", {"teleop": ""})
+    connected(InputScript((Step(0, {"control.opmode": "Drive"}),), 0))
+    assert selected == [""]
+    with pytest.raises(UsageError, match="there is no opmode 'None': the robot has published 'Aim'"):
+        connected(InputScript((), 0), "None")
 
 
 def test_all_values_are_sent_only_while_time_stands(play: Play, world: World) -> None:

@@ -180,8 +180,7 @@ class Station:
         return mode != "autonomous" or self._field.auto_joysticks
 
     def _end_practice(self) -> None:
-        if self.state.practice_since_us is not None:
-            self.state = replace(self.state, practice_since_us=None)
+        self.state = replace(self.state, practice_since_us=None)
 
     def _on_packet(self, now: float) -> None:
         self._pressed.clear()
