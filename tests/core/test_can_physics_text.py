@@ -44,7 +44,6 @@ def test_a_gearing_is_known_from_a_conversion_factor() -> None:
     assert known_gearing(motor("a", 1 / 25), 26, 30, 1.0) is None
 
 
-@pytest.mark.season_2026
 def test_a_mechanism_has_a_motor_gears_and_ends() -> None:
     text = ModuleText()
     encoder = Encoder(DeviceName(("arm", "encoder")), 0, (2, 3), True)
@@ -79,14 +78,11 @@ def test_a_mechanism_has_a_motor_gears_and_ends() -> None:
     assert (text.from_can_motors, text.needs_motors) == ({"Mechanism", "Spark", "Talon"}, True)
 
 
-@pytest.mark.season_2026
 def test_a_swerve_drive_has_four_wheels() -> None:
     text = ModuleText()
-    diameter = 0.1016
+    metres = math.pi * 0.1016 / 8.14
     modules = [
-        WheelModule(
-            motor(f"drive{n}", math.pi * diameter / 8.14), motor(f"steer{n}", 360 / 12.8), 0.3, -0.25 * n, ahead=0.125 * n
-        )
+        WheelModule(motor(f"drive{n}", metres), motor(f"steer{n}", 360 / 12.8), 0.3, -0.25 * n, ahead=0.125 * n)
         for n in range(4)
     ]
     add_swerve(text, modules)
@@ -122,7 +118,6 @@ def test_a_swerve_drive_has_four_wheels() -> None:
     assert "STEER_GEARING = 21.43\n" in unknown.numbers[0]
 
 
-@pytest.mark.season_2026
 def test_wheels_have_one_model_of_motor() -> None:
     text = ModuleText()
     plain = Motor(DeviceName(("left",)), 3)

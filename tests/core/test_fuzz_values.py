@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import random
 from pathlib import Path
 from types import SimpleNamespace
@@ -148,7 +147,6 @@ class Never:
         return False
 
 
-@pytest.mark.season_2026
 def test_commands_that_have_never_finished(monkeypatch: pytest.MonkeyPatch) -> None:
     from pyfrc_core.fuzz.oracle import unfinished_commands as module
 

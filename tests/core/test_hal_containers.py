@@ -8,6 +8,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
+import hal
 import numpy as np
 import pytest
 import wpilib
@@ -16,6 +17,7 @@ from loops import for_each
 from pyfrc_core.hal import HalData, devices_exist, existing_devices
 from pyfrc_core.hal.containers import NOT_SET, LiveDict, Slot, ValueList, plain, stored
 from pyfrc_core.hal.kinds import INT32, UnknownKey, WrongIndex, WrongType, WrongValue, number
+from pyfrc_core.hal.reset import forget_what_stays
 
 
 class Store:
@@ -200,3 +202,84 @@ def test_which_values_can_be_written() -> None:
     tree = HalData()
     paths = {"pwm[1].value": True, "joysticks[0].axes": True, "time.hasSource": True, "user_program_state": False}
     assert {path: tree.can_write(path) for path in paths} == paths
+
+
+# -- as text, in comparisons, and as a whole ---------------------------------------------------------------------------
+
+
+def test_what_a_console_shows(store: Store) -> None:
+    tree = HalData()
+    assert repr(tree).startswith("<hal_data: ")
+    assert ", pwm, " in repr(tree)
+    assert repr(store.list) == "<place.list: [1, 2, 3]>"
+    assert repr(store.tree) == (
+        "<place: {'speed': 0.5, 'count': 2, 'alias': 2, 'const': 7, 'list': [1, 2, 3], 'own': None}>"
+    )
+    assert repr(LiveDict("", dict)) == "<hal_data: {}>"
+    assert (repr(tree["alliance_station"]), str(tree["alliance_station"])) == ("<red1: 1>", "red1")
+
+
+def test_lists_are_compared_as_pythons_own(store: Store) -> None:
+    live, same, more = store.list, [1, 2, 3], [1, 2, 4]
+    assert [live == same, live == tuple(same), live == live, live == more, live == "123", live == {1}] == [
+        *[True] * 3,
+        *[False] * 3,
+    ]
+    assert [live != same, live != more] == [False, True]
+    assert [live < same, live < more, live <= same, live <= [1]] == [False, True, True, False]
+    assert [live > same, live > [1], live >= same, live >= more] == [False, True, True, False]
+    for compare in ("__lt__", "__le__", "__gt__", "__ge__", "__add__", "__radd__"):
+        assert getattr(live, compare)("x") is NotImplemented
+    assert (live + more, more + live, live * 2, live.copy()) == (same + more, more + same, same * 2, same)
+
+
+def test_devices_are_written_as_dicts_by_number_or_name() -> None:
+    tree = HalData()
+    tree["pwm"][14] = {"raw_value": 1200}
+    tree["pwm"][15:17] = [{"raw_value": 1300}, {"raw_value": 1400}]
+    assert [tree["pwm"][number]["raw_value"] for number in (14, 15, 16)] == [1200, 1300, 1400]
+    hub = wpilib.PneumaticHub(43)
+    heard: list[object] = []
+    tree["ph"][43][2].register("value", lambda key, value: heard.append(value))
+    tree["ph"][43] = [{"value": True}, {}, {"value": True}]
+    assert ([each["value"] for each in tree["ph"][43]][:3], heard) == ([True, False, True], [True])
+    compressor = tree["ph_compressor"][43]
+    for on in (True, False):
+        compressor["closed_loop_enabled"] = on
+        assert compressor["closed_loop_enabled"] is on
+    device = hal.SimDevice("Own [1]")
+    speed = device.createDouble("speed", hal.SimDevice.Direction.kBidir, 0.5)
+    assert "speed" in tree["CAN"]["Own [1]"]
+    assert "angle" not in tree["CAN"]["Own [1]"]
+    tree["CAN"]["Own [1]"] = {"speed": 2.5}
+    assert speed.get() == 2.5
+    del hub, device
+
+
+def test_each_current_of_a_power_distribution_is_heard_and_added() -> None:
+    tree = HalData()
+    power = wpilib.PowerDistribution(44, wpilib.PowerDistribution.ModuleType.kRev)
+    heard: list[tuple[str, object]] = []
+    place = tree["pdp"][44]
+    place.register("total_current", lambda key, value: heard.append((key, value)))
+    place["current"][3] = 1.5
+    place["current"][23] = 2.0
+    assert (heard, place["total_current"], power.getCurrent(23)) == (
+        [("total_current", 1.5), ("total_current", 3.5)],
+        3.5,
+        2.0,
+    )
+    with pytest.raises(WrongValue, match="it is the sum of current: write that"):
+        place["total_current"] = 1
+    forget_what_stays()
+    assert 44 not in tree["pdp"]
+
+
+def test_colours_of_leds_are_three_numbers() -> None:
+    data = HalData()["addressable_led"][0]
+    data["length"] = 2
+    data["data"] = [[1, 2, 3], (255, 0, 0)]
+    assert data["data"] == [[1, 2, 3], [255, 0, 0]]
+    for wrong in ([[1, 2]], [[1, 2, 256]]):
+        with pytest.raises(WrongValue, match=r"expected a list of \[red, green, blue\], each 0 to 255"):
+            data["data"] = wrong

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from loops import for_each
 
 from pyfrc_core.hal import rows
@@ -47,7 +46,6 @@ def test_a_digital_channel_is_an_input_unless_it_says_otherwise() -> None:
     assert rows.is_input("custom.x", asked)
 
 
-@pytest.mark.season_2026
 def test_which_gyros_turn_with_the_robot() -> None:
     found = [(row.kind.name, row.field.name) for row in rows.gyros(numbered=True)]
     assert found == [("analog_gyro", "angle"), ("analog_gyro", "rate")]

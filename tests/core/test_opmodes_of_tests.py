@@ -45,7 +45,6 @@ def parameters(
     return found or None
 
 
-@pytest.mark.season_2026
 def test_a_test_runs_for_each_opmode_or_for_those_that_it_names() -> None:
     assert parameters() == [(PUBLISHED[0], "autonomous-Aim"), (PUBLISHED[1], "teleop-Drive")]
     assert parameters("Drive") == [(PUBLISHED[1], "teleop-Drive")]

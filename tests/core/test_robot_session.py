@@ -243,7 +243,6 @@ def test_a_practice_match_ends_when_the_driver_station_is_used(ends_it: object, 
     assert seen.last.station.practice_since_us is None
 
 
-@pytest.mark.season_2026
 def test_the_opmode_of_a_mode_is_the_one_that_was_chosen_or_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
     names, selected = ["Drive", "Aim"], [""]
     theirs = robot_side.station

@@ -13,7 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pyfrc_cli import main
+from pyfrc_core.disk_space import check_disk_space
 from pyfrc_core.errors import PyfrcError
+from pyfrc_core.terminal_text import VisibleStream, escape_unencodable
 
 from .source_texts import texts_in
 
@@ -84,3 +86,28 @@ def test_no_message_needs_an_escape_on_a_console_of_windows(encoding: str) -> No
                 if text.encode(encoding, "replace").decode(encoding) != text:
                     found.append(f"{file.relative_to(ROOT)}: {text}")
     assert found == []
+
+
+def test_a_stream_shows_control_characters() -> None:
+    written = io.StringIO()
+    stream = VisibleStream(written)
+    assert stream.write("a\x07") == 5
+    stream.flush()
+    written.close()
+    stream.flush()  # nothing is left of it
+    file = io.TextIOWrapper(io.BytesIO(), "cp437")
+    assert VisibleStream(file).encoding == "cp437"
+
+
+@pytest.mark.parametrize(("errors", "after"), [("strict", "backslashreplace"), ("replace", "replace")])
+def test_only_a_stream_that_would_raise_an_error_is_changed(errors: str, after: str) -> None:
+    stream = io.TextIOWrapper(io.BytesIO(), "ascii", errors)
+    escape_unencodable(stream)
+    assert stream.errors == after
+    escape_unencodable(io.StringIO())
+
+
+def test_why_nothing_can_be_written_beside_a_file(tmp_path: Path) -> None:
+    assert check_disk_space(tmp_path / "a.wpilog") == ""
+    assert check_disk_space(tmp_path / "none" / "a.wpilog") == "No such file or directory"
+    assert list(tmp_path.iterdir()) == []
