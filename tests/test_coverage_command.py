@@ -9,7 +9,6 @@ import subprocess
 import sys
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import pytest
 from conftest import SHORT_MATCH, MakeProject, RobotProject, sampled
@@ -149,23 +148,6 @@ def test_the_figures_equal_those_of_coverage_by_hand(project: RobotProject) -> N
     assert report["files"] == expected["files"]
     assert report["totals"] == expected["totals"]
     assert 0 < report["totals"]["percent_covered"] < 100
-
-
-def test_all_reports_the_functions_never_run_and_too_little(project: RobotProject) -> None:
-    reports = ("--html", "pages", "--xml", "out/coverage.xml", "--fail-under", "99.5")
-    result = project.run("coverage", *reports, "test", "-j", "1", "--", "-q")
-    assert result.code == 1
-    assert "2 passed" in result.stdout
-    assert "is less than the required 99.5 %" in result.stderr
-    assert (project.path / "pages/index.html").is_file()
-    classes = ElementTree.parse(project.path / "out/coverage.xml").getroot().iter("class")
-    assert sorted(each.attrib["filename"] for each in classes) == ["helpers.py", "robot.py"]
-    lines = project.line("helpers.py", "def long"), project.line("helpers.py", "def inner")
-    never = result.stdout.partition("Functions never run, worst first:\n")[2].splitlines()
-    assert never[0] == "helpers.py: 4 functions, 7 lines"
-    assert never[1] == f"  Unused.long (helpers.py:{lines[0]}), 4 lines"
-    assert f"  Unused.long.inner (helpers.py:{lines[1]}), 1 line" in never
-    assert "only_documented" not in result.stdout
 
 
 def test_a_command_that_fails_keeps_its_exit_code_and_is_reported(make_project: MakeProject) -> None:
