@@ -174,9 +174,10 @@ def _none_from_call(frame: FrameType, line: int) -> Explanation | None:
 
 def _no_number(found: re.Match[str], frame: FrameType, line: int) -> Explanation | None:
     """Explain a text, None, or an object of a library's class, such as a Rotation2d, among numbers."""
+    names = [each for each in found.groups() if each]
     computed = (_operands(node) for node in ast.walk(statement_at(frame, line)) if not isinstance(node, ast.Call))
-    operands = next(filter(None, computed), [])
-    for each, name in zip(operands, filter(None, found.groups()), strict=False):
+    operands = next((each for each in computed if each and _may_be_of(names, each, frame)), [])
+    for each, name in zip(operands, names, strict=False):
         written, cls = ast.unparse(each), class_of(name)
         if name == "NoneType":
             return Explanation(f"{written} is None, and no number", ask_for(written))
@@ -187,6 +188,12 @@ def _no_number(found: re.Match[str], frame: FrameType, line: int) -> Explanation
             text = f"{written} is an object of {cls.__name__}, and no number"
             return Explanation(text, f"Write one of these behind it: {shown}")
     return None
+
+
+def _may_be_of(names: list[str], operands: list[ast.expr], frame: FrameType) -> bool:
+    """Return whether operands may be of the classes with these names: a line may compute more than once."""
+    values = zip((value_of(each, frame) for each in operands), names, strict=False)
+    return all(value is UNKNOWN or type(value).__name__ == name.rpartition(".")[2] for value, name in values)
 
 
 def _key(error: KeyError | IndexError, frame: FrameType, line: int) -> Explanation | None:

@@ -339,8 +339,12 @@ def test_a_command_about_a_robot_passes_on_its_options(
     from pyfrc_core.deploy import logs, session
 
     calls: list[tuple[Any, ...]] = []
-    name = {"console": "show_console", "deploy-info": "show_info", "undeploy": "undeploy", "logs": "fetch_logs"}[command]
-    monkeypatch.setattr(logs if command == "logs" else session, name, lambda *given, **named: calls.append((*given, named)))
+    name = {"console": "show_console", "deploy-info": "show_info", "undeploy": "undeploy", "logs": "fetch_logs"}[
+        command
+    ]
+    monkeypatch.setattr(
+        logs if command == "logs" else session, name, lambda *given, **named: calls.append((*given, named))
+    )
     more = {"console": ["--nc-ds"], "undeploy": ["--yes"], "logs": ["Q12", "--delete", "--into", "here"]}
     assert run(command, "--robot", "10.0.0.2", "--no-resolve", *more.get(command, [])).exit_code == 0
     ((found, choice, *rest),) = calls

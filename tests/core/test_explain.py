@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ast
 import importlib
+import linecache
 import re
 import sys
 from collections.abc import Callable
+from fnmatch import fnmatchcase
 from pathlib import Path
 from textwrap import dedent
 from types import ModuleType
@@ -17,12 +19,15 @@ import hal
 import pytest
 import wpilib
 import wpilib.drive
+import wpimath
 from loops import for_each
+from wpilib import Color
+from wpimath.geometry import Rotation2d
 
 from pyfrc_core.config.packages import PACKAGES, SUCCESSORS, install_line, robot_line
 from pyfrc_core.config.robotpy import load_robot_packages, unknown_components
 from pyfrc_core.errors import SettingsError
-from pyfrc_core.explain import explain
+from pyfrc_core.explain import explain, other_season
 from pyfrc_core.explain.commands import no_command, users_definitions
 from pyfrc_core.project.robot_files import RobotFiles
 from pyfrc_core.runtime.checks.failures import headline
@@ -47,6 +52,7 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         module = ModuleType("robot")
         vars(module).update(wpilib=wpilib, commands2=commands2, rev=rev, __file__=str(file))
         monkeypatch.setitem(sys.modules, "robot", module)
+        linecache.checkcache(str(file))
         exec(compile(file.read_text(), str(file), "exec"), vars(module))
         try:
             module.run(module)
@@ -551,6 +557,159 @@ def test_the_line_for_the_robot(tmp_path: Path) -> None:
     assert robot_line("robotpy-commands-v2", file).endswith('["commands2"] under [tool.robotpy] in pyproject.toml')
     assert robot_line("pyntcore", file) == ""
     assert install_line("robotpy-rev") == "python -m pip install robotpy-rev"
+
+
+#: What is raised, and the whole of what is said of it.
+WHOLE = {
+    "range(10 / 2)": "range() takes whole numbers, and 10 / 2 is none: / makes a float\n  Write 10 // 2",
+    "range(2.5)": "range() takes whole numbers\n  Write int(2.5)",
+    "speed = None\nspeed += 1": "speed is None, and no number\n  Has anything set speed before?",
+    "speed = None\nreturn -speed": "speed is None, and no number\n  Has anything set speed before?",
+    "speed = None\nreturn 1 + speed * 2": "speed is None, and no number\n  Has anything set speed before?",
+    "speed = None\nreturn 3 < speed": "speed is None, and no number\n  Has anything set speed before?",
+    "import time as t\nt()": "t is a module, and cannot be called\n  Write t.time(), or what else it has",
+    "import wpimath.geometry as g\ng()": "g is a module, and cannot be called\n  Write g.NAME(), or what else it has",
+    "def f(a, b=2): pass\nf()": "f() was called without 'a'\n  It takes: f(a, b=2) (robot.py:2)",
+    "def f(a, b=2): pass\nf(1, 2, c=3)": "f() was called with c=\n  It takes: f(a, b=2) (robot.py:2)",
+    "def f(a, *, b): pass\nf(1)": "f() was called without 'b'\n  It takes: f(a, b=...) (robot.py:2)",
+    "class A:\n    def f(self, x): pass\n    def g(self): self.f(self, 1)\nA().g()": (
+        "self.f() gets self twice: before the dot, and in ()\n  Write self.f(1) (robot.py:3)"
+    ),
+    "class A:\n    def __init__(self, x): pass\nA()": "A() was called without 'x'\n  It takes: A(x) (robot.py:3)",
+    "class A:\n    def f(self): pass\nA.f()": (
+        "f() is called on the class A, and not on an object of it\n"
+        "  Create an object in __init__, as in: self.it = A(...). Then call: self.it.f(...)"
+    ),
+    "class A:\n    def f(self): pass\na = A()\nA.f()": (
+        "f() is called on the class A, and not on an object of it\n  Write a.f(...)"
+    ),
+    "class A:\n    def robotInit(self): wpilib.Timer.get()\nA().robotInit()": (
+        "get() is called on the class wpilib.Timer, and not on an object of it\n"
+        "  Create an object in robotInit, as in: self.it = wpilib.Timer(...). Then call: self.it.get(...)"
+    ),
+    "class B:\n    def f(self): pass\nclass A(B):\n    def g(self): B.f()\nA().g()": (
+        "f() is called without self\n  Write super().f(), with what it takes."
+    ),
+    "t = wpilib.Timer\nt.get()": (
+        "t is the class Timer, and no object of it\n  Write Timer(...), with what its __init__ needs."
+    ),
+    "wpilib.Encoder(0, 1, False, 'k4x')": (
+        "Encoder() got 'k4x', a text\n  Write wpilib.interfaces.CounterBase.EncodingType.k4X\n*"
+    ),
+    "import wpilib.drive\nwpilib.drive.DifferentialDrive(0, 1)": (
+        "DifferentialDrive() got 0, a number, and no MotorController\n"
+        "  Write wpilib.PWMSparkMax(0), or the name of a motor controller that is made already.\n*"
+    ),
+    "wpilib.SmartDashboard.putData('a', 3)": (
+        "putData() got 3, a number, and no Sendable\n  Write Sendable(...), from wpiutil import Sendable\n*"
+    ),
+    "from wpimath.geometry import Rotation2d\nRotation2d().rotateBy(3)": (
+        "rotateBy() got 3, a number, and no Rotation2d\n"
+        "  Write Rotation2d.fromDegrees(3), if it is in degrees: from wpimath.geometry import Rotation2d\n*"
+    ),
+    "wpilib.PWMSparkMax(None)": ("PWMSparkMax() got None\n  Pass a value.\n  It takes: PWMSparkMax(channel: number)"),
+    "wpilib.PWMSparkMax('0')": (
+        "PWMSparkMax() got '0', a text\n  Write it without quotes: 0\n  It takes: PWMSparkMax(channel: number)"
+    ),
+    "wpilib.PWMSparkMax(0).set('fast')": (
+        "set() got 'fast', a text\n  Pass a number, and no text.\n  It takes: set(value: number)"
+    ),
+    "from wpimath.geometry import Rotation2d as R\nwpilib.PWMSparkMax(0).set(R(1))": (
+        "set() got R(1), an object of Rotation2d\n"
+        "  Pass a number, such as one of these of it: .cos(), .degrees(), .radians(), .sin(), .tan()\n*"
+    ),
+    "wpilib.SmartDashboard.putString('a', 3)": (
+        "putString() got 3, which is no text\n  Write str(3), or the text in quotes.\n*"
+    ),
+    "self.x = self2": "NameError: name 'self2' is not defined\n  Did you mean self?",
+    "arm = 1\nreturn amr": "NameError: name 'amr' is not defined\n  Nothing has given amr a value: *",
+    "this.x = 1": "NameError: name 'this' is not defined\n  Did you mean self?",
+    "class A:\n    def f(self): return gain\n    gain = 1\nA().f()": (
+        "NameError: name 'gain' is not defined\n  Did you mean self.gain?"
+    ),
+    "return self.Beta\nclass Beta: pass": "AttributeError: module 'robot' has no attribute 'Beta'",
+    "x = 'abc'\nx.foo": "x is a text ('abc') and has no foo",
+    "x = True\nx.foo": "x is True or False (True) and has no foo",
+    "x = 3\nx.numeratr": "x is a number (3) and has no numeratr\n  Did you mean numerator?",
+    "x = [1]\nx[3]": "x[3]: x has 1 value, and indexes begin with 0\n  The last one is x[0]",
+    "x = []\nx[0]": "x[0]: x has 0 values, and indexes begin with 0\n  Has anything filled x?",
+    "k = 'lef'\nd = {'left': 1}\nd[k]": "d has no key 'lef', from d[k]\n  Did you mean 'left'?",
+    "x = {}\nx()": "x is a value (dict), and no function\n  Write x[...], without ()",
+    "class A:\n    def __init__(self):\n        x = 1\nA().x": (
+        "AttributeError: 'A' object has no attribute 'x'\n"
+        "  Write self.x = ... in robot.py:4: without self, the name is known there only."
+    ),
+    "class A:\n    def __init__(self):\n        self.x = 1\na = A()\nA.x": (
+        "A is the class, and only an object of it has x (robot.py:4 sets it)\n  Write a.x"
+    ),
+    "def f():\n    print(y)\n    y = 1\nf()": (
+        "UnboundLocalError: *\n  Not every way through the function sets y: give it a value at the beginning."
+    ),
+    "import photonlib": "there is no module photonlib\n  *photonlibpy*",
+    "from . import arm": (
+        "a dot before a module's name means: of the same package, and this file is in none\n"
+        "    from . import arm\n  Write: import arm"
+    ),
+    "wpilib.Solenoid(0)": (
+        "Solenoid() was called with 1 value, but takes 2 to 3\n  It takes: *\n"
+        "  PneumaticsModuleType is one of: CTREPCM, REVPH"
+    ),
+}
+
+
+@pytest.mark.filterwarnings("ignore::ImportWarning")
+@for_each("code, said", WHOLE.items())
+def test_an_error_in_all_its_words(headline_of: Raise, code: str, said: str) -> None:
+    whole = headline_of(code).partition(": ")[2]
+    assert fnmatchcase(whole, said.replace("[", "[[]")), whole
+
+
+@pytest.mark.parametrize(
+    ("error", "text", "instead"),
+    [
+        (ModuleNotFoundError("", name="wpimath.geometry"), "there is no module wpimath.geometry", "wpimath"),
+        (AttributeError(name="geometry", obj=wpimath), "there is no module wpimath.geometry", "wpimath"),
+        (AttributeError(name="PWMSparkMax", obj=wpilib), "wpilib has no PWMSparkMax", "wpilib_drivers.PWMSparkMax"),
+        (AttributeError(name="kRed", obj=Color), "Color has no kRed", "RED"),
+        (AttributeError(name="fromDegrees", obj=Rotation2d()), "Rotation2d has no fromDegrees", "from_degrees"),
+        (ModuleNotFoundError("", name="commands2"), None, ""),
+        (ModuleNotFoundError("", name="arm"), None, ""),
+        (AttributeError(name="x", obj=[]), None, ""),
+        (AttributeError(name="no_such", obj=wpilib), None, ""),
+        (KeyError("x"), None, ""),
+    ],
+)
+def test_a_name_of_2026_beside_wpilib_2027(
+    error: Exception, text: str | None, instead: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the table of names alone, where WPILib 2027 is not installed; its classes are those of 2026 here."""
+    monkeypatch.setattr(other_season, "CURRENT", SEASONS[2027])
+    monkeypatch.setattr(Color, "RED", 1, raising=False)
+    monkeypatch.setattr(Rotation2d, "from_degrees", 1, raising=False)
+    found = other_season.explain(error, RobotFiles(tmp_path))
+    if text is None:
+        assert found is None
+        return
+    assert found is not None
+    remedy = f'Instead: {instead}.\n  If the robot is for WPILib 2026: pip install "{SEASONS[2026].requirement}"'
+    assert (found.text, found.remedy) == (f"{text} in WPILib 2027", remedy)
+    (tmp_path / "pyproject.toml").write_text('[tool.robotpy]\nrobotpy_version = "2027.0.0a7"\n')
+    found = other_season.explain(error, RobotFiles(tmp_path))
+    assert found is not None
+    assert found.remedy == f"Instead: {instead}."
+
+
+def test_a_remedy_in_the_names_of_2027(monkeypatch: pytest.MonkeyPatch) -> None:
+    for text in ("Rotation2d.fromDegrees(90)", "autonomousInit"):
+        assert other_season.in_2027(text) == text
+    monkeypatch.setattr(other_season, "CURRENT", SEASONS[2027])
+    for text, new in {
+        "Write wpimath.geometry.Rotation2d.fromDegrees(90)": "Write wpimath.Rotation2d.from_degrees(90)",
+        "{}.set(wpilib.DoubleSolenoid.Value.kReverse)": "{}.set(wpilib.DoubleSolenoid.Value.REVERSE)",
+        "Read it in autonomousInit.": "Read it in autonomous_init.",
+        "It is self.leftMotor.": "It is self.left_motor.",
+    }.items():
+        assert other_season.in_2027(text) == new
 
 
 @pytest.mark.parametrize(
