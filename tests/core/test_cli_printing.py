@@ -13,7 +13,7 @@ import click
 import pytest
 from click.testing import CliRunner, Result
 
-from pyfrc_cli import fuzz, project_options, replay, robot_options, shared_options, sync
+from pyfrc_cli import fuzz, project_options, robot_options, shared_options
 from pyfrc_cli.file_options import ReadPath, WrittenDirectory, WrittenFile, check_outputs
 from pyfrc_cli.main import cli
 from pyfrc_cli.verbosity import Verbosity
@@ -282,7 +282,7 @@ def test_changes_of_a_lock_one_line_each() -> None:
     assert list(changes(LOCK, LOCK)) == []
 
 
-# -- replay, and commands about robots ----------------------------------------------------------------------------------
+# -- replay, and commands about robots ---------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -436,5 +436,3 @@ def test_sources_that_cannot_be_read_are_warned_of(project: Project) -> None:
     result = run("config", "check")
     assert (result.exit_code, result.stderr.startswith("warning: bad.py: ")) == (0, True)
     assert project_options.from_here(project.root / "a" / "b.py") == "a/b.py"
-    assert replay.command.name == "replay"
-    assert sync.command.name == "sync"
