@@ -75,14 +75,13 @@ def test_quiet_and_verbose_cannot_both_be(args: list[str], project: RobotProject
         ["create-physics", "--quiet"],
         ["-q", "config", "check"],
         ["config", "-q", "check", "--strict"],
-        ["fuzz", "-q", "--runs", "1", "-j", "1", "--seed", "4"],
     ],
     ids=" ".join,
 )
 def test_where_only_something_was_to_be_done_nothing_is_printed(args: list[str], make_project: MakeProject) -> None:
     robot = ROBOT.replace('            print("the robot\'s words")\n', "").replace("raise ValueError", "str")
     made = make_project({"robot.py": robot, "sim/config.json": "{}\n"})
-    result = (made.run if args[0] in ("create-physics", "fuzz") else made.run_here)(*args)
+    result = (made.run if args[0] == "create-physics" else made.run_here)(*args)
     assert (result.code, result.output) == (0, "")
 
 
@@ -112,42 +111,6 @@ def test_tests_print_as_pytest_does_with_it(project: RobotProject) -> None:
     assert "test session starts" not in result.stdout
     assert "1 passed" in result.stdout
     assert "tests/test_it.py::test_it PASSED" in project.run("test", "-v").stdout
-
-
-@pytest.mark.slow
-def test_a_measurement_is_a_report_and_does_not_say_where_the_others_are(project: RobotProject) -> None:
-    measured = project.run("coverage", "-q", "--xml", "coverage.xml", "replay", "ran.jsonl")
-    assert measured.code == 0, measured.output
-    assert words(measured.stdout)[:2] == ["the robot's words", ""]
-    assert "\nTOTAL" in measured.stdout
-    assert "coverage.xml" not in measured.output
-    assert (project.path / "coverage.xml").is_file()
-    profiled = project.run("profile", "--json", "profile.json", "replay", "-q", "ran.jsonl")
-    assert profiled.code == 0, profiled.output
-    assert "How long each call took" in profiled.stdout
-    assert "profile.json" not in profiled.output
-    assert "replayed" not in profiled.output
-
-
-def test_the_doctor_tells_problems_only(project: RobotProject) -> None:
-    all_told = project.run("doctor", "--no-robot", "--main", "none.py").stdout.splitlines()
-    result = project.run("-q", "doctor", "--no-robot", "--main", "none.py")
-    assert result.code == 1
-    (problem, remedy) = result.stdout.splitlines()
-    assert problem.startswith("problem ")
-    assert problem in all_told
-    assert "--main" in remedy
-
-
-@pytest.mark.slow
-def test_what_is_found_is_told(project: RobotProject) -> None:
-    fuzzed = project.run("fuzz", "-q", "--runs", "3", "-j", "1")
-    assert fuzzed.code == 1, fuzzed.output
-    assert "ValueError: not that button" in words(fuzzed.stdout)[0]
-    *_, last = fuzzed.stdout.splitlines()
-    command, found = last.rsplit(maxsplit=1)
-    assert command == "  pyfrc replay"
-    assert (project.path / found).is_file()
 
 
 @pytest.mark.parametrize(

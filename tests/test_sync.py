@@ -298,10 +298,6 @@ def test_what_is_no_wheel_is_refused_with_how_to_make_one(laptop: Laptop) -> Non
     assert "python -m pip wheel --no-deps --wheel-dir wheels" in refused.stderr
 
 
-def test_options_that_exclude_each_other_are_refused(laptop: Laptop) -> None:
-    assert laptop.run("--check", "--upgrade").code == 2
-
-
 def test_a_copy_of_the_cache_serves_a_laptop_without_internet(laptop: Laptop, tmp_path: Path) -> None:
     laptop.write_lock()
     laptop.sync()
@@ -317,15 +313,3 @@ def doctor_on(laptop: Laptop) -> list[dict[str, str]]:
     """Return what the doctor finds about the downloads."""
     done = laptop.project.run("doctor", "--no-robot", "--json", env=laptop.index.environment(laptop.home))
     return [each for each in json.loads(done.stdout)["findings"] if each["topic"] == "sync"]
-
-
-def test_the_doctor_looks_at_the_downloads(laptop: Laptop) -> None:
-    (found,) = doctor_on(laptop)
-    assert (found["status"], found["remedy"][:25]) == ("hint", "With internet: pyfrc sync")
-    laptop.write_lock()
-    laptop.sync()
-    found, *_ = doctor_on(laptop)
-    assert (found["status"], found["text"]) == ("ok", f"8 files for the {CONTROLLER} are on this computer")
-    (laptop.project.path / LOCK_FILE).write_text("version = 1\n", "utf-8")
-    (found,) = doctor_on(laptop)
-    assert (found["status"], "this lock is damaged" in found["text"]) == ("problem", True)

@@ -132,6 +132,7 @@ def test_findings_of_a_campaign(campaign: SimpleNamespace, monkeypatch: pytest.M
     assert result.exit_code == 1
     assert result.stdout.partition("100 matches")[0] == "".join(shown)
     assert "Nothing was found." not in result.stdout
+    assert run("-q", "fuzz").stdout == "".join(shown).replace("  1 write, 7 runs of the robot to find them\n", "")
     monkeypatch.setenv("GITHUB_ACTIONS", "true")
     monkeypatch.setenv("GITHUB_WORKSPACE", str(Path.cwd().parent))
     campaign.findings = [finding(known=True)]
@@ -322,7 +323,7 @@ def test_how_a_replay_ends(
     asked: list[Any] = []
     monkeypatch.setattr(pyfrc_core.replay, "replay", lambda *files, **options: asked.append((files, options)) or done)
     monkeypatch.setattr(unrepeatable, "explain_unrepeatable", lambda names: f"not repeating: {names}")
-    Path("a.jsonl").write_text("")
+    Path("a.jsonl").write_text("", encoding="utf-8")
     ended = run("replay", "a.jsonl", "--until", "3", "--trace", "t.jsonl")
     assert (ended.exit_code, ended.stdout.splitlines()) == (code, ["replayed 2.00 s of robot time", *lines])
     ((_, options),) = asked
@@ -423,7 +424,7 @@ def writing(**files: Path | None) -> None:
 def test_what_a_command_must_not_write(words: str, problem: str, project: Project) -> None:
     for name in ("pyproject.toml", "deploy/a.json", "notes.txt", "lib/arm.py"):
         Path(name).parent.mkdir(exist_ok=True)
-        Path(name).write_text("")
+        Path(name).write_text("", encoding="utf-8")
     result = CliRunner().invoke(writing, words.split())
     assert isinstance(result.exception, UsageError if problem else type(None)), result
     if problem:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import threading
 from collections.abc import Iterator
@@ -275,13 +276,8 @@ def test_what_is_no_json_is_named_with_its_column(text: str, message: str, proje
 
 
 def test_where_the_robot_starts(project: Project) -> None:
-    for text, says in (
-        ("", False),
-        ('"starting_x": 1', True),
-        ('"starting_y": 2', True),
-        ('"starting_angle": 3', True),
-    ):
-        write(project, {"sim/config.json": '{"pyfrc": {"robot": {%s}}}' % text})
+    for robot_part in ({}, {"starting_x": 1}, {"starting_y": 2}, {"starting_angle": 3}):
+        write(project, {"sim/config.json": json.dumps({"pyfrc": {"robot": robot_part}})})
         config = load_sim_config(project.root).config
         assert config.says_start is bool(robot_part)
     assert (config.start.name, config.start.angle) == ("start", 3)
