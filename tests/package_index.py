@@ -35,10 +35,6 @@ class PackageIndex:
         self.directory = directory
         #: Each request as its path and its header ``Range``.
         self.requests: list[tuple[str, str]] = []
-        #: After how many bytes the connection is closed, by the file's name.
-        self.cut_after: dict[str, int] = {}
-        #: Is set when such a file may go on; None: it never does.
-        self.may_go_on: threading.Event | None = None
         self.python = directory / DOWNLOADS.python_url.rpartition("/")[2]
         self.python.parent.mkdir(parents=True, exist_ok=True)
         self.python.write_bytes(gzip.compress(Random(1).randbytes(PYTHON_SIZE), mtime=0))
@@ -49,8 +45,6 @@ class PackageIndex:
 
     def close(self) -> None:
         """Stop serving: from now on, connections are refused."""
-        if self.may_go_on is not None:
-            self.may_go_on.set()
         self._server.shutdown()
         self._server.server_close()
         self._thread.join()
@@ -158,16 +152,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.send_header("Content-Length", str(len(content) - start))
         self.send_header("ETag", tag)
         self.end_headers()
-        rest = content[start:]
-        cut = self._index.cut_after.get(unquote(self.path).rpartition("/")[2])
-        if cut is not None and cut < len(rest):
-            self.wfile.write(rest[:cut])
-            self.wfile.flush()
-            if self._index.may_go_on is not None:
-                self._index.may_go_on.wait()
-            self.close_connection = True
-            return
-        self.wfile.write(rest)
+        self.wfile.write(content[start:])
 
     def log_message(self, *_: object) -> None:
         """Print nothing."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from conftest import MakeProject, Result, RobotProject
-from package_index import PYTHON_SIZE, ROBOT_TAGS, WPILIB, PackageIndex, package_index
+from package_index import ROBOT_TAGS, WPILIB, PackageIndex, package_index
 
 from pyfrc_core.file_hash import hash_file
 from pyfrc_core.season import CURRENT
@@ -182,39 +181,6 @@ def test_two_laptops_with_the_same_lock_have_the_same_bytes(laptop: Laptop, tmp_
     assert other.lock == laptop.lock
 
 
-@pytest.mark.slow
-def test_a_new_requirement_leaves_the_other_versions_as_they_are(laptop: Laptop) -> None:
-    laptop.sync()
-    laptop.index.add("simple-lib", "2.0")
-    laptop.index.add("added", "3.1")
-    laptop.project.write({"pyproject.toml": pyproject(requires='"simple-lib", "added"')})
-    printed = laptop.sync()
-    assert laptop.packages["simple-lib"] == "1.0"
-    assert "  + added 3.1\n  asked for now: added\n" in printed
-    laptop.project.write({"pyproject.toml": pyproject(components="", requires='"added", "simple-lib>1"')})
-    printed = laptop.sync()  # the version that is locked does not fit any more
-    assert laptop.packages["simple-lib"] == "2.0"
-    assert f"  - robotpy-commands-v2 {WPILIB}\n  simple-lib 1.0 -> 2.0\n" in printed
-
-
-@pytest.mark.slow
-def test_an_interrupted_download_goes_on_where_it_ended(laptop: Laptop) -> None:
-    name = laptop.index.python.name
-    laptop.index.cut_after[name] = 0
-    failed = laptop.run()
-    assert failed.code == 1
-    assert failed.first_error == (
-        f"Python {CURRENT.downloads.python} cannot be downloaded from 127.0.0.1: the connection was lost"
-    )
-    assert not (laptop.project.path / LOCK_FILE).exists()
-    laptop.index.cut_after[name] = 100_000
-    laptop.index.requests.clear()
-    laptop.sync()  # each connection is lost after 100,000 bytes
-    asked = [wanted for path, wanted in laptop.index.requests if path == f"/{name}"]
-    assert asked == ["", *(f"bytes={begin}-" for begin in range(100_000, PYTHON_SIZE + 1, 100_000))]
-    assert laptop.cached()[name] == laptop.index.python.read_bytes()
-
-
 def test_a_file_with_another_content_than_the_locked_is_refused(laptop: Laptop, tmp_path: Path) -> None:
     laptop.write_lock()
     laptop.sync()
@@ -307,9 +273,3 @@ def test_a_copy_of_the_cache_serves_a_laptop_without_internet(laptop: Laptop, tm
     shutil.copytree(laptop.home / CACHE, other.home / CACHE, dirs_exist_ok=True)
     other.sync()
     assert other.sync("--check") == "nothing is missing\n"
-
-
-def doctor_on(laptop: Laptop) -> list[dict[str, str]]:
-    """Return what the doctor finds about the downloads."""
-    done = laptop.project.run("doctor", "--no-robot", "--json", env=laptop.index.environment(laptop.home))
-    return [each for each in json.loads(done.stdout)["findings"] if each["topic"] == "sync"]
