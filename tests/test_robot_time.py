@@ -41,38 +41,11 @@ def test_fake_time(make_project) -> None:
         make_project,
         """
         import pytest
-        from pyfrc.test_support.fake_time import TestRanTooLong
 
         def test_starts_at_zero_and_moves_when_told(fake_time):
             assert fake_time.get() == 0
             fake_time.increment_time_by(1.5)
             assert fake_time.get() == 1.5
-
-        def test_packets_come_every_20_ms(fake_time):
-            fake_time.increment_time_by(0.03)
-            fake_time.increment_new_packet()
-            assert fake_time.get() == 0.04
-            fake_time.increment_new_packet()
-            assert fake_time.get() == 0.06
-
-        def test_limit(fake_time):
-            fake_time.set_time_limit(10)
-            fake_time.increment_time_by(10)
-            with pytest.raises(TestRanTooLong):
-                fake_time.increment_time_by(0.001)
-            assert fake_time.get() == 10
-
-        def test_default_limit_is_500_seconds(fake_time):
-            fake_time.increment_time_by(500)
-            with pytest.raises(TestRanTooLong):
-                fake_time.increment_new_packet()
-
-        def test_reset(fake_time):
-            fake_time.set_time_limit(1)
-            fake_time.increment_time_by(1)
-            fake_time.reset()
-            assert fake_time.get() == 0
-            fake_time.increment_time_by(400)
 
         def test_time_cannot_go_back(fake_time, control, robot):
             with pytest.raises(ValueError, match="not negative"):

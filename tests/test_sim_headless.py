@@ -154,10 +154,3 @@ def test_a_robot_that_fails(project, make_project) -> None:
     # The way to it is a file: that of a fuzzed failure.
     result = made.run("replay", "crash.jsonl")
     assert f"{place}: AttributeError" in result.output
-
-
-def test_a_robot_without_physics(make_project) -> None:
-    made = make_project({"robot.py": FILES["robot.py"]})
-    result = made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "1")
-    assert result.code == 0, result.output
-    assert "not known without physics.py beside robot.py (pyfrc create-physics)" in result.stdout

@@ -9,10 +9,12 @@ import pytest
 
 from pyfrc_core.physics.create.can_devices import CanDevices, CanMotor, known_gearing
 from pyfrc_core.physics.create.can_text import add_mechanism, add_swerve, wheel_motors, wheel_numbers
+from pyfrc_core.physics.create.drivetrain import DrivetrainLayout, MotorGroup, Tank
 from pyfrc_core.physics.create.module_text import ModuleText
 from pyfrc_core.physics.create.motors import Motor
 from pyfrc_core.physics.create.names import DeviceName
-from pyfrc_core.physics.create.survey import Encoder
+from pyfrc_core.physics.create.physics_file import physics_text
+from pyfrc_core.physics.create.survey import Encoder, Survey
 from pyfrc_core.physics.create.swerve_modules import WheelModule
 
 
@@ -134,3 +136,39 @@ def test_a_device_with_its_sensors_belongs_to_a_motor() -> None:
     assert {name: devices.owns(name) for name in own} == own
     assert not devices.in_real_time
     assert CanDevices([motor("a", vendor="Talon")]).in_real_time
+
+
+def test_a_tank_drive_measures_all_its_motors_with_their_signs() -> None:
+    tank = Tank(MotorGroup([motor("left"), motor("left2")], -1), MotorGroup([motor("right")], 1))
+    text = physics_text(Survey(), DrivetrainLayout(tank))
+    assert "TRACK_WIDTH = 22 * units.inch" in text
+    assert "TRACK_WIDTH = 0.61 * units.metre" in physics_text(Survey(), DrivetrainLayout(tank, track_width=0.61))
+    _, _, begin = text.partition("self.physics_controller = physics_controller\n\n")
+    assert [line.strip() for line in begin.splitlines()] == [
+        "# Of motors that are geared together, one is enough.",
+        "self.left_motor = Spark(robot.left, WHEEL_MOTOR, GEARING)",
+        "self.left_motor_2 = Spark(robot.left2, WHEEL_MOTOR, GEARING)  # left, left2",
+        "self.right_motor = Spark(robot.right, WHEEL_MOTOR, GEARING)  # right",
+        "",
+        "self.drivetrain = drivetrains.TwoMotorDrivetrain(TRACK_WIDTH, TOP_SPEED)",
+        "self.left_motor_turns = 0.0",
+        "self.left_motor_2_turns = 0.0",
+        "self.right_motor_turns = 0.0",
+        "",
+        "def update_sim(self, now: float, tm_diff: float) -> None:",
+        '"""`now` is the robot time, `tm_diff` the time since the last call, in seconds."""',
+        "# In the drivetrain, left motors are forward at 1 and right ones at -1; a minus adapts this robot's signs.",
+        "speeds = self.drivetrain.calculate(",
+        "-self.left_motor.output(),",
+        "-self.right_motor.output(),",
+        ")",
+        "self.physics_controller.drive(speeds, tm_diff)",
+        "",
+        "wheels = self.drivetrain.wheelSpeeds  # in metres per second",
+        "self.left_motor_turns += -wheels.left / WHEEL_CIRCUMFERENCE * tm_diff",
+        "self.left_motor.measure(self.left_motor_turns, -wheels.left / WHEEL_CIRCUMFERENCE, tm_diff)",
+        "self.left_motor_2_turns += -wheels.left / WHEEL_CIRCUMFERENCE * tm_diff",
+        "self.left_motor_2.measure(self.left_motor_2_turns, -wheels.left / WHEEL_CIRCUMFERENCE, tm_diff)",
+        "self.right_motor_turns += wheels.right / WHEEL_CIRCUMFERENCE * tm_diff",
+        "self.right_motor.measure(self.right_motor_turns, wheels.right / WHEEL_CIRCUMFERENCE, tm_diff)",
+    ]

@@ -271,8 +271,13 @@ def test_each_current_of_a_power_distribution_is_heard_and_added() -> None:
     )
     with pytest.raises(WrongValue, match="it is the sum of current: write that"):
         place["total_current"] = 1
+    with pytest.raises(WrongIndex, match=r"pdp\[44\].current\[24\]: there is no entry 24, the list has 24"):
+        place["current"][24]
+    first = wpilib.PowerDistribution(0, wpilib.PowerDistribution.ModuleType.kCTRE)
+    assert [number in tree["pdp"] for number in (0, 44, -1, 63)] == [True, True, False, False]
     forget_what_stays()
-    assert 44 not in tree["pdp"]
+    assert list(tree["pdp"]) == []
+    del first
 
 
 def test_colours_of_leds_are_three_numbers() -> None:

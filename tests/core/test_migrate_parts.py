@@ -119,6 +119,14 @@ def test_imports_of_what_is_gone(tmp_path: Path, code: str, new: str, said: list
     assert [each for each in remarks if "is gone" in each] == said
 
 
+def test_a_new_import_comes_after_docstring_and_future(tmp_path: Path) -> None:
+    head = '"""A robot."""\n"more"\nfrom __future__ import annotations\n'
+    body = "x = 1\ndef show():\n    import wpilib\n    wpilib.SmartDashboard.putNumber('speed', x)\n"
+    text, _ = migrated(tmp_path, head + body)
+    body = body.replace("wpilib.SmartDashboard.putNumber", "telemetry.log")
+    assert text == f"{head}import telemetry\n{body}"
+
+
 def test_a_name_that_another_file_imports_for_this_one_is_renamed_in_both(tmp_path: Path) -> None:
     (tmp_path / "parts.py").write_text("from wpilib import PS4Controller, PS4Controller as Pad, Timer\n", "utf-8")
     text, _ = migrated(

@@ -15,7 +15,7 @@ from pyfrc_core.migrate.migration import migrate
 from pyfrc_core.migrate.rewrite.edits import chain, fill, in_parentheses, standing_alone
 from pyfrc_core.migrate.types.atoms import NOTHING, Many, Obj, Ref, dictionary, elements, items, many, of_type
 from pyfrc_core.migrate.types.inference import Inference
-from pyfrc_core.migrate.types.scopes import Module
+from pyfrc_core.migrate.types.scopes import Module, import_source
 from pyfrc_core.migrate.types.values import written_number
 from pyfrc_core.season.names.table import table
 
@@ -121,3 +121,23 @@ def test_an_encoding_that_is_named_in_lines_that_end_in_cr(tmp_path: Path) -> No
     (tmp_path / "robot.py").write_bytes(b"# coding: cp1252\rimport wpilib.drive\rname = '\xe9'")
     done = migrate(tmp_path)
     assert (done.after["robot.py"], done.report.by_hand()) == (b"# coding: cp1252\rimport wpilib\rname = '\xe9'", [])
+
+
+@for_each(
+    "code, name, file, expected",
+    [
+        ("from wpimath.geometry._geometry import Pose2d", "robot", "robot.py", "wpimath.geometry"),
+        ("from own._parts import Arm", "robot", "robot.py", "own._parts"),
+        ("from .parts import Arm", "robot", "robot.py", "parts"),
+        ("from .parts import Arm", "a.b.c", "c.py", "a.b.parts"),
+        ("from ..parts.arm import Arm", "a.b.c", "c.py", "a.parts.arm"),
+        ("from . import Arm", "a.b.c", "c.py", "a.b"),
+        ("from . import Arm", "a.b", "__init__.py", "a.b"),
+        ("from .. import Arm", "a.b", "__init__.py", "a"),
+        ("from .arm import Arm", "a.b", "__init__.py", "a.b.arm"),
+    ],
+)
+def test_the_module_that_an_import_names(code: str, name: str, file: str, expected: str) -> None:
+    tree = cst.parse_module(code)
+    statement = cst.ensure_type(tree.body[0], cst.SimpleStatementLine).body[0]
+    assert import_source(cst.ensure_type(statement, cst.ImportFrom), Module(Path(file), name, tree)) == expected

@@ -30,6 +30,10 @@ def test_time_advances_only_when_it_is_incremented(run: RobotRun) -> None:
     time.increment_time_by(0.2)
     time.initialize()
     assert (time.get(), time.time_limit) == (0, 500)
+    time.increment_time_by(500)
+    with pytest.raises(TestRanTooLong):
+        time.increment_new_packet()
+    time.reset()
     time.set_time_limit(0.5)
     run.construct(wpilib.TimedRobot)
     run.start()

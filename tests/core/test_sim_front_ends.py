@@ -90,6 +90,15 @@ def test_a_robot_runs_in_a_mode_for_some_time() -> None:
     )
 
 
+def test_without_physics_no_distance_is_known() -> None:
+    simulation = Simulation("paused", end=5.0)
+    simulation.snapshot.scene.robot = None
+    assert (
+        "\ndistance driven: not known without physics.py beside robot.py (pyfrc create-physics)\n"
+        in run(simulation, "teleop", 5.0)[1]
+    )
+
+
 def test_what_it_says_and_does_without_a_mode_or_in_a_match() -> None:
     simulation = Simulation("interrupted")
     assert run(simulation, quiet=True)[0] == 0

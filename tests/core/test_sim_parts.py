@@ -11,8 +11,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from wpimath.geometry import Pose2d
 
-from pyfrc_core.log_records import Record
+from pyfrc_core.log_records import Record, read_data_log
 from pyfrc_core.processes.lent_streams import lent_streams
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.scripts.logged_inputs import LoggedInputs
@@ -260,6 +261,30 @@ def test_a_data_log_is_written_through_a_link(tmp_path: Path) -> None:
     WpiLog(link).close()
     assert link.is_symlink()
     assert file.read_bytes().startswith(b"WPILOG")
+
+
+def test_a_data_log_has_each_kind_of_value_and_every_place(tmp_path: Path) -> None:
+    log = WpiLog(tmp_path / "new" / "a.wpilog")
+    places = [Pose2d(x, 2, 0.5) for x in (1, 3)]
+    values = {"control.enabled": True, "pwm[1].value": 0.5, "custom.name": "a", "joysticks[0].axes": (0.5, -1.0)}
+    log.write(20_000, {**values, "robot.x": None}, [], {"nt:/a": 1}, places[0])
+    log.write(40_000, {"joysticks[0].buttons": (False, True), "joysticks[0].povs": (90,)}, [], {}, places[1])
+    log.write(60_000, {}, ["joysticks[0].axes", "custom.name"], {}, None)
+    log.print(60_000, "said")
+    log.close()
+    found = read_data_log(tmp_path / "new" / "a.wpilog")
+    entries = {entry.name: (entry.type_name, [moment / 1e6 for moment in entry.moments]) for entry in found.entries}
+    wanted = {
+        "DS:enabled": ("boolean", [0.02]),
+        "/hal_data/pwm[1].value": ("double", [0.02]),
+        "/hal_data/custom.name": ("string", [0.02]),
+        "DS:joystick0/axes": ("double[]", [0.02, 0.06]),
+        "DS:joystick0/buttons": ("boolean[]", [0.04]),
+        "DS:joystick0/povs": ("int64[]", [0.04]),
+        "/pose": ("struct:Pose2d", [0.02, 0.04]),
+        "console": ("string", [0.06]),
+    }
+    assert {name: entries.get(name) for name in wanted} == wanted
 
 
 def test_a_robot_without_an_address_is_that_of_this_computer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
