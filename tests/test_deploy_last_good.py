@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,7 +15,6 @@ from pyfrc_core.deploy.agent.releases import Releases
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.facts import Deployed, RobotFacts
-from pyfrc_core.deploy.session import info_text
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 #: Deploys a program, number n, and starts it: whether the watch sees it run; None: it is not watched.
@@ -101,35 +99,3 @@ def test_it_makes_no_room_on_a_small_disk(robot: LocalRobot, agents: Agents, dep
     releases = Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None))
     releases.prune(kept=1)
     assert releases.numbers() == [2, 4]
-
-
-# -- pyfrc deploy-info ---------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("runs", "running", "age", "says"),
-    [
-        (True, True, 312.4, "release 1, running for 312 s"),
-        (True, True, None, "release 1, running"),
-        (True, False, None, "release 1, not running"),
-        (None, True, 0.42, "release 1, running for 0.4 s"),
-        (False, True, 0.42, "release 1, ended after its last start; started again 0.4 s ago"),
-        (False, True, None, "release 1, ended after its last start; started again"),
-        (False, False, None, "release 1, ended after its last start; not running"),
-    ],
-)
-def test_what_is_known_of_the_program(
-    robot: LocalRobot,
-    agents: Agents,
-    deploy: DeployAndWatch,
-    runs: bool | None,
-    running: bool,
-    age: float | None,
-    says: str,
-) -> None:
-    deploy(1, runs)
-    facts = dataclasses.replace(facts_of(robot, agents), running=running, program_age=age)
-    lines = info_text(facts, "").splitlines()
-    assert f"program    {says}" in lines
-    listed = {True: ", seen to run", False: ", ended after its last start", None: ""}[runs]
-    assert lines[-1] == f"* release 1   date unknown{listed}"

@@ -112,15 +112,6 @@ def test_another_tools_directory_that_cannot_be_moved_stays_at_an_undeploy(robor
     assert (roborio.home / "robotCommand").exists()
 
 
-def test_special_files_are_not_carried_over(roborio: Roborio, tmp_path: Path) -> None:
-    deploy(roborio, tmp_path, 1)
-    roborio.run("mkfifo", "-m", "600", "/home/lvuser/py/pipe")
-    roborio.put("home/lvuser/py/log.txt", "a log")
-    assert deploy(roborio, tmp_path, 2).skipped == ("pipe",)
-    assert (roborio.home / "py/log.txt").read_text() == "a log"
-    assert deploy(roborio, tmp_path, 3).skipped == ()
-
-
 def test_a_process_that_reads_a_file_is_not_a_robot_program(roborio: Roborio, tmp_path: Path) -> None:
     deploy(roborio, tmp_path, 1, start=True)
     with SshConnection(roborio.host, roborio.port, "lvuser") as connection:
