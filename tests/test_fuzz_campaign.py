@@ -133,18 +133,6 @@ def test_what_is_a_failure(kind: str, make_project) -> None:
         assert project.run("test").code == 0
 
 
-@pytest.mark.parametrize(
-    "kind",
-    sampled([kind for kind in FAULTS if kind.islower() and kind not in ("hangs", "process_ended")], "not_a_number"),
-)
-def test_what_can_be_switched_off(kind: str, make_project) -> None:
-    code, _ = FAULTS[kind]
-    off = "slow_loops = false" + ("" if kind == "slow_loops" else f"\n    {kind} = false")
-    project = make_project({"robot.py": FAULTY.format(code), "pyproject.toml": SHORT_MATCHES.format(6, off)})
-    result = project.run("fuzz", "--runs", "2")
-    assert result.code == 0, result.output
-
-
 @pytest.mark.slow
 def test_interpreters_that_are_used_again_find_the_same(make_project) -> None:
     robot = """
