@@ -13,7 +13,7 @@ import click
 import pytest
 from click.testing import CliRunner, Result
 
-from pyfrc_cli import fuzz, project_options, robot_options, shared_options
+from pyfrc_cli import create_physics, fuzz, migrate, project_options, robot_options, shared_options, start, wrapping
 from pyfrc_cli.file_options import ReadPath, WrittenDirectory, WrittenFile, check_outputs
 from pyfrc_cli.main import cli
 from pyfrc_cli.verbosity import Verbosity
@@ -437,3 +437,91 @@ def test_sources_that_cannot_be_read_are_warned_of(project: Project) -> None:
     result = run("config", "check")
     assert (result.exit_code, result.stderr.startswith("warning: bad.py: ")) == (0, True)
     assert project_options.from_here(project.root / "a" / "b.py") == "a/b.py"
+
+
+# -- other commands ----------------------------------------------------------------------------------------------------
+
+
+def test_failures_that_are_listed() -> None:
+    most = create_physics._MOST_FAILURES
+    lines = ["x" * (create_physics._WIDTH + 1), *["y"] * (most - 1)]
+    shown = f"\n  {'x' * create_physics._WIDTH}..." + "\n  y" * (most - 1)
+    assert create_physics._listed(lines) == shown
+    assert create_physics._listed([*lines, "z", "z"]) == f"{shown}\n  and 2 more"
+    assert create_physics._listed(["x" * create_physics._WIDTH]) == f"\n  {'x' * create_physics._WIDTH}"
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "robot"),
+    [(["--robot"], 0, ""), (["--robot", "1234"], 0, "1234"), ([], 0, None), (["--robot", " "], 2, None)],
+)
+def test_which_robot_is_viewed(
+    words: list[str], code: int, robot: str | None, project: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from pyfrc_core.sim import view
+
+    seen: list[Any] = []
+    monkeypatch.setattr(view, "view", lambda request, say: seen.append(request) or 0)
+    result = run("-q", "view", *words)
+    assert (result.exit_code, [each.robot for each in seen]) == (code, [robot] * (code == 0))
+    assert code == 0 or "the address is empty." in " ".join(result.stderr.split())
+    assert "cannot be written" in str(run("view", "--page", "robot.py").exception)
+
+
+def test_a_report_of_a_migration() -> None:
+    class Remark(SimpleNamespace):
+        def __str__(self) -> str:
+            return "one\n  two"
+
+    (line,) = migrate._text(Remark(places=["a.py:1"])).splitlines()[1:]  # type: ignore[arg-type]
+    assert line == "        two"
+    assert migrate._text(Remark(places=[1, 2])).splitlines()[-1] == "      2 lines: 1, 2"  # type: ignore[arg-type]
+
+    def show() -> None:
+        migrate._show_progress("reading", 1, 2)
+        migrate._show_progress("reading", 2, 2)
+
+    result = CliRunner().invoke(click.command()(show))
+    assert (result.stdout, result.stderr.count("\r"), "reading 1/2" in result.stderr) == ("", 2, True)
+    assert "reading 2/2" not in result.stderr
+
+
+def test_the_current_directory_is_not_searched_for_modules(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    here, package = str(tmp_path), str(Path(start.__file__).parents[1])
+    for path, left in (
+        ([here, "a"], ["a"]),
+        (["", "a"], ["a"]),
+        (["a", here], ["a", here]),
+        ([], []),
+    ):
+        monkeypatch.setattr(sys, "path", path)
+        start._remove_current_directory(here)
+        assert sys.path == left
+    monkeypatch.setattr(sys, "path", [package])
+    start._remove_current_directory(package)
+    assert sys.path == [package], "that is where pyfrc itself is"
+    monkeypatch.setattr(start.os, "getcwd", lambda: here)
+    assert start._current_directory() == here
+
+
+@pytest.mark.parametrize(
+    ("raised", "code"),
+    [(SystemExit(3), 3), (SystemExit("x"), 1), (SystemExit(None), 0), (click.exceptions.Exit(4), 4), (None, 0)],
+)
+def test_a_measured_command_keeps_its_exit_code(raised: BaseException | None, code: int) -> None:
+    def inner() -> None:
+        if raised is not None:
+            raise raised
+
+    command = click.command()(inner)
+    measured = wrapping.Wrapped("test", None, click.Context(command))  # type: ignore[arg-type]
+    assert measured.run() == code
+
+
+def test_a_measured_command_that_is_interrupted(capsys: pytest.CaptureFixture[str]) -> None:
+    @click.command()
+    def inner() -> None:
+        raise KeyboardInterrupt
+
+    assert wrapping.Wrapped("test", None, click.Context(inner)).run() == 2  # type: ignore[arg-type]
+    assert capsys.readouterr().err == "interrupted\n"

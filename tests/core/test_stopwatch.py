@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -94,6 +95,32 @@ def test_the_loop_itself_is_named_where_no_function_took_half_of_it(world: World
     assert [each.function for each in world.figures.overruns] == [WHOLE_LOOP.name]
     world.stopwatch.timed(lambda: [short(), short(), world.compute(4)], WHOLE_LOOP, PERIOD)()
     assert len(world.figures.overruns) == 1, "20 ms are in time"
+
+
+def test_a_loop_of_its_own_goes_from_wait_to_wait(world: World, monkeypatch: pytest.MonkeyPatch) -> None:
+    timed = [False]
+    monkeypatch.setattr(stopwatch, "robots", SimpleNamespace(is_timed=lambda robot: timed[0], period=lambda _, s: s))
+    run: Any = stopwatch.patches.run
+    run.own_loop, run.robot = threading.current_thread(), None
+    for milliseconds in (5, 30):
+        world.sleep(20)
+        world.compute(milliseconds)
+    world.sleep(20)
+    assert list(world.figures.times[WHOLE_LOOP]) == [5 * MS, 30 * MS]
+    assert [(each.loop_ms, each.period_ms) for each in world.figures.overruns] == [(30, 20)]
+    timed[0] = True  # its loop is a timed function
+    world.sleep(20)
+    run.own_loop = threading.Thread()
+    world.sleep(20)
+    assert len(world.figures.times[WHOLE_LOOP]) == 2
+
+
+def test_figures_that_are_cleared_keep_their_arrays(world: World) -> None:
+    world.run(lambda: world.compute(50))
+    times = world.figures.times[TELEOP]
+    world.figures.clear()
+    assert (len(times), world.figures.overruns) == (0, [])
+    assert world.figures.times[TELEOP] is times
 
 
 def test_what_raises_is_timed_too(world: World) -> None:
