@@ -16,11 +16,13 @@ from typing import Any
 import pytest
 
 from pyfrc_core.deploy.agent import imports, release_record
+from pyfrc_core.deploy.agent import program as agent_program
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.disk import fingerprint
 from pyfrc_core.deploy.agent.logs import RobotLogs
 from pyfrc_core.deploy.agent.program import Program, _reports_start, process_state
 from pyfrc_core.deploy.agent.release_record import Boot, Standing
+from pyfrc_core.deploy.agent.start_monitor import StartMonitor
 from pyfrc_core.deploy.progress import DeployProgress, JsonProgress, progress_for, with_robot_option
 from pyfrc_core.deploy.responses import Raw, ResponseError, parse
 from pyfrc_core.deploy.starting import _known_of
@@ -248,6 +250,26 @@ def test_a_program_and_its_console() -> None:
     assert process_state(host, 1 << 30) == {}
     Program(host).close()
     assert ended == [True]
+
+
+def test_processes_are_listed_seldom_while_the_program_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(agent_program, "_REPORT_SECONDS", 1000.0)
+    listed, running = list[int](), [True]
+
+    def processes() -> set[int]:
+        listed.append(len(listed))
+        return {len(listed)}
+
+    console = SimpleNamespace(receive=lambda seconds: "")
+    host: Any = SimpleNamespace(console=lambda: console, processes=processes, is_running=lambda process: running[0])
+    program, monitor = Program(host), StartMonitor(())
+    monitor.restarted(0.0)
+    for expected in (1, 1):
+        program._poll(monitor)
+        assert (len(listed), monitor.process) == (expected, 1)
+    running[0] = False
+    program._poll(monitor)
+    assert len(listed) == 2
 
 
 def test_how_an_administrator_types_a_command() -> None:

@@ -787,6 +787,21 @@ def test_a_file_that_python_cannot_read(tmp_path: Path, text: str, message: str,
     assert remedy in explained.remedy
 
 
+def test_a_file_that_is_not_there_any_more(tmp_path: Path) -> None:
+    file = str(tmp_path / "robot.py")
+    for text, shown in ((None, ""), (" \n", ""), (" x = \n", "\n    x =")):
+        explained = explain(SyntaxError("odd", (file, 3, 1, text)), RobotFiles(tmp_path))
+        assert explained is not None
+        assert (explained.text, explained.place) == (f"SyntaxError: odd{shown}", "robot.py:3")
+    assert explain(SyntaxError("odd", ("/elsewhere.py", 3, 1, "x")), RobotFiles(tmp_path)) is None
+    marks = "".join(f"<<<<<<< {number}\n" for number in range(8))
+    Path(file).write_text(marks, "utf-8")
+    explained = explain(SyntaxError("odd", (file, 3, 1, "x")), RobotFiles(tmp_path))
+    assert explained is not None
+    marked = "a merge conflict of git is not resolved: its marks are in lines 1, 2, 3, 4, 5, 6 and more"
+    assert (explained.text, explained.place) == (marked, "robot.py:1")
+
+
 def test_imports_of_the_projects_own_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "subsystems").mkdir()
     (tmp_path / "subsystems" / "arm.py").write_text("from one import Two\n")
