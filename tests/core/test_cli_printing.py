@@ -360,6 +360,22 @@ def test_a_command_about_a_robot_passes_on_its_options(
     assert talk.progress.add_robot_option("pyfrc deploy") == "pyfrc deploy --robot 10.0.0.2"
 
 
+def test_with_json_nothing_is_asked(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
+    from pyfrc_core.deploy import session
+
+    choices: list[Any] = []
+    monkeypatch.setattr(session, "show_info", lambda project, choice, talk: choices.append((choice, talk.ask)))
+    monkeypatch.setattr(robot_options, "can_ask", lambda: True)
+    key = ["--accept-host-key", "SHA256:x", "--robot-name", "Ada"]
+    for words in ([], ["--json"]):
+        assert run("deploy-info", "--robot", "10.0.0.2", *key, *words).exit_code == 0
+    (asking, questions), (quiet, none) = choices
+    assert (asking.accepted_key, asking.robot_name, asking.resolve) == ("SHA256:x", "Ada", True)
+    assert asking.credentials.ask_password is not None
+    assert questions is not None
+    assert (quiet.credentials.ask_password, none) == (None, None)
+
+
 def test_outside_of_a_project_a_robot_has_to_be_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     from pyfrc_core.deploy.team import RobotChoice
