@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import gzip
 import hashlib
 import ssl
 import threading
@@ -84,6 +85,36 @@ def test_a_certificate_that_is_not_trusted_has_another_remedy() -> None:
     assert reason == "its certificate could not be verified (self-signed certificate)"
     failed = download._unreachable(download.Download("six 1", "https://a.invalid/six.whl", Path("six.whl")), reason)
     assert failed.remedy.startswith("Try: pyfrc sync --use-certifi.")
+
+
+def test_which_certificates_are_trusted(monkeypatch: pytest.MonkeyPatch) -> None:
+    for named, found in (("", None), ("/a.pem", "/a.pem")):
+        monkeypatch.setenv("PIP_CERT", named)
+        assert download._certificates(use_certifi=False) == found
+    monkeypatch.setattr(download, "import_module", lambda name: SimpleNamespace(where=lambda: f"{name}.pem"))
+    assert download._certificates(use_certifi=True) == "certifi.pem"
+
+    def missing(name: str) -> None:
+        raise ImportError
+
+    monkeypatch.setattr(download, "import_module", missing)
+    with pytest.raises(PyfrcError, match="--use-certifi needs the package certifi\n  Install it: "):
+        download._certificates(use_certifi=True)
+
+
+@pytest.mark.parametrize(
+    ("content", "complete"),
+    [
+        (gzip.compress(b"x" * 99), True),
+        (gzip.compress(b"x" * 99)[:-4], False),
+        (b"<html>", False),
+        (b"", False),
+    ],
+)
+def test_which_archives_are_complete(content: bytes, complete: bool, tmp_path: Path) -> None:
+    file = tmp_path / "python.tar.gz.part"
+    file.write_bytes(content)
+    assert download._is_complete_archive(file) is complete
 
 
 def test_a_full_disk_is_one_sentence_and_other_errors_stay() -> None:
