@@ -295,9 +295,9 @@ def test_whatever_is_lost_with_a_link_a_changed_robot_is_not_called_unchanged(
     """The report that the switch begins may be lost, too; until the last contents are sent, there is no switch."""
     project = project_of(tmp_path / "project", {"robot.py": ROBOT_PY, "noise.bin": os.urandom(200_000)})
     whole = robot.copy(tmp_path / "whole")
-    agent = whole.start(agents)
-    before = whole.channel.bytes_from_robot
-    agent.deploy(project, REQUEST)
+    with contextlib.closing(whole.start(agents)) as agent:
+        before = whole.channel.bytes_from_robot
+        agent.deploy(project, REQUEST)
     codes = set()
 
     def cut(**cut: int) -> None:
