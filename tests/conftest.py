@@ -404,7 +404,7 @@ def patient_doctor(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(f"pyfrc_core.doctor.robot.{name}", 100.0)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def agents() -> Generator[Agents]:
     """Starts what runs on a robot, here."""
     from roborio.local import Agents

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import MakeProject, Result
 from skips import requires
 from started_commands import StartedCommand, start_command
 
@@ -130,26 +129,14 @@ class Cluster:
 
 
 @pytest.fixture(scope="module")
-def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Generator[Cluster]:
-    """A scheduler, to which `cluster` adds a worker."""
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Generator[Cluster]:
+    """A cluster with a worker."""
     cluster = Cluster(tmp_path_factory.mktemp("cluster"))
     try:
+        cluster.add_worker()
         yield cluster
     finally:
         cluster.close()
-
-
-@pytest.fixture(scope="module")
-def without_workers(scheduler: Cluster, make_shared_project: MakeProject) -> Result:
-    """What a campaign says while there are no workers."""
-    return make_shared_project({"robot.py": ROBOT}).run("fuzz", "--scheduler", scheduler.address)
-
-
-@pytest.fixture(scope="module")
-def cluster(scheduler: Cluster, without_workers: Result) -> Cluster:
-    """A cluster with a worker."""
-    scheduler.add_worker()
-    return scheduler
 
 
 @pytest.fixture
@@ -251,10 +238,10 @@ def test_a_scheduler_that_is_lost(own_cluster: Cluster, make_shared_project) -> 
 
 
 @pytest.mark.slow
-def test_a_scheduler_without_workers(scheduler: Cluster, without_workers: Result) -> None:
-    result = without_workers
-    assert (result.code, result.first_error) == (1, f"the scheduler at {scheduler.address} has no workers")
-    assert f"dask worker {scheduler.address}" in result.stderr
+def test_a_scheduler_without_workers(own_cluster: Cluster, make_shared_project) -> None:
+    result = make_shared_project({"robot.py": ROBOT}).run("fuzz", "--scheduler", own_cluster.address)
+    assert (result.code, result.first_error) == (1, f"the scheduler at {own_cluster.address} has no workers")
+    assert f"dask worker {own_cluster.address}" in result.stderr
 
 
 @pytest.mark.slow

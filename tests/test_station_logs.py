@@ -58,7 +58,7 @@ def stations_log(
 
     :param lost: whether the packet of a moment was lost; by default those at 0 are not
     """
-    records = b""
+    records = bytearray()
     for number in range(round(seconds * 50)):
         time = number / 50
         is_enabled = sum(edge <= time for edge in edges) % 2 == 1
@@ -78,7 +78,7 @@ def shifted(edges: tuple[float, ...], by: float) -> tuple[float, ...]:
 
 @settings(max_examples=60, deadline=None)
 @given(
-    lengths=st.lists(st.integers(20, 400), min_size=2, max_size=9),
+    lengths=st.lists(st.integers(20, 200), min_size=2, max_size=9),
     begins=st.integers(-300, 300),
     late=st.integers(0, 5),
     has_clock=st.booleans(),

@@ -19,7 +19,7 @@ class Written:
     """
 
     def __init__(self, header: str = "", metadata: str = "") -> None:
-        self.data = b"WPILOG\x00\x01" + struct.pack("<I", len(header)) + header.encode()
+        self.data = bytearray(b"WPILOG\x00\x01") + struct.pack("<I", len(header)) + header.encode()
         self._metadata = metadata
         self._entries = 0
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from itertools import chain
 from pathlib import Path
 from unittest.mock import patch
 
@@ -17,23 +16,8 @@ from pyfrc_core.disk_space import check_disk_space
 from pyfrc_core.errors import PyfrcError
 from pyfrc_core.terminal_text import VisibleStream, escape_unencodable
 
-from .source_texts import texts_in
-
-ROOT = Path(__file__).parents[2]
-
 #: The encodings of pipes and of consoles on Windows in America and Western Europe.
 ENCODINGS = ["cp1252", "cp437"]
-
-#: Drawn in a window or a page, or compared with what users have written.
-NOT_PRINTED = (
-    "pyfrc_core/sim/ui/models/",
-    "pyfrc_core/sim/ui/tk/",
-    "pyfrc_core/sim/ui/web/",
-    "pyfrc_core/config/toml_file.py",
-    "pyfrc_core/deploy/manifest.py",
-    "pyfrc_core/explain/syntax.py",
-    "pyfrc_core/terminal_text.py",
-)
 
 
 def printed(command: click.Command, encoding: str, errors: str) -> tuple[str, str]:
@@ -72,20 +56,6 @@ def test_any_text_can_be_printed(encoding: str, errors: str, text: str) -> None:
     if text.isascii():
         assert f"robot: {text}!\nplain: {text}!\n" == out
         assert f"warning: {text}!\nerror: {text}.py:3: {text}!\n  Remove {text}!\n" == err
-
-
-@pytest.mark.parametrize("encoding", ["cp1252", "cp437"])
-def test_no_message_needs_an_escape_on_a_console_of_windows(encoding: str) -> None:
-    """With what users have written left out: the texts in the source, which are help, hints and errors."""
-    found = []
-    for package in ("pyfrc", "pyfrc_cli", "pyfrc_core"):
-        for file in sorted((ROOT / package).rglob("*.py")):
-            if file.relative_to(ROOT).as_posix().startswith(NOT_PRINTED):
-                continue
-            for text in chain(*texts_in(file)):
-                if text.encode(encoding, "replace").decode(encoding) != text:
-                    found.append(f"{file.relative_to(ROOT)}: {text}")
-    assert found == []
 
 
 def test_a_stream_shows_control_characters() -> None:
