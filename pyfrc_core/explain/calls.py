@@ -64,7 +64,7 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return None
     if _OF_A_FUNCTION.match(text) and (explained := _not_called(*where, files)):
         return explained
-    if text == "TypeError: 'module' object is not callable":
+    if text.startswith("TypeError: 'module' object is not callable"):  # since Python 3.13 perhaps with a suggestion
         return _module(*where)
     if "'NoneType'" in text and frames_of(error)[-1] is where[0] and (explained := _none_from_call(*where)):
         return explained
