@@ -17,6 +17,7 @@ from pyfrc_core.processes.call import Call
 from pyfrc_core.processes.interpreter import Interpreter, SpawnedWorker, WorkFiles, spawn_worker
 from pyfrc_core.processes.reuse import Interpreters
 from pyfrc_core.processes.standstill import Standstill
+from pyfrc_core.test_support.isolation import interpreters as isolation
 
 
 class Process:
@@ -84,6 +85,7 @@ def test_one_that_has_put_itself_back_does_the_next_work(ones: Interpreters, pro
     assert [each.tasks for each in processes] == [1, 1]
     finish(second, processes[1])
     ones.end(second)
+    assert not WorkFiles(processes[1].directory, 1).done.exists()
     third = work(ones, more=5)
     assert ([each.tasks for each in processes], ones.why_not_again()) == ([1, 2], "")
     finish(first, processes[0])
@@ -131,6 +133,19 @@ def test_the_interpreter_of_a_rehearsal_does_the_first_work(ones: Interpreters, 
     processes[0].finish()
     work(ones)
     assert [each.tasks for each in processes] == [2]
+
+
+def test_tests_that_are_forked_or_run_here_need_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    closed: list[bool] = []
+    made: Any = SimpleNamespace(close=lambda: closed.append(True))
+    monkeypatch.setattr(isolation, "start_interpreters", lambda project: made)
+    monkeypatch.setattr(isolation, "is_forked", lambda name: name == "fork")
+    project: Any = None
+    for name, opened in (("none", None), ("fork", None), ("reuse", made)):
+        options: Any = SimpleNamespace(isolation=name)
+        with isolation.opened_interpreters(project, options) as interpreters:
+            assert (interpreters, closed) == (opened, [])
+    assert closed == [True]
 
 
 def test_what_takes_too_long_to_put_back(processes: list[Process], monkeypatch: pytest.MonkeyPatch) -> None:

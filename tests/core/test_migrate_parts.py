@@ -60,6 +60,11 @@ def test_devices_that_share_a_port_name_the_first_and_the_free_ports() -> None:
     assert done
 
 
+def test_the_last_channel_is_the_one_before_the_number_of_channels(tmp_path: Path) -> None:
+    _, said = migrated(tmp_path, "import wpilib\nwpilib.AddressableLED(5)\nwpilib.AddressableLED(6)\n")
+    assert [each for each in said if "does not exist" in each] == ["3 Channel 6 does not exist on SystemCore."]
+
+
 def test_a_channel_that_systemcore_lacks() -> None:
     remedy = f"{_ALL}. Write yours; free: 0, 1, 2, 3, 4, 5."
     assert reported(("DigitalInput", 9), ("Servo", 6)) == [
