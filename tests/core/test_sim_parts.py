@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 from wpimath.geometry import Pose2d
 
+from pyfrc_core.errors import UsageError
 from pyfrc_core.log_records import Record, read_data_log
 from pyfrc_core.processes.lent_streams import lent_streams
 from pyfrc_core.runtime.robot import RobotRun
@@ -34,6 +35,7 @@ from pyfrc_core.sim.engine.robot_side.user_renderer import UserRenderer
 from pyfrc_core.sim.engine.robot_side.wpilog import WpiLog
 from pyfrc_core.sim.engine.scene import Text, TextStyle
 from pyfrc_core.sim.engine.topic_values import TopicValues
+from pyfrc_core.sim.ui.models.wording import station_name
 from pyfrc_core.wpi import station
 
 
@@ -141,6 +143,13 @@ def test_a_reader_learns_how_much_it_has_missed(monkeypatch: pytest.MonkeyPatch)
         log.append(text)
     assert log.cursor().read() == "[pyfrc: 6 characters of output were dropped here]\nghi"
     assert log.cursor(from_start=False).read() == ""
+    log.append("jklm")
+    assert [log.read(0, most)[1] for most in (1, 2, 4, None)] == ["j", "jk", "jklm", "jklm"]
+
+
+def test_stations_have_names_by_wpilibs_numbers() -> None:
+    assert [station_name(number) for number in (1, 4, 6)] == ["Red 1", "Blue 1", "Blue 3"]
+    assert [station_name(number) for number in (0, 7, "red", None)] == [""] * 4
 
 
 def test_late_packets_are_counted_each() -> None:
@@ -261,6 +270,8 @@ def test_a_data_log_is_written_through_a_link(tmp_path: Path) -> None:
     WpiLog(link).close()
     assert link.is_symlink()
     assert file.read_bytes().startswith(b"WPILOG")
+    with pytest.raises(UsageError, match=r"cannot be written: .*\n  --wpilog names a file"):
+        WpiLog(tmp_path)
 
 
 def test_a_data_log_has_each_kind_of_value_and_every_place(tmp_path: Path) -> None:
