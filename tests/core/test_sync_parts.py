@@ -15,6 +15,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from loops import for_each
 from packaging.markers import Marker, default_environment
 from packaging.requirements import Requirement
 
@@ -102,8 +103,8 @@ def test_which_certificates_are_trusted(monkeypatch: pytest.MonkeyPatch) -> None
         download._certificates(use_certifi=True)
 
 
-@pytest.mark.parametrize(
-    ("content", "complete"),
+@for_each(
+    "content, complete",
     [
         (gzip.compress(b"x" * 99), True),
         (gzip.compress(b"x" * 99)[:-4], False),
