@@ -36,6 +36,7 @@ from pyfrc_core.project.project import _may_have_rules
 from pyfrc_core.project.robot_files import RobotFiles, is_library, past_pyfrc
 from pyfrc_core.project.walk import files_below, text_to_search
 from pyfrc_core.season import CURRENT
+from pyfrc_core.season.choice import SeasonSetting
 from pyfrc_core.sync import pip_errors, resolve
 from pyfrc_core.sync.addresses import PYTHON_VARIABLE, file_name_in, link_directories, replaced_python_url
 
@@ -457,3 +458,11 @@ def test_results_about_a_project(project: Project, monkeypatch: pytest.MonkeyPat
     assert found["tests", "ok"].text == str(project.root / "tests")
     assert found["tests", "hint"].text.endswith("because one had left a thread")
     assert found["physics", "hint"].remedy == "pyfrc create-physics"
+    other = SeasonSetting("robotpy_version is 2020.1.1", 2020, "pyproject.toml:2")
+    found = {
+        (each.topic, each.status): each for each in robot_project.check_project(project, find_installed(), [other])
+    }
+    assert "robotpy_version is 2020.1.1" in found["project", "problem"].text, (
+        "the program of another season is not imported"
+    )
+    assert not any(topic == "program" for topic, _ in found)

@@ -81,6 +81,8 @@ def test_a_wait_counts_as_the_robot_time_that_passes(world: World) -> None:
     assert (overrun.loop_ms, overrun.function_ms, overrun.held_up_ms, overrun.period_ms) == (502, 502, 0, 20)
     assert overrun.robot_time_s == 0.1, "when the turn began"
     assert overrun.test == "tests/test_a.py::test_teleop"
+    world.run(lambda: world.compute(30))
+    assert world.figures.overruns[1].robot_time_s == pytest.approx(0.6), "without waits before"
 
 
 def test_an_overrun_by_what_holds_it_up_says_for_how_long(world: World) -> None:
