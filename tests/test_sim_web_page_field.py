@@ -18,4 +18,4 @@ def test_the_project_says_how_places_are_written(browser: Any, make_shared_proje
         person.simulation.set_alliance("red2")
         field = person.simulation.snapshot.scene.field
         person.page.locator(".pose b", has_text=f"{(field.width - 10) * 0.3048:.2f} m").wait_for()
-        person.page.locator(".pose b", has_text="-180.0°").wait_for()
+        person.page.locator(".pose b", has_text="180.0°").wait_for()
