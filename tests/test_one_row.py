@@ -63,9 +63,7 @@ ROW = DeviceKind(
     "sonar",
     (
         INITIALIZED,
-        Measured(
-            "depth", "Depth", FLOAT, quantity="range", shown=Shown("slider", "Sonar {}", "{}: metres", 0, 9, 1, "m")
-        ),
+        Measured("depth", "Depth", FLOAT, quantity="range", shown=DEPTH),
         Measured("heat", "Heat", FLOAT, quantity="celsius", asked_by="Heat"),
         Output("light", "Light", BOOL, unset=False, off=False, shown=Shown("lamp", "Light {}", "Of {}")),
         DeviceField("name", "Name", text(8), stays=True),

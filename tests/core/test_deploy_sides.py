@@ -14,6 +14,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from written_files import write_files
 
 from pyfrc_core.config.robotpy import RobotPackages
 from pyfrc_core.deploy import console, robot_packages, session
@@ -32,13 +33,6 @@ from pyfrc_core.errors import UsageError
 QUIET = Activity(lambda **said: None)
 
 
-def write(root: Path, files: dict[str, str]) -> Path:
-    for name, text in files.items():
-        (root / name).parent.mkdir(parents=True, exist_ok=True)
-        (root / name).write_text(text)
-    return root
-
-
 def tree(root: Path) -> dict[str, str]:
     return {each.relative_to(root).as_posix(): each.read_text() for each in sorted(root.rglob("*")) if each.is_file()}
 
@@ -54,10 +48,12 @@ def test_what_the_program_has_written_is_carried_over(tmp_path: Path, monkeypatc
         os.link(source, target)
 
     monkeypatch.setattr(disk, "link_file", link_file)
-    old = write(tmp_path / "1", {"robot.py": "1", "data/log.txt": "a", "photos": "p", "notes/x": "n", "lib/a.py": "1"})
+    old = write_files(
+        tmp_path / "1", {"robot.py": "1", "data/log.txt": "a", "photos": "p", "notes/x": "n", "lib/a.py": "1"}
+    )
     (old / "empty").mkdir()
     os.mkfifo(old / "pipe")
-    new = write(tmp_path / "2", {"robot.py": "2", "photos/a.jpg": "new", "notes": "file", "lib/a.py": "2"})
+    new = write_files(tmp_path / "2", {"robot.py": "2", "photos/a.jpg": "new", "notes": "file", "lib/a.py": "2"})
     manifests = {"robot.py", "lib/a.py"}, {"robot.py", "photos/a.jpg", "notes", "lib/a.py"}
     between = tmp_path / "between"
     first = carrying.carry_over(old, new, manifests, None, between, QUIET)
@@ -69,19 +65,19 @@ def test_what_the_program_has_written_is_carried_over(tmp_path: Path, monkeypatc
     assert first.files == {name: (old / name).stat().st_ino for name in ("data/log.txt", "photos", "notes/x")}
     # Later, only what the old program has written since; what the new one has changed is its own.
     (old / "data/log.txt").unlink()
-    write(old, {"data/log.txt": "b", "late.txt": "l"})
+    write_files(old, {"data/log.txt": "b", "late.txt": "l"})
     (new / "photos.release-1").unlink()
-    write(new, {"photos.release-1": "changed"})
+    write_files(new, {"photos.release-1": "changed"})
     carrying.carry_over(old, new, manifests, first.files, between, QUIET)
     assert tree(new) == {**kept, **carried, "data/log.txt": "b", "late.txt": "l", "photos.release-1": "changed"}
     assert not between.exists()
 
 
 def test_of_another_tools_directory_the_code_is_left(tmp_path: Path) -> None:
-    old = write(
+    old = write_files(
         tmp_path / "other", {"robot.py": "1", "a.pyc": "", "deploy.json": "{}", "log.txt": "x", "same.txt": "s"}
     )
-    new = write(tmp_path / "2", {"robot.py": "2", "log.txt": "y", "same.txt": "s", "log.txt.release-2": "z"})
+    new = write_files(tmp_path / "2", {"robot.py": "2", "log.txt": "y", "same.txt": "s", "log.txt.release-2": "z"})
     carrying.carry_over(old, new, (None, {"robot.py"}), None, tmp_path / "between", QUIET)
     assert tree(new) == {
         "robot.py": "2",

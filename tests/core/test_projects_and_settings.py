@@ -12,6 +12,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from written_files import write_files
 
 from pyfrc_core.config.packages import component_of, how_to_install, robot_line
 from pyfrc_core.config.pictures import field_picture
@@ -52,17 +53,13 @@ def project(tmp_path: Path) -> Project:
     return Project(tmp_path / "robot.py")
 
 
-def write(project: Project, files: dict[str, str]) -> None:
-    for name, text in files.items():
-        file = project.root / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text)
-
-
 def test_files_that_hide_libraries(project: Project) -> None:
     refuse_hidden_libraries(project.root, project.main_file)
-    write(project, {"random.py": "", "wpilib/__init__.py": "", "turtle.py": "", "six.py": "", "tests/__init__.py": ""})
-    write(project, {"time.py": "", "data/readme.md": ""})
+    write_files(
+        project.root,
+        {"random.py": "", "wpilib/__init__.py": "", "turtle.py": "", "six.py": "", "tests/__init__.py": ""},
+    )
+    write_files(project.root, {"time.py": "", "data/readme.md": ""})
     found = {each.name: (each.text, each.remedy) for each in find_hidden_libraries(project.root)}
     assert found == {
         "random.py": ("random.py hides a library: import random finds it instead", "Give random.py another name."),
@@ -97,7 +94,7 @@ def test_what_the_field_is_without_and_with_a_file(project: Project) -> None:
         CURRENT.field.messages,
     )
     given = {"game_specific_messages": ["LRL"], "field": {"auto_joysticks": not CURRENT.field.auto_joysticks}}
-    write(project, {"sim/config.json": json.dumps({"pyfrc": given})})
+    write_files(project.root, {"sim/config.json": json.dumps({"pyfrc": given})})
     with_file = Project(project.main_file)
     assert with_file.auto_joysticks is not CURRENT.field.auto_joysticks
     assert with_file.game_specific_messages == ("LRL",)
@@ -122,13 +119,14 @@ def test_which_files_may_have_rules(text: str, may: bool, tmp_path: Path) -> Non
 
 def test_lines_of_a_project(project: Project) -> None:
     files = RobotFiles(project.root)
-    write(
-        project, {"robot.py": "def wait(go, here):\n    here.set()\n    go.wait()\n\ndef fail():\n    raise KeyError\n"}
+    write_files(
+        project.root,
+        {"robot.py": "def wait(go, here):\n    here.set()\n    go.wait()\n\ndef fail():\n    raise KeyError\n"},
     )
     names: dict[str, Any] = {}
     exec(compile(project.main_file.read_text(), str(project.main_file), "exec"), names)
     go, here = threading.Event(), threading.Event()
-    thread = threading.Thread(target=names["wait"], args=(go, here))
+    thread = threading.Thread(target=names["wait"], args=(go, here), daemon=True)
     thread.start()
     here.wait()
     while files.line_of_thread(thread.ident or 0) == "robot.py:2":
@@ -269,7 +267,7 @@ def test_a_mistake_in_toml_is_named(tmp_path: Path) -> None:
     ],
 )
 def test_what_is_no_json_is_named_with_its_column(text: str, message: str, project: Project) -> None:
-    write(project, {"sim/config.json": text})
+    write_files(project.root, {"sim/config.json": text})
     with pytest.raises(SettingsError) as error:
         load_sim_config(project.root)
     assert error.value.message == f"not valid JSON: {message}"
@@ -278,15 +276,15 @@ def test_what_is_no_json_is_named_with_its_column(text: str, message: str, proje
 
 def test_where_the_robot_starts(project: Project) -> None:
     for robot_part in ({}, {"starting_x": 1}, {"starting_y": 2}, {"starting_angle": 3}):
-        write(project, {"sim/config.json": json.dumps({"pyfrc": {"robot": robot_part}})})
+        write_files(project.root, {"sim/config.json": json.dumps({"pyfrc": {"robot": robot_part}})})
         config = load_sim_config(project.root).config
         assert config.says_start is bool(robot_part)
     assert (config.start.name, config.start.angle) == ("start", 3)
     for season, messages in ((2018, False), (2019, True)):
-        write(project, {"sim/config.json": json.dumps({"pyfrc": {"field": {"season": season}}})})
+        write_files(project.root, {"sim/config.json": json.dumps({"pyfrc": {"field": {"season": season}}})})
         assert (load_sim_config(project.root).config.game_specific_messages == ()) is messages
     given = '{"pyfrc": {"game_specific_messages": ["X"], "field": {"season": 2018}}}'
-    write(project, {"sim/config.json": given})
+    write_files(project.root, {"sim/config.json": given})
     assert load_sim_config(project.root).config.game_specific_messages == ("X",)
 
 
@@ -430,7 +428,7 @@ def test_all_checks_in_their_order(project: Project, monkeypatch: pytest.MonkeyP
     wpilib = SimpleNamespace(get=lambda name: SimpleNamespace(version="2026.2.2"))
     monkeypatch.setattr(examine, "find_installed", lambda: wpilib)
     assert topics(directory=project.root, look_for_robot=False)[-2:] == ["project", "sync"]
-    write(project, {"pyproject.toml": '[tool.robotpy]\nrobotpy_version = "2027.1.1"\n'})
+    write_files(project.root, {"pyproject.toml": '[tool.robotpy]\nrobotpy_version = "2027.1.1"\n'})
     assert topics(directory=project.root, look_for_robot=False)[-1] == "project"
     monkeypatch.chdir(project.root / "..")
     monkeypatch.setattr(examine, "why_no_browser", lambda: "no display")
@@ -442,7 +440,10 @@ def test_all_checks_in_their_order(project: Project, monkeypatch: pytest.MonkeyP
 
 
 def test_results_about_a_project(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
-    write(project, {"tests/test_a.py": "", "bad.py": "def f(:\n", "sim/config.json": '{"pyfrc": {"robt": {}, "x": 1}}'})
+    write_files(
+        project.root,
+        {"tests/test_a.py": "", "bad.py": "def f(:\n", "sim/config.json": '{"pyfrc": {"robt": {}, "x": 1}}'},
+    )
     looked = ("MyRobot", [SimpleNamespace(remedy="Write it.", __str__=lambda: "x")], ("phoenix6",))
     monkeypatch.setattr(
         robot_project, "run_in_subprocess", lambda look, *about: looked if "class" in look.__name__ else None

@@ -108,15 +108,10 @@ def test_what_it_says_and_does_without_a_mode_or_in_a_match() -> None:
     code, said = run(simulation, "practice")
     assert (code, simulation.done[1]) == (0, ("practice",))
     assert said.startswith("running robot.py through a practice match, for ")
-    assert run(Simulation("paused", "interrupted", end=3.0), "disabled", 4.0) == (2, run_interrupted())
-
-
-def run_interrupted() -> str:
-    """Return what is said of a run that was to last longer."""
-    said = run(Simulation("paused", "interrupted", end=3.0), "disabled", 4.0)[1]
+    code, said = run(Simulation("paused", "interrupted", end=3.0), "disabled", 4.0)
+    assert code == 2, "it was to last longer"
     assert said.endswith("\ninterrupted\n")
     assert said.startswith("running robot.py in disabled mode, for 4 s")
-    return said
 
 
 def test_a_failure_is_the_exit_code_and_is_said_even_quietly() -> None:

@@ -19,6 +19,8 @@ from importlib.metadata import distribution
 from pathlib import Path
 from types import TracebackType
 
+from written_files import write_files
+
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest
 from pyfrc_core.deploy.agent_stream import agent_command, agent_package
@@ -340,8 +342,4 @@ def directory_in_memory() -> Iterator[Path]:
 
 def project_of(directory: Path, files: Mapping[str, str | bytes]) -> Manifest:
     """A project of these files, ready to be uploaded."""
-    for name, content in files.items():
-        file = directory / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_bytes(content.encode() if isinstance(content, str) else content)
-    return build_manifest(directory, large=True)
+    return build_manifest(write_files(directory, files), large=True)
