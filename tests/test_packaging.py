@@ -7,7 +7,10 @@ import sys
 import zipfile
 from pathlib import Path
 
+import installed_wheel
 import pytest
+
+from pyfrc_cli.main import COMMANDS
 
 ROOT = Path(__file__).parents[1]
 
@@ -29,6 +32,10 @@ def test_the_wheel_carries_the_packages_their_types_and_the_templates(tmp_path: 
     page = ROOT / "pyfrc_core" / "sim" / "ui" / "web" / "page"
     assert {file.relative_to(ROOT).as_posix() for file in page.rglob("*") if file.is_file()} <= names
     assert not [name for name in names if name.startswith(("tests/", "templates/"))]
+
+
+def test_each_command_is_tried_at_night_with_an_installed_wheel() -> None:
+    assert COMMANDS.keys() <= installed_wheel.TRIED
 
 
 @pytest.mark.parametrize(
