@@ -182,7 +182,8 @@ class Computer:
         )
         threads = Path(f"/proc/{self._inside.pid}/task/{self._inside.pid}/children").read_text(encoding="utf-8")
         self._init = int(threads.split()[0])
-        threading.Thread(target=self._listen, args=(self._inside.stdout,), daemon=True).start()
+        self._listening = threading.Thread(target=self._listen, args=(self._inside.stdout,), daemon=True)
+        self._listening.start()
 
     def power_off(self) -> None:
         """Pull its power: everything in it ends at once, its disk stays. None of it is left when this returns."""
@@ -195,6 +196,8 @@ class Computer:
             self._inside.wait()
             assert self._inside.stdin is not None
             self._inside.stdin.close()
+            if self._init is not None:
+                self._listening.join()  # nothing that this program has printed is there after the next start
             self._inside = self._init = None
 
     def run(self, *command: str, user: str = "admin") -> subprocess.CompletedProcess[str]:
