@@ -2,7 +2,8 @@
 
 The line also counts the tests that run nightly only (those marked `slow`).
 
-In the gate, which sets ``PYFRC_NO_SKIPS``, nothing is skipped: a missing part is a failure.
+In the gate, which sets ``PYFRC_NO_SKIPS``, nothing is skipped: a missing part is a failure. Only what needs a newer
+Python is skipped there, too: the suite's run on that Python tests it.
 """
 
 from __future__ import annotations
@@ -21,6 +22,9 @@ import pytest
 
 #: Between what a test is about and what this machine lacks for it, in the reason of a skip.
 _NEEDS = ": needs "
+
+#: What vendors' packages need, and the look-alike of Windows' files.
+_NEWER_PYTHON = "Python 3.11"
 
 #: Where programs are, besides the PATH of an ordinary user.
 _SYSTEM_PROGRAMS = ("/usr/local/sbin", "/usr/sbin", "/sbin")
@@ -68,7 +72,7 @@ _OTHERWISE = {
     "Dask": 'pip install "distributed>=2024.12"',
     "robotpy-rev": 'pip install "robotpy-rev>=2027.0.0a7.post1"',
     "phoenix6": 'pip install "phoenix6>=26.70.0a2"',
-    "Python 3.11": "make test PYTHON=python3.11 VENV=.venv-3.11",
+    _NEWER_PYTHON: "make test PYTHON=python3.11 VENV=.venv-3.11",
     "Linux": "run them on Linux (on Windows: in WSL)",
     # Not with sudo: what it writes into the checkout would belong to root.
     "root": "run them as root in a container or a virtual machine",
@@ -81,6 +85,11 @@ def missing_programs(*names: str) -> list[str]:
     """Return those of these programs that are not installed."""
     path = os.pathsep.join([os.environ.get("PATH", os.defpath), *_SYSTEM_PROGRAMS])
     return [name for name in names if shutil.which(name, path=path) is None]
+
+
+def missing_python() -> list[str]:
+    """Return what is missing where this Python is too old for vendors' packages."""
+    return [] if sys.version_info >= (3, 11) else [_NEWER_PYTHON]
 
 
 def missing_tkinter() -> list[str]:
@@ -161,11 +170,21 @@ def _reason(report: pytest.TestReport | pytest.CollectReport) -> str:
     return report.longrepr[2].removeprefix("Skipped: ")
 
 
+def _fails(report: pytest.TestReport | pytest.CollectReport) -> bool:
+    """Whether this is skipped where nothing may be."""
+    return (
+        report.skipped
+        and not hasattr(report, "wasxfail")
+        and "PYFRC_NO_SKIPS" in os.environ
+        and not _reason(report).endswith(_NEEDS + _NEWER_PYTHON)
+    )
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """Make what is skipped a failure in the gate."""
     report = yield
-    if report.skipped and not hasattr(report, "wasxfail") and "PYFRC_NO_SKIPS" in os.environ:
+    if _fails(report):
         report.outcome = "failed"
     return report
 
@@ -174,7 +193,7 @@ def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.Tes
 def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
     """The same for a whole module."""
     report = yield
-    if report.skipped and "PYFRC_NO_SKIPS" in os.environ:
+    if _fails(report):
         report.outcome = "failed"
     return report
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import pytest
 from conftest import MakeProject, RobotProject, sampled
-from skips import requires
+from skips import missing_python, requires
 
-pytestmark = requires("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"])
+pytestmark = requires("robots with vendors' packages", missing_python())
 
 ROBOTS = Path(__file__).parent / "robots" / "competition"
 NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())

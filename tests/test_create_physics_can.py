@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import shutil
-import sys
 from pathlib import Path
 
 import pytest
 from conftest import MakeProject, RobotProject
-from skips import requires
+from skips import missing_python, requires
 
 COMPETITION = Path(__file__).parent / "robots" / "competition"
 
-pytestmark = requires("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"])
+pytestmark = requires("robots with vendors' packages", missing_python())
 
 
 def create(project: RobotProject) -> str:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 from conftest import MakeProject, RobotProject
-from skips import require
+from skips import missing_python, require
 from wpilib.simulation import (
     DCMotorSim,
     DifferentialDrivetrainSim,
@@ -166,7 +165,7 @@ SPARK_ROBOT = """
 
 @pytest.fixture
 def spark_project(make_project: MakeProject, request: Any) -> RobotProject:
-    require("REV's library", [] if sys.version_info >= (3, 11) else ["Python 3.11"])
+    require("REV's library", missing_python())
     return make_project({"robot.py": SPARK_ROBOT.format(request.param), **TESTS})
 
 

@@ -11,13 +11,12 @@ from textwrap import dedent
 
 import pytest
 from on_another_system import environment_of
-from skips import require
+from skips import missing_python, require
 
 # Without it, no names are known to be absent.
 mypy = pytest.importorskip("mypy")
 
-if sys.platform != "linux":
-    require("environments like other systems'", ["Linux"])
+require("environments like other systems'", [*(["Linux"] if sys.platform != "linux" else []), *missing_python()])
 
 Run = Callable[..., str]
 

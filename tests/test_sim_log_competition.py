@@ -5,17 +5,16 @@ from __future__ import annotations
 import json
 import random
 import re
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 from conftest import MakeProject, RobotProject
-from skips import requires
+from skips import missing_python, requires
 
 pytestmark = [
     pytest.mark.slow,
-    requires("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"]),
+    requires("robots with vendors' packages", missing_python()),
 ]
 
 ROBOTS = Path(__file__).parent / "robots" / "competition"

@@ -288,7 +288,7 @@ def test_a_command_that_never_runs(line: str, found: str) -> None:
             {line}
     """
     (hint,) = hints(robot.replace("\n        take.", "\n            take."))
-    assert found in hint
+    assert found in hint.replace("lambda :", "lambda:")  # as Python 3.10 writes it
 
 
 def test_commands_of_a_robot_that_does_not_run_them() -> None:

@@ -21,6 +21,7 @@ import wpilib
 import wpilib.drive
 import wpimath
 from loops import for_each
+from skips import missing_python, require
 from wpilib import Color
 from wpimath.geometry import Rotation2d
 
@@ -34,7 +35,10 @@ from pyfrc_core.runtime.checks.failures import headline
 from pyfrc_core.season import SEASONS
 from pyfrc_core.season.names.table import earlier_names
 
-rev = pytest.importorskip("rev")
+if missing := missing_python():
+    require("explanations of vendors' names", missing)
+
+import rev
 
 Raise = Callable[[str], str]
 

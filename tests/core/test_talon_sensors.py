@@ -6,9 +6,11 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from skips import missing_python, require
 from wpimath.system.plant import DCMotor
 
-pytest.importorskip("phoenix6")
+if missing := missing_python():
+    require("sensors of CTRE's motor controllers", missing)
 
 from phoenix6.signals import InvertedValue, SensorDirectionValue
 from phoenix6.sim import ChassisReference
