@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -75,15 +76,17 @@ def rewrite_all(
     for position, source in enumerate(sources):
         progress("reading", position, len(sources))
         try:
-            tree = _parsed(source.text)
+            name = _module_name(source.name.removeprefix(home))
+            modules[source.name] = Module(source.path, name, _parsed(source.text))
+        except RecursionError:  # Python 3.12 has a limit of its own
+            what = f"This is nested too deeply for Python {platform.python_version()}, so the file stays as it is."
+            report.add(source.name, 1, what, "Run migrate with another Python, or rewrite it by hand.")
         except Exception as error:
             wrong = why_invalid(source.text) or error
             line = getattr(error, "raw_line", None) or getattr(wrong, "lineno", None) or 1
             valid = "Python can read this, but LibCST cannot" if wrong is error else "This is no valid Python"
             remedy = "Rewrite it by hand." if wrong is error else "Correct it first."
             report.add(source.name, line, f"{valid}, so the file stays as it is.", remedy)
-            continue
-        modules[source.name] = Module(source.path, _module_name(source.name.removeprefix(home)), tree)
     _report_taken_names(modules, table, report)
     project = _Project(modules, Inference(table, list(modules.values())))
     files = {

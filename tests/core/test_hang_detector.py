@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import threading
 from collections.abc import Iterator
 from types import SimpleNamespace
@@ -210,3 +211,19 @@ def test_what_pyfrc_itself_waits_for_does_not_hang(monkeypatch: pytest.MonkeyPat
     with not_watched():
         assert world.watch(world.passes(60)) == []
     assert not world.detector.paused
+
+
+def test_at_the_end_of_a_python_that_starts_no_thread_then_nothing_is_printed(monkeypatch: pytest.MonkeyPatch) -> None:
+    registered: list[Any] = []
+
+    def no_thread(run: object) -> None:
+        raise RuntimeError("can't create new thread at interpreter shutdown")
+
+    monkeypatch.setattr(hang_detector, "start_bare_thread", no_thread)
+    monkeypatch.setattr(atexit, "register", lambda *call: registered.append(call))
+    with hang_detector.watching_exit(SimpleNamespace(), 10.0):
+        pass
+    before = hang_detector._active
+    for function, *arguments in reversed(registered):
+        function(*arguments)
+    assert hang_detector._active is before

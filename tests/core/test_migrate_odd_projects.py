@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,9 @@ from pyfrc_core.migrate.migration import migrate
 from pyfrc_core.migrate.project import why_invalid
 
 from .odd_projects import make_project
+
+#: What is said of a file that is not rewritten. Python 3.12 has a limit that nothing raises.
+LEFT = re.compile("LibCST cannot" if sys.version_info[:2] == (3, 12) else "LibCST cannot|nested too deeply")
 
 #: Several tests, which two processors share: one of all took more than its limit on a busy machine.
 PARTS = [pytest.param(range(first, first + 20), marks=pytest.mark.slow) for first in range(3, 103, 20)]
@@ -27,7 +32,7 @@ def test_odd_projects(tmp_path: Path, seeds: range) -> None:
         before = {file: file.read_bytes() for file in root.rglob("*.py") if file.is_file()}
         done = migrate(root)
         wrong += [f"{seed}: {each}" for each in done.report.by_hand() if "a mistake of pyfrc" in each.remedy]
-        wrong += [f"{seed}: {each}" for each in done.report.by_hand() if "LibCST cannot" in each.what]
+        wrong += [f"{seed}: {each}" for each in done.report.by_hand() if LEFT.search(each.what)]
         done.write()
         valid = [file for file, text in before.items() if why_invalid(text) is None]
         wrong += [f"{seed}: {file}" for file in valid if why_invalid(file.read_bytes()) is not None]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import platform
 from pathlib import Path
 
 import pytest
 
 pytest.importorskip("libcst")
 
+from pyfrc_core.migrate import project
 from pyfrc_core.migrate.migration import migrate
 from pyfrc_core.migrate.report import Report
 from pyfrc_core.migrate.rewrite.ports import Ports
@@ -193,3 +195,35 @@ def test_a_statement_that_is_left_out_after_a_colon_becomes_pass(tmp_path: Path)
 def test_six_devices_suffice_and_the_seventh_does_not() -> None:
     shared = reported(*(("PWMSparkMax", number) for number in range(5)), ("AnalogInput", 0))
     assert [remedy for _, _, remedy, _ in shared] == [f"{_ALL}. Give each its own; free: 5."]
+
+
+def test_a_file_that_cannot_be_walked_stays_and_the_others_are_rewritten(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Python 3.12 has a limit for nested code that nothing raises."""
+    (tmp_path / "robot.py").write_text("import wpilib\nclass R(wpilib.TimedRobot): pass\n")
+    (tmp_path / "pyproject.toml").write_text('[tool.robotpy]\nrobotpy_version = "2026.2.2"\n')
+    errors = {
+        "deep.py": RecursionError("maximum recursion depth exceeded"),
+        "odd.py": RuntimeError("a mistake of LibCST"),
+    }
+    for name in errors:
+        (tmp_path / name).write_text(f"# {name}\nimport wpilib\n")
+    parse = project._parsed
+
+    def parsed(text: bytes) -> object:
+        for name, error in errors.items():
+            if name.encode() in text:
+                raise error
+        return parse(text)
+
+    monkeypatch.setattr(project, "_parsed", parsed)
+    done = migrate(tmp_path)
+    assert not done.after.keys() & errors.keys()
+    left = {each.places[0].file: (each.what.partition(",")[0], each.remedy) for each in done.report.by_hand()}
+    version = platform.python_version()
+    assert left["deep.py"] == (
+        f"This is nested too deeply for Python {version}",
+        "Run migrate with another Python, or rewrite it by hand.",
+    )
+    assert left["odd.py"] == ("Python can read this", "Rewrite it by hand.")

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from typing import cast
 
 import libcst as cst
-from libcst.metadata import CodeRange, MetadataWrapper, PositionProvider
 
 from ...season.spelling import snake_case
 from ..report import Place, Report
@@ -51,8 +48,7 @@ class FileRewriter:
         self.removed: set[cst.BaseSmallStatement] = set()
         self.name_in_report = name
         self.report = report
-        wrapper = MetadataWrapper(module.tree, unsafe_skip_copy=True)
-        self.positions = cast("Mapping[cst.CSTNode, CodeRange]", wrapper.resolve(PositionProvider))
+        self.positions = module.positions
         self.default_line = 1
 
     def line(self, node: cst.CSTNode) -> int:

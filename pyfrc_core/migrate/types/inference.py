@@ -103,13 +103,13 @@ class Inference:
 
     def infer(self, node: cst.CSTNode, scope: Scope) -> Atoms:
         """Return what an expression can be."""
-        return self._once((node, scope), self._infer, node, scope)
+        return self._once((node, scope), lambda: self._infer(node, scope))
 
-    def _once(self, key: object, find: Callable[..., Atoms], *of: object) -> Atoms:
+    def _once(self, key: object, find: Callable[[], Atoms]) -> Atoms:
         """Find something once in each turn; what depends on itself is what it was the turn before."""
         if key not in self._memo:
             self._memo[key] = None
-            self._memo[key] = find(*of)
+            self._memo[key] = find()
         found = self._memo[key]
         return (self._before.get(key) or NOTHING) if found is None else found
 
@@ -156,7 +156,7 @@ class Inference:
 
     def named(self, name: str, scope: Scope) -> Atoms:
         """Return what a name can be in a scope."""
-        return self._once((name, scope), self._named, name, scope)
+        return self._once((name, scope), lambda: self._named(name, scope))
 
     def _named(self, name: str, scope: Scope) -> Atoms:
         bindings = scope.find(name)
@@ -194,7 +194,7 @@ class Inference:
 
     def annotated(self, node: cst.CSTNode, scope: Scope) -> Atoms:
         """Return what an object with this annotation can be."""
-        return self._once(("annotated", node, scope), self._annotated, node, scope)
+        return self._once(("annotated", node, scope), lambda: self._annotated(node, scope))
 
     def parsed(self, node: cst.SimpleString) -> cst.BaseExpression | None:
         """Return the annotation that a string is; None if it is none."""

@@ -5,11 +5,13 @@ Python's own rules, without the order of statements: a name that is bound twice 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import cast
 
 import libcst as cst
+from libcst.metadata import CodeRange, MetadataWrapper, PositionProvider
 
 #: Methods that put their last argument into a container.
 _PUTS = {"add", "append", "appendleft", "insert", "setdefault"}
@@ -119,12 +121,14 @@ class Module:
     """A file of the project.
 
     :param name: how the project's modules import it
+    :raises RecursionError: when it is nested too deeply
     """
 
     path: Path
     name: str
     tree: cst.Module
     scope: Scope = field(init=False)
+    positions: Mapping[cst.CSTNode, CodeRange] = field(init=False)
     #: Expressions and statements that may name something of WPILib, with the scope they are in.
     sites: list[tuple[cst.CSTNode, Scope]] = field(default_factory=list)
     classes: list[OwnClass] = field(default_factory=list)
@@ -140,6 +144,8 @@ class Module:
 
     def __post_init__(self) -> None:
         self.scope = Scope("module", None, self)
+        wrapper = MetadataWrapper(self.tree, unsafe_skip_copy=True)
+        self.positions = cast("Mapping[cst.CSTNode, CodeRange]", wrapper.resolve(PositionProvider))
         self.tree.visit(_Builder(self))
 
 

@@ -152,8 +152,8 @@ class HangDetector:
         global _active
         with self._interruption.possible():
             before, _active = _active, self
-            start_bare_thread(self._watch)
             try:
+                start_bare_thread(self._watch)
                 yield
             finally:
                 _active = before
@@ -337,13 +337,21 @@ def not_watched() -> Iterator[None]:
 
 @contextmanager
 def watching_exit(files: RobotFiles, hang_seconds: float) -> Iterator[None]:
-    """Watch, at the end of this program, what robot code registers with `atexit` in this context."""
+    """Watch, at the end of this program, what robot code registers with `atexit` in this context.
+
+    Python 3.12 starts no thread at that time: there, a program that hangs at its end is not interrupted.
+    """
     detector = HangDetector(files, hang_seconds, everything=True, meanwhile="the end of the program")
     detector.outside_factor = 1.0
     watching = ExitStack()
     atexit.register(watching.close)  # the last to be registered is the first to be called
     yield
-    atexit.register(lambda: watching.enter_context(detector.watching()))
+    atexit.register(_begin, watching, detector)
+
+
+def _begin(watching: ExitStack, detector: HangDetector) -> None:
+    with suppress(RuntimeError):
+        watching.enter_context(detector.watching())
 
 
 #: The detector that watches this process.
