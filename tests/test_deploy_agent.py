@@ -117,7 +117,7 @@ def test_a_frame_that_unpacks_to_too_much() -> None:
         wire.parse_message(*wire.read_frame(io.BytesIO(bomb).read))
 
 
-@settings(max_examples=30)
+@settings(max_examples=10)
 @given(noise=st.binary(min_size=1, max_size=200))
 def test_noise_changes_nothing_on_the_robot(noise: bytes, agents: Agents) -> None:
     with directory_in_memory() as directory:
@@ -128,20 +128,10 @@ def test_noise_changes_nothing_on_the_robot(noise: bytes, agents: Agents) -> Non
         assert list(robot.home.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    ("request_", "reported"),
-    [
-        ({"op": "format"}, "format"),
-        ({"op": "deploy", "main": "robot.py", "files": [["robot.py", "much", "00", False]]}, "much"),
-        ({"op": "watch"}, "seconds"),
-    ],
-)
-def test_an_invalid_request_is_reported(
-    robot: LocalRobot, agents: Agents, request_: dict[str, object], reported: str
-) -> None:
+def test_an_invalid_request_is_reported(robot: LocalRobot, agents: Agents) -> None:
     session = robot.start(agents)
-    robot.channel.sendall(wire.message_frame(request_))
-    with pytest.raises(DeployError, match=rf"the agent on the robot has failed: .*{reported}.*\n.*is complete"):
+    robot.channel.sendall(wire.message_frame({"op": "watch"}))
+    with pytest.raises(DeployError, match=r"the agent on the robot has failed: .*seconds.*\n.*is complete"):
         session._stream.read_response(lambda fields: None)
     assert session.info().current is None
     session.close()
@@ -160,7 +150,7 @@ def test_something_else_that_prints_before(robot: LocalRobot) -> None:
 
 
 def test_the_link_is_cut_while_the_agent_is_sent(robot: LocalRobot) -> None:
-    for place in (1, 8, 9, 1000, len(agent_package())):
+    for place in (1, 9, len(agent_package())):
         with pytest.raises(ConnectionFailedError, match=r"the connection to the robot was lost"):
             robot.start(Processes(), cut_to_robot=place)
         assert list(robot.home.iterdir()) == []

@@ -60,10 +60,6 @@ def deploy(project, robot: Roborio | Proxy, *args: str, command: str = "deploy")
     return project.run(command, *skip, "--robot", where, *args, env={"SSH_AUTH_SOCK": ""})
 
 
-def events(result) -> list[dict]:
-    return [json.loads(line) for line in result.stdout.splitlines()]
-
-
 def code_on(robot: Roborio) -> str:
     return (robot.home / "py/robot.py").read_text()
 
@@ -91,46 +87,25 @@ def test_a_new_user_comes_to_a_running_program_with_one_command_and_one_question
         assert "SHA256:" not in again.stdout
 
 
-def test_a_deploy_prints_one_line_per_phase_and_the_program_runs(robot: Roborio, make_project) -> None:
-    project = make_project(program())
+def test_a_program_runs_and_one_that_dies_is_shown_with_its_traceback_and_the_way_back(
+    robot: Roborio, make_project
+) -> None:
+    project = make_project(program(1))
     result = deploy(project, robot)
     assert result.code == 0, result.output
-    lines = [line.split()[0] for line in result.stdout.splitlines() if line.endswith(" s")]
-    assert lines == ["files", "find", "connect", "look", "upload", "start"]
+    phases = ["files", "find", "connect", "look", "upload", "start"]
+    assert [line.split()[0] for line in result.stdout.splitlines() if line.endswith(" s")] == phases
     assert "StartupDLLs was switched off" in result.stdout.partition("\nstart ")[2], "the start waits for it not"
     robot.said("we are number 1")
     record = json.loads((robot.home / "py/deploy.json").read_text())
     assert record["code-path"] == str(project.path)
-    assert set(record) == {"deploy-host", "deploy-user", "deploy-date", "code-path"}
     assert (robot.disk / "etc/natinst/share/ni-rt.ini").read_text().count("\n;StartupDLLs") == 1
-
-
-def test_for_tools_every_line_is_json(robot: Roborio, make_project) -> None:
-    project = make_project({**program(), "tests/test_it.py": "def test_it(): print('words')\n"})
-    result = project.run("deploy", "--robot", robot.where, "--json")
-    assert result.code == 0, result.output
-    reported = events(result)
-    assert [each["phase"] for each in reported if each["event"] == "phase"][:2] == ["tests", "files"]
-    assert reported[-1]["event"] == "result"
-    assert reported[-1]["release"] == 1
-    assert reported[-1]["host"] == robot.host
-    assert "1 passed" in result.stderr
-    failed = project.run("deploy", "--skip-tests", "--robot", "127.0.0.1:1", "--json")
-    error = events(failed)[-1]
-    assert failed.code == error["exit_code"] == 1
-    assert (error["event"], error["kind"]) == ("error", "RobotNotFound")
-
-
-# -- programs that die, and going back ---------------------------------------------------------------------------------
-
-
-def test_a_program_that_dies_is_shown_with_its_traceback_and_the_way_back(robot: Roborio, make_project) -> None:
-    project = make_project(program(1))
-    assert deploy(project, robot).code == 0
     project.write(program(2, DIES))
-    result = deploy(project, robot)
-    assert result.code == 3
-    assert "| RuntimeError: no such gyro" in result.stdout
+    result = deploy(project, robot, "--json")
+    reported = [json.loads(line) for line in result.stdout.splitlines()]
+    assert [each["phase"] for each in reported if each["event"] == "phase"] == phases
+    assert any("RuntimeError: no such gyro" in each["text"] for each in reported if each["event"] == "output")
+    assert (reported[-1]["event"], reported[-1]["exit_code"], result.code) == ("error", 3, 3)
     assert f"Go back to the previous program with: pyfrc deploy --robot {robot.where} --rollback" in result.stderr
     assert "number 2" in code_on(robot)
     result = deploy(project, robot, "--auto-rollback")
@@ -139,12 +114,10 @@ def test_a_program_that_dies_is_shown_with_its_traceback_and_the_way_back(robot:
     assert "number 1" in code_on(robot)
 
 
-# -- what is looked at before ------------------------------------------------------------------------------------------
-
-
 # -- what can be wrong with a robot ------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_on_a_competition_field_nothing_is_deployed(make_project) -> None:
     require_roborio()  # for its namespaces: the port of the Driver Station is one for the whole computer
     require("deploying on a competition field", missing_programs("ip"))
@@ -159,11 +132,15 @@ def test_on_a_competition_field_nothing_is_deployed(make_project) -> None:
 
 
 def test_without_a_robot_the_failed_attempts_are_listed(make_project) -> None:
-    result = make_project(program()).run("deploy", "--skip-tests", "--robot", "127.0.0.1:1")
+    project = make_project(program())
+    result = project.run_here("deploy", "--skip-tests", "--robot", "127.0.0.1:1")
     assert result.code == 1
     assert "127.0.0.1:1  by the command  refused" in result.stderr
     assert "refused: no virtual robot runs at port 1\n" in result.stderr
     assert "A virtual robot prints it. Start one in another terminal: pyfrc virtual-robot" in result.stderr
+    result = project.run_here("deploy", "--skip-tests", "--robot", "127.0.0.1:1", "--json")
+    error = json.loads(result.stdout.splitlines()[-1])
+    assert (error["event"], error["kind"], error["exit_code"], result.code) == ("error", "RobotNotFound", 1, 1)
 
 
 #: Options that cannot be together, or not have such values.

@@ -1,62 +1,21 @@
-"""Servers that only begin like an SSH server, or disconnect: one sentence, immediately."""
+"""When the key of a robot is pinned, and when it is compared."""
 
 from __future__ import annotations
 
 import socket
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 import paramiko
 import pytest
 
-from pyfrc_core.deploy.connection import connect, load_in_background
+from pyfrc_core.deploy.connection import connect
 from pyfrc_core.deploy.discovery import Address
 from pyfrc_core.deploy.errors import ConnectionFailedError, HostKeyError
-from pyfrc_core.deploy.host_keys import KNOWN_HOSTS, HostKey, HostKeys
+from pyfrc_core.deploy.host_keys import HostKey, HostKeys
 from pyfrc_core.deploy.targets.roborio import ROBORIO
-
-
-@contextmanager
-def server(says: bytes) -> Iterator[Address]:
-    """Sends data to each client, and disconnects."""
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-
-        def serve() -> None:
-            with listener.accept()[0] as connected, suppress(OSError):  # the client may be gone
-                connected.sendall(says)
-                connected.shutdown(socket.SHUT_WR)
-                while connected.recv(4096):
-                    pass
-
-        thread = threading.Thread(target=serve, daemon=True)
-        thread.start()
-        yield Address("127.0.0.1", listener.getsockname()[1])
-        thread.join()
-
-
-@pytest.mark.parametrize(
-    "says",
-    [
-        b"",
-        b"SSH-2.0-robot\r\n",
-        b"SSH-1.5-old\r\n",
-        b"SSH-2.0-robot\r\n" + b"\xff" * 64,
-        b"SSH-2.0-robot\r\n" + b"\0" * 64,
-        b"220 mail\r\n" * 200,
-    ],
-)
-def test_another_server_than_an_ssh_server_is_reported(says: bytes, tmp_path: Path) -> None:
-    load_in_background()
-    with server(says) as address, pytest.raises(ConnectionFailedError) as caught:
-        connect(address, ROBORIO, HostKeys(tmp_path).of_robot(address, ROBORIO))
-    assert str(caught.value).startswith(f"{address}: could not log in to the robot: ")
-    assert "Check the link" in str(caught.value)
-    assert not (tmp_path / KNOWN_HOSTS).exists()
-
-
-# -- when a key is pinned ----------------------------------------------------------------------------------------------
 
 SERVER_KEY = paramiko.ECDSAKey.generate()
 SHOWN = HostKey(SERVER_KEY.get_name(), SERVER_KEY.asbytes())

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 from conftest import sampled
+from loops import for_each
 from ports import address_without_servers, refusing_port
 from roborio import PATIENCE, Roborio
 from roborio.fixtures import roborio  # noqa: F401 - `robot`
@@ -65,13 +66,11 @@ def test_the_console_shows_what_the_program_prints_and_connects_again(option, ro
         wait_for(console, "the connection was lost")
         robot.power_on()
         wait_for(console, "connected to")
-        assert project.run("deploy", "--skip-tests", "--robot", robot.where).code == 0
-        wait_for(console, "the words of our robot")
     assert console.wait() == 130
 
 
-def test_the_console_waits_for_a_robot_that_is_not_there_yet(make_project) -> None:
-    project = make_project({"robot.py": ROBOT})
+def test_outside_of_a_project_the_console_waits_for_a_robot_that_is_not_there_yet(make_project) -> None:
+    project = make_project({})
     host = address_without_servers()
     for option in ([], ["--nc-ds"]):
         with running(project, "console", "--robot", host, *option) as console:
@@ -156,20 +155,13 @@ def follow(monkeypatch: pytest.MonkeyPatch) -> Follow:
     return follow_to_nonsense
 
 
-@pytest.mark.parametrize(
+@for_each(
     "content",
     [
-        EMPTY_INFO,
-        framed(b"\x0c" + bytes(5)),
-        framed(b"\x0b" + bytes(5)),
         framed(b"\x0b" + bytes(13) + b"\xff\xffshort"),
-        framed(b"\x0b" + bytes(13) + b"\0\x05wrong\0\x01"),
         b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n",
-        b"SSH-2.0-OpenSSH_9.6\r\n",
-        b"\xff" * 5000,
         random.Random(1).randbytes(1 << 20),
     ],
-    ids=["empty info", "short info", "short error", "long text", "cut text", "HTTP", "SSH", "ones", "random"],
 )
 def test_what_is_no_console_is_named_in_one_sentence(content: bytes, follow: Follow) -> None:
     error = follow(info("before") + content)
@@ -177,7 +169,7 @@ def test_what_is_no_console_is_named_in_one_sentence(content: bytes, follow: Fol
     assert re.match(r"127\.0\.0\.1:\d+: the server is not a robot's console: .+\n  \S", str(error)), str(error)
 
 
-@pytest.mark.parametrize("content", [bytes(1 << 16), b"HTTP/1.1 200 OK\r\n" * 4000], ids=["empty frames", "HTTP"])
+@for_each("content", [bytes(1 << 16), b"HTTP/1.1 200 OK\r\n" * 4000])
 def test_nonsense_without_end_takes_no_memory(content: bytes, follow: Follow) -> None:
     follow(content, for_ever=True)
     assert follow.sent < 1 << 24  # type: ignore[attr-defined]  # what both sockets buffer
@@ -185,7 +177,7 @@ def test_nonsense_without_end_takes_no_memory(content: bytes, follow: Follow) ->
 
 def test_the_command_ends_with_exit_code_1_and_no_traceback(make_project) -> None:
     with ConsoleServer(EMPTY_INFO) as server:
-        result = make_project({}).run("console", "--robot", str(server.address))
+        result = make_project({}).run_here("console", "--robot", str(server.address))
     assert result.code == 1
     assert "error: 127.0.0.1:" in result.stderr
     assert "is not a robot's console: it sends a text message of 1 bytes" in result.stderr
@@ -217,7 +209,7 @@ def test_a_quiet_console_shows_only_what_the_program_prints(follow: Follow, caps
 
 
 def test_options_about_keys_are_not_taken(make_project) -> None:
-    listed = make_project({}).run("console", "--help").stdout
+    listed = make_project({}).run_here("console", "--help").stdout
     assert "--robot HOST" in listed
     assert not [each for each in ("--accept-host-key", "--robot-name") if each in listed]
 

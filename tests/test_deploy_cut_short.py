@@ -7,29 +7,25 @@ import fcntl
 import io
 import socket
 import zlib
-from collections.abc import Callable, Iterator
-from importlib.metadata import version
+from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
-from roborio import Proxy, Roborio, require_roborio
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
-from roborio.machine import KILL_SCRIPT
 
-from pyfrc_core.deploy import session
+from pyfrc_core.deploy import recovery_hints, target_connection
 from pyfrc_core.deploy.agent import serve, wire
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError, RefusedError, StoppedError
 from pyfrc_core.deploy.manifest import Manifest
-from pyfrc_core.deploy.progress import DeployProgress, Phase, UserInterface
 from pyfrc_core.deploy.recovery_hints import explain_interruption
-from pyfrc_core.deploy.session import DeployOptions
 from pyfrc_core.deploy.targets.roborio import ROBORIO
-from pyfrc_core.deploy.team import RobotChoice
-from pyfrc_core.project import find_project
 
 REQUEST = DeployRequest("robot.py", {})
 
@@ -109,19 +105,22 @@ def test_ctrl_c_explains_the_robots_state(
     assert remedy in str(caught.value.remedy)
 
 
-@pytest.mark.parametrize("restarted", [False, True])
-def test_of_a_first_release_there_is_no_way_back(
-    restarted: bool, robot: LocalRobot, agents: Agents, project: Manifest
-) -> None:
-    def do(agent: AgentClient, project: Manifest) -> None:
-        agent.deploy(project, REQUEST)
-        if restarted:
-            agent.restart()
+def test_a_command_about_a_robot_explains_its_interruption(monkeypatch: pytest.MonkeyPatch) -> None:
+    robot: Any = SimpleNamespace(recovery_hint=None, close=lambda: None)
+    monkeypatch.setattr(target_connection, "find", lambda *asked: None)
+    monkeypatch.setattr(target_connection, "connected", lambda *asked: nullcontext(SimpleNamespace()))
+    monkeypatch.setattr(target_connection, "_start_agent", lambda *asked: robot)
+    asked: Any = [None] * 3
 
-    with contextlib.closing(robot.start(agents)) as agent, pytest.raises(StoppedError) as caught:
-        interrupt_after(do, agent, project)
-    assert "release 1" in caught.value.message
-    assert "--rollback" not in str(caught.value.remedy)
+    def deploy() -> None:
+        with target_connection.connected_agent(*asked):
+            robot.recovery_hint = recovery_hints.deployed(1, None)
+            interrupt()
+
+    with pytest.raises(StoppedError, match=r"^interrupted; release 1 is on the robot"):
+        deploy()
+    for hint in (recovery_hints.deployed(1, None), recovery_hints.started(1, None)):
+        assert "--rollback" not in hint.remedy, "there is no way back"
 
 
 @pytest.mark.parametrize(
@@ -196,17 +195,6 @@ def test_the_lock_is_held_until_the_program_was_started_and_watched(
     assert not is_held(robot), "it goes with the connection"
 
 
-def test_another_computer_cannot_restart_in_between(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
-    first, second = robot.start(agents), robot.start(agents)
-    with contextlib.closing(first), contextlib.closing(second):
-        first.deploy(project, REQUEST)
-        with pytest.raises(RefusedError, match="is deploying to this robot right now"):
-            second.restart()
-        first.restart()
-        first.watch(0.0)
-        second.restart()
-
-
 def test_a_silent_laptop_counts_as_disconnected_while_it_holds_the_lock(robot: LocalRobot) -> None:
     """A command may wait for its user only after the watch, when the lock is free."""
 
@@ -229,52 +217,3 @@ def test_a_silent_laptop_counts_as_disconnected_while_it_holds_the_lock(robot: L
         there = RealRobot(RobotPaths(ROBORIO.layout, str(robot.root)))
         serve.Agent(LoggingWire(source, io.BytesIO()), there, {}).serve()
     assert limited == [False, True, True, False]
-
-
-# -- as it is seen -----------------------------------------------------------------------------------------------------
-
-
-class Cutting(DeployProgress):
-    """Does something when the program is to be started."""
-
-    def __init__(self, do: Callable[[], object]) -> None:
-        super().__init__(io.StringIO())
-        self._do = do
-
-    @contextlib.contextmanager
-    def _shown(self, phase: Phase, own_output: bool) -> Iterator[Phase]:
-        if phase.name == "start":
-            self._do()
-        yield phase
-
-
-def test_a_deploy_that_is_interrupted_before_the_start_explains_the_state(
-    make_project, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    require_roborio()
-    monkeypatch.setenv("SSH_AUTH_SOCK", "")
-    project = find_project(make_project({"robot.py": ROBOT_PY}).path)
-    waits_for_permission = tmp_path / "frcKillRobot.sh"
-    first, *others = KILL_SCRIPT.read_text().splitlines()
-    waits = "while [ -e /home/lvuser/hold ]; do sleep 0.02; done"
-    waits_for_permission.write_text("\n".join([first, waits, *others, ""]))
-    with Roborio(wpilib=version("wpilib"), kill_script=waits_for_permission) as robot:
-        hold = robot.home / "hold"
-
-        def deploy_by(where: str, progress: DeployProgress) -> None:
-            options = DeployOptions(choice=RobotChoice(robot=where), skip_tests=True)
-            session.deploy(project, options, UserInterface(progress))
-
-        with pytest.raises(StoppedError, match=r"interrupted; release 1 is on the robot"):
-            deploy_by(robot.where, Cutting(interrupt))
-        robot.wait_for_end_of_deploy()  # or its kill script waits, too, and the second deploy is refused
-        hold.touch()  # or the robot may report its start before the link is cut
-        with contextlib.ExitStack() as link:
-            link.callback(hold.unlink)
-            proxy = link.enter_context(Proxy((robot.host, robot.port)))
-            what = r"connection to the robot was lost: .*; release 1 is on the robot"
-            with pytest.raises(ConnectionFailedError, match=what) as caught:
-                deploy_by(f"{proxy.host}:{proxy.port}", Cutting(link.close))
-        assert "pyfrc deploy --rollback" in str(caught.value.remedy)
-        deploy_by(robot.where, DeployProgress(io.StringIO()))
-        robot.said("Robot program startup complete")

@@ -55,22 +55,6 @@ def test_the_guides_messages_are_those_that_there_are() -> None:
                 assert part.strip() in source, part
 
 
-@pytest.mark.parametrize("command", ["deploy", "deploy-info", "undeploy", "console", "logs"])
-def test_help_waits_for_none_of_the_big_libraries(command: str) -> None:
-    code = f"""
-import sys
-sys.argv = ["pyfrc", "{command}", "--help"]
-from pyfrc_cli.main import run
-try:
-    run()
-except SystemExit:
-    pass
-big = {{"wpilib", "hal", "pytest", "pydantic", "paramiko", "rich"}}
-assert not big & set(sys.modules), big & set(sys.modules)
-"""
-    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
-
-
 def test_nothing_of_a_deploy_imports_wpilib_or_what_only_a_connection_or_a_terminal_needs() -> None:
     code = """
 import importlib, pkgutil, sys

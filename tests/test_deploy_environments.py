@@ -1,6 +1,7 @@
-"""Environments on the robot: made, shared, kept for the releases that need them, and removed.
+"""Environments on the robot, made by its Python: sent once, shared, and gone back from.
 
-Power cuts are in `core/test_agent_power_cuts`, cut connections in `test_deploy_installs`.
+Which are kept and mended is in `core/test_agent_environments`, power cuts are in `core/test_agent_power_cuts`, cut
+connections in `test_deploy_installs`.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ from typing import Any
 from zipfile import ZipFile, ZipInfo
 
 import pytest
+from conftest import sampled
 from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_memory, project_of
 
-from pyfrc_core.deploy.agent.robot_paths import Lock
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
-from pyfrc_core.deploy.errors import OtherComputerError, RefusedError
+from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.manifest import Entry, Manifest
 from pyfrc_core.deploy.targets import ControllerKind
 from pyfrc_core.deploy.targets.roborio import ROBORIO
@@ -79,14 +80,6 @@ def send_python(robot: LocalRobot) -> None:
     python.symlink_to(os.path.realpath(sys.executable))
 
 
-def their_packages(robot: LocalRobot) -> Path:
-    """The directory where another tool installs packages."""
-    layout = robot.controller.layout
-    place = robot.paths.of(str(Path(layout.python).parents[1])) / "lib/python3.14/site-packages"
-    place.mkdir(parents=True)
-    return place
-
-
 @contextlib.contextmanager
 def agent(robot: LocalRobot, agents: Agents, **options: Any) -> Generator[AgentClient]:
     session = robot.start(agents, **options)
@@ -134,7 +127,7 @@ def packages(directory: Path) -> Packages:
     return Packages(directory / "wheels")
 
 
-@pytest.fixture(params=[ROBORIO, SYSTEMCORE], ids=lambda each: each.name)
+@pytest.fixture(params=sampled([ROBORIO, SYSTEMCORE], SYSTEMCORE), ids=lambda each: each.name)
 def controller(request: pytest.FixtureRequest) -> ControllerKind:
     return request.param
 
@@ -172,89 +165,6 @@ def check_scripts(robot: LocalRobot, environment: str) -> None:
     assert printed == f"{place} ['a b']\n", "it runs in its own environment"
 
 
-def test_scripts_of_a_wheel_that_another_environment_has(directory: Path, packages: Packages, agents: Agents) -> None:
-    robot = new_robot(directory / "robot")
-    packages.wheels[FIRST] = Manifest(packages.wheels[SECOND].entries[1:])
-    assert (install(robot, agents, packages, SECOND), install(robot, agents, packages, FIRST)) == (3, 0)
-    check_scripts(robot, FIRST)
-
-
-def test_a_wheel_of_which_a_file_is_gone_is_sent_again(directory: Path, packages: Packages, agents: Agents) -> None:
-    robot = new_robot(directory / "robot")
-    install(robot, agents, packages, FIRST)
-    next(robot.home.rglob("kept.py")).unlink()
-    assert install(robot, agents, packages, SECOND) == 3
-
-
-def test_what_no_release_needs_is_removed(
-    controller: ControllerKind, directory: Path, packages: Packages, agents: Agents
-) -> None:
-    robot = new_robot(directory / "robot", controller)
-    install(robot, agents, packages, FIRST)
-    deploy(robot, agents, project_of(directory / "0", OLD), FIRST)
-    install(robot, agents, packages, SECOND)
-    for number in range(1, 5):
-        deploy(robot, agents, project_of(directory / str(number), {"robot.py": f"# {number}\n"}), SECOND)
-    assert [each.name for each in (robot.home / ".pyfrc/environments").iterdir()] == [SECOND]
-    assert not (robot.home / ".pyfrc/wheels").exists()
-    assert list((robot.home / ".pyfrc").glob("pythons/*")) in ([], [robot.home / ".pyfrc/pythons" / PYTHON])
-
-
-def test_another_tools_environment_is_kept_for_the_releases_that_use_it(
-    controller: ControllerKind, directory: Path, packages: Packages, agents: Agents
-) -> None:
-    robot = new_robot(directory / "robot", controller)
-    (their_packages(robot) / "theirs.py").write_text("C = 1\n")
-    deploy(robot, agents, project_of(directory / "old", OLD), None)
-    assert started(robot) == (OLD, {"theirs.py": b"C = 1\n"})
-    install(robot, agents, packages, SECOND)
-    deploy(robot, agents, project_of(directory / "new", NEW), SECOND)
-    assert started(robot) == (NEW, packages.content[SECOND])
-    with agent(robot, agents) as session:
-        session.rollback()
-    assert started(robot) == (OLD, {"theirs.py": b"C = 1\n"})
-    with agent(robot, agents) as session:
-        session.rollback(2)
-    assert started(robot) == (NEW, packages.content[SECOND])
-
-
-def test_another_tools_program_keeps_the_packages_that_it_was_deployed_with(
-    controller: ControllerKind, directory: Path, packages: Packages, agents: Agents
-) -> None:
-    robot = new_robot(directory / "robot", controller)
-    install(robot, agents, packages, FIRST)
-    deploy(robot, agents, project_of(directory / "old", OLD), FIRST)
-    (robot.home / "py").unlink()
-    (robot.home / "py").mkdir()
-    (robot.home / "py/robot.py").write_text("# theirs\n")
-    install(robot, agents, packages, SECOND)
-    deploy(robot, agents, project_of(directory / "new", NEW), SECOND)
-    with agent(robot, agents) as session:
-        assert session.rollback().release.number == 2
-    assert started(robot) == ({"robot.py": b"# theirs\n"}, packages.content[FIRST])
-
-
-@pytest.mark.parametrize(
-    ("path", "why"),
-    [
-        ("../../../py/robot.py", "leads out"),
-        ("/etc/passwd", "leads out"),
-        ("a//b.py", "leads out"),
-        ("a\\b.py", "leads out"),
-        ("evil-1.0.data/nowhere/x", "an unknown place"),
-    ],
-)
-def test_a_wheel_cannot_write_elsewhere(
-    path: str, why: str, directory: Path, packages: Packages, agents: Agents
-) -> None:
-    robot = new_robot(directory / "robot")
-    packages.wheels[FIRST] = Manifest((wheel(directory, "evil-1.0", {path: "x"}),))
-    with pytest.raises(RefusedError, match=why):
-        install(robot, agents, packages, FIRST)
-    deploy(robot, agents, project_of(directory / "old", OLD), None)
-    assert not (robot.home / ".pyfrc/environments" / FIRST).exists(), "the next deploy removes it"
-
-
 def test_too_little_disk_space_is_said_before_anything_is_sent(
     directory: Path, packages: Packages, agents: Agents
 ) -> None:
@@ -263,13 +173,6 @@ def test_too_little_disk_space_is_said_before_anything_is_sent(
         session.install(FIRST, PYTHON, packages.wheels[FIRST], [1 << 50, 1])
     assert "Nothing was changed" in str(caught.value.remedy)
     assert not (robot.home / ".pyfrc/wheels").exists()
-
-
-def test_while_another_computer_installs_it_is_named(directory: Path, packages: Packages, agents: Agents) -> None:
-    robot = new_robot(directory / "robot")
-    with Lock(robot.paths, "ann@laptop"), pytest.raises(OtherComputerError, match="ann@laptop is deploying to this"):
-        install(robot, agents, packages, FIRST)
-    assert install(robot, agents, packages, FIRST) == 2
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="it reads the memory of a process as Linux shows it")

@@ -19,7 +19,7 @@ from pyfrc_core.deploy import agent_stream
 from pyfrc_core.deploy.agent import wire
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 from pyfrc_core.deploy.agent_stream import TimeLimits
-from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
+from pyfrc_core.deploy.errors import DeployError
 from pyfrc_core.deploy.manifest import Manifest
 from pyfrc_core.deploy.targets import CONTROLLERS, ControllerKind
 
@@ -172,10 +172,7 @@ FRAMES = {
 LARGE: dict[str, Callable[[], bytes]] = {
     "zlib bomb": lambda: packed(b'{"done": "' + bytes(50_000_000) + b'"}'),
     "deep JSON": lambda: packed(b'{"done": ' + b"[" * 100_000),
-    "deeper JSON": lambda: packed(b'{"done": ' + b"[" * 1_000_000),
     "millions of lists": lambda: packed(b'{"done": [' + b"[]," * 2_600_000 + b"[]]}"),
-    "a million lists": lambda: packed(b'{"done": [' + b"[]," * 1_300_000 + b"[]]}"),
-    "many objects": lambda: packed(b'{"done": [' + b'{"a":1},' * 500_000 + b"{}]}"),
     "many keys": lambda: packed(b'{"done": {' + b",".join(b'"%x":0' % each for each in range(400_000)) + b"}}"),
     "wide letters": lambda: packed(('{"done": "\U0001f600' + "x" * 4_000_000 + '"}').encode()),
 }
@@ -198,9 +195,9 @@ def test_a_frame_that_is_none() -> None:
         refused_within_memory(frame, what)
 
 
-@pytest.mark.parametrize("what", LARGE)
-def test_a_large_frame_that_is_none(what: str) -> None:
-    refused_within_memory(LARGE[what](), what)
+def test_a_large_frame_that_is_none() -> None:
+    for what, make in LARGE.items():
+        refused_within_memory(make(), what)
 
 
 def test_the_longest_real_response_is_read(project: Manifest) -> None:
@@ -264,23 +261,11 @@ def _long_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(agent_stream, "MAX_FRAMES", 100)
 
 
-@pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda each: each.name)
-def test_facts_with_a_wrong_field(controller: ControllerKind, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(FakeRobot, "controller", controller)
-    count = 0
-    for what, facts in variants(FACTS):
-        if what in OPTIONAL:
-            continue
-        message = protocol_error(FakeRobot(of_json({"done": facts})))
-        assert message.startswith(NOT_THE_AGENT), what
-        count += 1
-    assert count > 150
-
-
-def test_a_release_with_a_wrong_field() -> None:
-    for what, release in variants(FACTS["releases"][0]):
+def test_facts_and_releases_with_a_wrong_field() -> None:
+    releases = ((what, {**FACTS, "releases": [each]}) for what, each in variants(FACTS["releases"][0]))
+    for what, facts in (*variants(FACTS), *releases):
         if what not in OPTIONAL:
-            message = protocol_error(FakeRobot(of_json({"done": {**FACTS, "releases": [release]}})))
+            message = protocol_error(FakeRobot(of_json({"done": facts})))
             assert message.startswith(NOT_THE_AGENT), what
 
 
@@ -399,15 +384,6 @@ def test_frames_without_an_end(frame: dict[str, Any]) -> None:
         tracemalloc.stop()
     assert "no response" in message
     assert peak < 10_000_000
-
-
-def test_a_frame_that_drips_for_ever() -> None:
-    """The clock is real here, and the robot as quick as this machine: what ends it is the limit for a frame."""
-    drips = (bytes(1) for _ in iter(int, 1))
-    with pytest.raises(ConnectionFailedError, match="its response is incomplete"):
-        AgentClient.start(
-            FakeRobot(struct.pack(">Ic", 1 << 22, wire.MESSAGE), then=drips), limits=TimeLimits(frame=0.1)
-        )
 
 
 def test_the_connection_is_closed_afterwards() -> None:

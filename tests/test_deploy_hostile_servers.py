@@ -170,6 +170,9 @@ def test_all_servers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         assert error.exit_code == 1, name
         text = str(error)
         assert all(line.isprintable() for line in text.splitlines()), f"{name}: {text!r}"
+        if name.startswith("in_the_key_exchange"):
+            assert ": could not log in to the robot: " in text, f"{name}: {text!r}"
+            assert "Check the link" in text
         if name.startswith("at_the_login"):
             assert "commands" not in text, f"{name}: no one has logged in, but {text!r}"
         assert error.remedy, name

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from conftest import RobotProject, new_project, sampled
-from laptops import IS_ROBORIO, Laptop, blank_computer, prepared_computer, write_python
+from laptops import IS_ROBORIO, Laptop, blank_computer, write_python
 from package_index import PackageIndex, package_index
 from roborio import PATIENCE, Proxy
 from roborio.computer import Computer
@@ -88,56 +88,6 @@ def test_from_nothing_to_a_rollback(blank: Computer, laptop: Laptop, project: Ro
     if IS_ROBORIO:
         assert not (blank.disk / "usr/local/pyfrc/installing").exists()
         assert blank.run("find", "/home/lvuser", "!", "-user", "lvuser").stdout == ""
-
-
-@nightly
-def test_a_damaged_package_is_sent_again_when_the_program_ends(
-    blank: Computer, laptop: Laptop, project: RobotProject
-) -> None:
-    laptop.sync(spinner="1.0")
-    laptop.deploy(blank)
-    blank.said("program 1 with spinner 1.0")
-    (file,) = blank.home.glob(".pyfrc/environments/*/lib/python3*/site-packages/spinner/__init__.py")
-    (compiled,) = file.parent.glob("__pycache__/__init__.*.pyc")
-    good = file.read_bytes()
-    for each in (file, compiled):
-        with each.open("r+b") as stream:  # as a worn disk does: the same file, with another content
-            stream.write(b"\0" * 20)
-    project.write({"robot.py": ROBOT.format(number=2)})
-    again = laptop.deploy(blank)
-    assert "damaged on the robot's disk: lib/python3" in again
-    assert "install    1 package of 3 sent" in again
-    blank.said("program 2 with spinner 1.0")
-    assert file.read_bytes() == good
-    assert "install    0 packages of 3 sent" in laptop.deploy(blank, "--reinstall")
-
-
-@nightly
-def test_what_todays_tool_has_installed_is_kept_for_the_releases_that_use_it(
-    laptop: Laptop, project: RobotProject
-) -> None:
-    project.write({"robot.py": PLAIN.format(number=1)})
-    with prepared_computer() as robot:
-        assert "install " not in laptop.deploy(robot), "there is no lock"
-        robot.said("plain program 1")
-        start = (robot.home / "robotCommand").read_text(encoding="utf-8")
-        project.write({"robot.py": ROBOT.format(number=2)})
-        laptop.sync(spinner="1.0")
-        laptop.deploy(robot)
-        robot.said("program 2 with spinner 1.0")
-        assert laptop.run(robot, "deploy", "--rollback").code == 0
-        robot.said("plain program 1")
-        assert (robot.home / "robotCommand").read_text(encoding="utf-8") == start
-
-
-@nightly
-def test_a_full_disk_is_said_before_anything_is_installed(laptop: Laptop) -> None:
-    laptop.sync(spinner="1.0")
-    with blank_computer(disk_size="1m" if IS_ROBORIO else "20m") as robot:
-        refused = laptop.run(robot, "deploy", "--skip-tests")
-        assert refused.code == 1
-        assert "the robot's disk is too full to install Python and packages: " in refused.first_error
-        assert not (robot.home / ".pyfrc/releases").exists()
 
 
 def places_of_cuts(count: int) -> list[float]:

@@ -85,14 +85,6 @@ def test_the_newest_that_ran_although_an_older_one_was_watched_for_longer(
         assert session.rollback().release.number == 2
 
 
-def test_a_release_that_ran_stays_known_as_such(robot: LocalRobot, agents: Agents, deploy: DeployAndWatch) -> None:
-    deploy(1, True)
-    deploy(1, False)
-    assert [(each.ran, each.ended) for each in facts_of(robot, agents).releases] == [(True, True)]
-    deploy(1, True)
-    assert [(each.ran, each.ended) for each in facts_of(robot, agents).releases] == [(True, False)]
-
-
 def test_it_makes_no_room_on_a_small_disk(robot: LocalRobot, agents: Agents, deploy: DeployAndWatch) -> None:
     for number, runs in ((1, True), (2, True), (3, False), (4, False)):
         deploy(number, runs)

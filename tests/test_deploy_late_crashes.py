@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from loops import for_each
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
 
@@ -31,8 +32,8 @@ from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 
-@pytest.mark.parametrize(
-    ("source", "reports"),
+@for_each(
+    "source, reports",
     [
         ("class Robot(wpilib.TimedRobot):\n", True),
         ("class Robot(commands2.TimedCommandRobot):\n", True),
@@ -51,9 +52,10 @@ def test_which_programs_report_the_end_of_their_start(source: str, reports: bool
     main = tmp_path / "robot.py"
     main.write_text("import base\n")
     (tmp_path / "base.py").write_text(source)
-    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests").mkdir(exist_ok=True)
     (tmp_path / "tests/fake.py").write_text("class Fake(wpilib.TimedRobot):\n")
     assert _reports_start(main) == reports
+    assert _reports_start(None) is True
 
 
 # -- what a record says --------------------------------------------------------------------------------------------

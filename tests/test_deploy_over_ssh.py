@@ -127,7 +127,8 @@ def test_the_administrator_deploys_for_the_program_s_user(roborio: Roborio, tmp_
     assert roborio.run("find", "/home/lvuser", "!", "-user", "lvuser").stdout == ""
 
 
-@pytest.mark.parametrize("debug", sampled([False, True], False))
+@pytest.mark.slow
+@pytest.mark.parametrize("debug", [False, True])
 def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
     computer: Computer, tmp_path: Path, debug: bool
 ) -> None:
@@ -148,7 +149,8 @@ def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
         assert watched.traceback is None
 
 
-@pytest.mark.parametrize("phase", sampled(["start", "send", "switch"], "switch"))
+@pytest.mark.slow
+@pytest.mark.parametrize("phase", ["start", "send", "switch"])
 def test_power_pulled_in_the_middle(computer: Computer, tmp_path: Path, phase: str) -> None:
     deploy(computer, program(tmp_path, "old"))
     new = program(tmp_path, "new", **{"data.bin": random.Random(1).randbytes(300_000)})
@@ -172,6 +174,7 @@ def test_power_pulled_in_the_middle(computer: Computer, tmp_path: Path, phase: s
         assert "this is new" in started(robot).output
 
 
+@pytest.mark.slow
 def test_a_full_disk(kind: Kind, tmp_path: Path) -> None:
     old = program(tmp_path, "old", **{"data.bin": b"1" * 500_000})
     large = program(tmp_path, "large", **{f"{number}.bin": b"%d" % number * 500_000 for number in range(8)})

@@ -7,6 +7,7 @@ import json
 import click
 import pytest
 from click.testing import CliRunner
+from conftest import MakeProject
 
 from pyfrc_cli.robot_options import errors_shown, json_option, robot_options, user_interface
 from pyfrc_core.deploy import recovery_hints, starting
@@ -78,3 +79,20 @@ def test_a_command_that_names_a_robot_already_stays_as_it_is() -> None:
 
 def test_an_address_is_quoted_for_the_shell() -> None:
     assert with_robot_option("pyfrc console", "a;b", None) == "pyfrc console --robot 'a;b'"
+
+
+#: An address is enough for these outside of a project.
+ROBOT_COMMANDS = [["deploy-info"], ["logs"], ["console"], ["undeploy", "--yes"], ["deploy", "--rollback"]]
+
+
+def test_where_no_robot_is_named_a_project_is_asked_for_and_one_that_is_named_has_to_be_there(
+    make_project: MakeProject,
+) -> None:
+    project = make_project({})
+    for command in ROBOT_COMMANDS:
+        result = project.run_here(*command)
+        assert result.code == 2, command
+        assert "no robot project found" in result.first_error
+        assert "--robot HOST" in result.stderr
+        result = project.run_here(*command, "--robot", "127.0.0.1", "--project", "elsewhere")
+        assert (result.code, result.first_error) == (2, "there is no directory elsewhere"), command

@@ -89,17 +89,6 @@ def test_the_program_is_stopped_by_the_controllers_command(robot: AgentDisk) -> 
     assert robot.startable() == "nothing"
 
 
-def test_another_tools_directory_is_kept_as_a_release(robot: AgentDisk) -> None:
-    robot.places.code.mkdir()
-    (robot.places.code / "robot.py").write_text("# old\n")
-    old = robot.places.layout.start.replace("{main}", f"{robot.places.layout.code}/robot.py")
-    (robot.home / robot.places.layout.command).write_text(old)
-    *_, done = robot.deploy({"robot.py": "# 1\n"}, "# 1\n")
-    assert (done["done"]["release"], done["done"]["taken"]) == (2, 1)
-    robot.ask({"op": "rollback", "release": 1})
-    assert robot.startable().endswith("robot.py: # old")
-
-
 @pytest.mark.skipif(sys.platform != "linux", reason="it asks /proc which processes run")
 def test_what_an_interrupted_installation_leaves_is_removed(tmp_path: Path) -> None:
     place = tmp_path / "installing"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from pathlib import Path
 
 import pytest
@@ -83,75 +82,54 @@ def test_debugging(robot: LocalRobot, project: Project, agents: Agents) -> None:
     assert not (robot.root / "tmp/frcdebug").exists()
 
 
-def test_only_what_changed_is_sent_and_the_rest_is_linked(robot: LocalRobot, project: Project, agents: Agents) -> None:
+def test_only_what_changed_is_sent_and_the_rest_is_linked(
+    robot: LocalRobot, project: Project, agents: Agents, tmp_path: Path
+) -> None:
+    py = robot.home / "py"
     robot.deploy(agents, project.manifest)
-    inode = (robot.home / "py/arm.py").stat().st_ino
+    inode = (py / "arm.py").stat().st_ino
     project.write("robot.py", ROBOT_PY + "# changed\n").remove("deploy/path.json")
     deployed = robot.deploy(agents, project.manifest)
     assert (deployed.release, deployed.previous, deployed.files_sent) == (2, 1, 1)
-    assert (robot.home / "py/arm.py").stat().st_ino == inode
+    assert (py / "arm.py").stat().st_ino == inode
     assert robot.startable() == {"robot.py": (ROBOT_PY + "# changed\n").encode(), "arm.py": b"LENGTH = 1\n"}
-    assert len(list((robot.home / "py/__pycache__").iterdir())) == 2
-    assert not (robot.home / "py/deploy").exists()
-
-
-def test_a_file_that_was_moved_is_not_sent(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    robot.deploy(agents, project.manifest)
-    project.remove("arm.py").write("lib/lever.py", "LENGTH = 1\n")
-    assert robot.deploy(agents, project.manifest).files_sent == 0
-    assert (robot.home / "py/lib/lever.py").read_text() == "LENGTH = 1\n"
-
-
-def test_the_same_again_makes_no_new_release(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    """Or three of them would push the last program that worked out of the releases kept."""
-    robot.deploy(agents, project.manifest)
+    assert len(list((py / "__pycache__").iterdir())) == 2
+    assert not (py / "deploy").exists()
+    # The same again is no new release: three of them would push out the last program that worked.
     deployed = robot.deploy(agents, project.manifest)
-    assert (deployed.release, deployed.unchanged, deployed.bytes_sent) == (1, True, 0)
-
-
-def test_a_file_that_was_changed_on_the_robot_is_put_right(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    robot.deploy(agents, project.manifest)
-    (robot.home / "py/deploy/path.json").write_text("[9, 9]")
+    assert (deployed.release, deployed.unchanged, deployed.bytes_sent) == (2, True, 0)
+    # A file that was moved, and one that can be run now.
+    project.remove("arm.py").write("lib/lever.py", "LENGTH = 1\n")
+    (tmp_path / "project/robot.py").chmod(0o755)
+    assert robot.deploy(agents, project.manifest).files_sent == 0
+    assert (py / "lib/lever.py").read_text() == "LENGTH = 1\n"
+    assert (py / "robot.py").stat().st_mode & 0o777 == 0o755
+    # A file that was changed on the robot.
+    robot.deploy(agents, project.write("path.json", "[1]").manifest)
+    (py / "path.json").write_text("[9]")
     deployed = robot.deploy(agents, project.manifest)
     assert (deployed.unchanged, deployed.files_sent) == (False, 1)
-    assert (robot.home / "py/deploy/path.json").read_text() == "[1, 2]"
-
-
-def test_what_is_executable(robot: LocalRobot, project: Project, agents: Agents, tmp_path: Path) -> None:
-    project.write("tool.sh", "#!/bin/sh\n")
-    robot.deploy(agents, project.manifest)
-    assert not os.access(robot.home / "py/tool.sh", os.X_OK) or os.geteuid() == 0
-    (tmp_path / "project/tool.sh").chmod(0o755)
-    assert robot.deploy(agents, project.manifest).files_sent == 0
-    assert (robot.home / "py/tool.sh").stat().st_mode & 0o777 == 0o755
+    assert (py / "path.json").read_text() == "[1]"
 
 
 def test_rollback(robot: LocalRobot, project: Project, agents: Agents) -> None:
     robot.deploy(agents, project.manifest)
     first = robot.startable()
     robot.deploy(agents, project.remove("arm.py").write("robot.py", "# 2\n").manifest)
+    (robot.home / "py/robot.py").write_text("# 9\n")
     robot.deploy(agents, project.write("robot.py", "# 3\n").manifest, debug=True)
     session = robot.start(agents)
     gone_back = session.rollback()
-    assert (gone_back.release.number, gone_back.previous, gone_back.changed) == (2, 3, ())
+    assert (gone_back.release.number, gone_back.previous, gone_back.changed) == (2, 3, ("robot.py",))
     assert not (robot.root / "tmp/frcdebug").exists()
-    assert session.rollback().release.number == 1
-    assert robot.startable() == first
+    gone_back = session.rollback()
+    assert (gone_back.release.number, gone_back.changed, robot.startable()) == (1, (), first)
     with pytest.raises(RefusedError, match=r"no earlier release.*\n.*1, 2, 3; current: 1"):
         session.rollback()
     with pytest.raises(RefusedError, match="no release 7"):
         session.rollback(7)
     assert session.rollback(3).release.debug
     assert (robot.root / "tmp/frcdebug").exists()
-    session.close()
-
-
-def test_rollback_lists_files_that_the_program_has_changed(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    robot.deploy(agents, project.manifest)
-    (robot.home / "py/deploy/path.json").write_text("[9, 9]")
-    robot.deploy(agents, project.write("robot.py", "# 2\n").manifest)
-    session = robot.start(agents)
-    assert session.rollback().changed == ("deploy/path.json",)
     session.close()
 
 

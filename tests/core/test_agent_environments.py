@@ -16,10 +16,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pyfrc_core.deploy.agent.environment_files import EnvironmentFiles
+from pyfrc_core.deploy.targets import ControllerKind
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.deploy.targets.systemcore import SYSTEMCORE
 from pyfrc_core.wheel_files import WheelError
 
 from .agent_disk import PACKAGES, PYTHON, AgentDisk, run_quickly
+from .test_agent_power_cuts import FIRST, ONE, SECOND, TWO, deploy, packages_of, started
 
 Wheels = Mapping[str, Mapping[str, str]]
 
@@ -85,7 +88,7 @@ _FILES = st.dictionaries(
 _WHEELS = st.lists(_FILES, min_size=1, max_size=4, unique_by=lambda files: tuple(sorted(files.items())))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=20)
 @given(st.lists(_WHEELS, min_size=2, max_size=4), st.randoms(use_true_random=False))
 def test_any_wheels_in_any_order_give_the_same_as_on_a_fresh_robot(sets: list[list[dict[str, str]]], random) -> None:
     """And no older environment changes by a byte."""
@@ -223,3 +226,50 @@ def test_what_venv_made_is_never_replaced(robot: Robot, path: str) -> None:
     with pytest.raises(WheelError, match=r"x-1\.whl has a file in the place of Python's own"):
         robot.install(NAMES[0], {"x-1.whl": {f"x-1.data/data/{path}": ""}})
     assert not robot.environments.is_usable(NAMES[0])
+
+
+# -- environments and the releases that need them ----------------------------------------------------------------------
+
+
+@pytest.fixture(params=[ROBORIO, SYSTEMCORE], ids=lambda each: each.name)
+def controller(request: pytest.FixtureRequest) -> ControllerKind:
+    return request.param
+
+
+def test_what_no_release_needs_is_removed(controller: ControllerKind, tmp_path: Path) -> None:
+    robot = AgentDisk(tmp_path / "robot", controller.layout)
+    deploy(robot, ONE, FIRST)
+    for number in range(1, 5):
+        deploy(robot, {"robot.py": f"# {number}\n"}, SECOND)
+    own = robot.places.own
+    assert [each.name for each in (own / "environments").iterdir()] == [SECOND]
+    assert not (own / "wheels").exists()
+    assert list(own.glob("pythons/*")) in ([], [own / "pythons" / PYTHON])
+
+
+def test_another_tools_packages_are_kept_for_the_releases_that_use_them(
+    controller: ControllerKind, tmp_path: Path
+) -> None:
+    robot = AgentDisk(tmp_path / "robot", controller.layout)
+    deploy(robot, ONE)
+    theirs = robot.places.start_command()
+    assert controller.layout.python in theirs
+    deploy(robot, TWO, SECOND)
+    assert started(robot, controller) == (TWO, packages_of(SECOND))
+    robot.ask({"op": "rollback"})
+    assert (robot.places.start_command(), started(robot, controller)) == (theirs, (ONE, {}))
+    robot.ask({"op": "rollback", "release": 2})
+    assert started(robot, controller) == (TWO, packages_of(SECOND))
+
+
+def test_another_tools_program_keeps_the_packages_that_it_was_deployed_with(
+    controller: ControllerKind, tmp_path: Path
+) -> None:
+    robot = AgentDisk(tmp_path / "robot", controller.layout)
+    deploy(robot, ONE, FIRST)
+    robot.places.code.unlink()
+    robot.places.code.mkdir()
+    (robot.places.code / "robot.py").write_text("# theirs\n")
+    deploy(robot, TWO, SECOND)
+    robot.ask({"op": "rollback"})
+    assert started(robot, controller) == ({"robot.py": "# theirs\n"}, packages_of(FIRST))

@@ -11,13 +11,13 @@ from typing import Any
 
 import pytest
 
-from pyfrc_core.deploy.agent import disk, host, transaction
+from pyfrc_core.deploy.agent import disk, host, robot_paths, transaction
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.content_index import ContentIndex
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.release_record import parse_record
 from pyfrc_core.deploy.agent.releases import Releases
-from pyfrc_core.deploy.agent.robot_paths import Refusal, RobotPaths
+from pyfrc_core.deploy.agent.robot_paths import Lock, Refusal, RobotPaths
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 from .agent_disk import AgentDisk, manifest
@@ -121,6 +121,33 @@ def test_undeploy_is_on_the_disk_before_the_program_is_stopped_and_when_it_is_do
     monkeypatch.setattr(RealRobot, "stop", lambda host, start: note("stop"))
     robot.ask({"op": "undeploy"})
     assert log == ["flush lvuser: py .pyfrc", "stop: py .pyfrc", "flush lvuser: "]
+
+
+def test_the_process_that_a_restart_ends_has_not_crashed(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(RealRobot, "stop", lambda *asked, **more: False)
+    numbered(robot, 1)
+    quiet_releases = quiet(robot)
+    quiet_releases.update_record(1, lambda record: {**record, "process": {"boot": "b", "id": 7}})
+    quiet_releases.write_again()
+    assert record(robot, 1)["process"] == {"boot": "b", "id": 7}
+    robot.ask({"op": "restart"})
+    assert record(robot, 1)["process"] is None
+
+
+def test_while_another_computer_deploys_nothing_is_changed(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(robot_paths, "_GRACE", 0.0)
+    numbered(robot, 1, 2)
+    before = robot.tree("")
+    with Lock(robot.places, "ann@laptop"):
+        for request in (
+            {"op": "restart"},
+            {"op": "rollback"},
+            {"op": "undeploy"},
+            {"op": "install", "environment": "a" * 16, "python": None, "wheels": []},
+        ):
+            (answer,) = robot.ask(request)
+            assert answer["message"] == "ann@laptop is deploying to this robot right now", request
+    assert robot.tree("") == before
 
 
 # -- contents ----------------------------------------------------------------------------------------------------------

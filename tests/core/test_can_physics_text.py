@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from pyfrc_core.physics.create import can_devices
 from pyfrc_core.physics.create.can_devices import CanDevices, CanMotor, known_gearing
 from pyfrc_core.physics.create.can_text import add_mechanism, add_swerve, wheel_motors, wheel_numbers
 from pyfrc_core.physics.create.drivetrain import DrivetrainLayout, MotorGroup, Tank
@@ -136,6 +138,15 @@ def test_a_device_with_its_sensors_belongs_to_a_motor() -> None:
     assert {name: devices.owns(name) for name in own} == own
     assert not devices.in_real_time
     assert CanDevices([motor("a", vendor="Talon")]).in_real_time
+
+
+def test_the_simulated_devices_of_a_motor_controller(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(can_devices, "sparks", SimpleNamespace(device_of=lambda thing: f"SPARK MAX [{thing.number}]"))
+    spark: Any = type("SparkMax", (), {"__module__": "rev", "number": 2})
+    talon: Any = type("TalonFX", (), {"__module__": "phoenix6.hardware", "device_id": 3})
+    assert can_devices._parts(spark()) == ["SPARK MAX [2]"]
+    names = "CANMotor:Talon FX (v6)[3]", "CANEncoder:Talon FX (v6)[3]", "CANDIO:Talon FX (v6)[3]"
+    assert can_devices._parts(talon()) == [*names]
 
 
 def test_a_tank_drive_measures_all_its_motors_with_their_signs() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
+from io import StringIO
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -11,13 +12,15 @@ from typing import Any
 import pytest
 from packaging.requirements import Requirement
 
-from pyfrc_core.deploy import logs, robot_packages
+from pyfrc_core.deploy import installing, logs, robot_packages
 from pyfrc_core.deploy.agent import disk
 from pyfrc_core.deploy.agent.compiling import CompiledForms
 from pyfrc_core.deploy.agent.logs import RobotLogs
 from pyfrc_core.deploy.agent.robot_paths import Refusal
 from pyfrc_core.deploy.program_imports import ProgramImports
+from pyfrc_core.deploy.progress import DeployProgress
 from pyfrc_core.deploy.robot_packages import _same
+from pyfrc_core.deploy.target_connection import _start_agent
 
 
 def test_a_file_is_on_the_disk_before_it_has_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -121,3 +124,22 @@ def test_a_log_is_removed_only_as_it_was_named(tmp_path: Path) -> None:
         robot_logs.remove({**request, "size": 4})
     assert robot_logs.remove(request) == {}
     assert not file.exists()
+
+
+def test_on_a_virtual_robot_no_environment_is_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+    wanted, asked = object(), list[object]()
+    robot = SimpleNamespace(facts=SimpleNamespace(wpilib="2026.2.2", image="none"))
+
+    def start(connection: object, environment: object, *more: object) -> object:
+        asked.append(environment)
+        return robot
+
+    monkeypatch.setattr(installing, "start_agent", start)
+    monkeypatch.setattr(installing, "install", lambda *asked: "installed")
+    results = []
+    for is_virtual in (True, False):
+        connection: Any = SimpleNamespace(is_virtual_robot=is_virtual)
+        environment: Any = wanted
+        results.append(_start_agent(connection, DeployProgress(StringIO()), (), environment, True))
+    assert asked == [None, wanted]
+    assert results == [robot, "installed"]

@@ -21,7 +21,6 @@ from pyfrc_core.deploy import console, robot_packages, session
 from pyfrc_core.deploy.agent import carrying, disk, system
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.console import ConsoleFrames, ConsoleProtocolError, text_frame
-from pyfrc_core.deploy.agent_stream import _FrameReader
 from pyfrc_core.deploy.console import ConnectionReports
 from pyfrc_core.deploy.discovery import Address, _why
 from pyfrc_core.deploy.errors import ConnectionFailedError, NoConsoleError, RefusedError
@@ -243,22 +242,6 @@ def test_a_report_about_a_connection_is_made_once(capsys: pytest.CaptureFixture[
 )
 def test_why_an_address_does_not_respond(error: OSError, host: str, why: str) -> None:
     assert _why(error, Address(host)).startswith(why)
-
-
-def test_the_time_limits_of_a_frame() -> None:
-    now, asked = [0.0], list[tuple[int, float, str]]()
-    pieces = [b"ab", b"c", b"de", b""]
-
-    def receive(count: int, seconds: float, why: str) -> bytes:
-        asked.append((count, seconds, why))
-        now[0] += 1
-        return pieces.pop(0)
-
-    read = _FrameReader(receive, lambda: now[0], 10.0, 5.0, 7.0)
-    assert (read(3), read(4)) == (b"abc", b"de")
-    late = "it works, but exceeds the time limit"
-    incomplete = "its response is incomplete"
-    assert asked == [(3, 7.0, late), (1, 5.0, incomplete), (4, 4.0, incomplete), (2, 3.0, incomplete)]
 
 
 @dataclass(frozen=True)

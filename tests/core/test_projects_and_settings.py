@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from written_files import write_files
 
+from pyfrc_core.config import toml_file
 from pyfrc_core.config.packages import component_of, how_to_install, robot_line
 from pyfrc_core.config.pictures import field_picture
 from pyfrc_core.config.robotpy import _only_season, load_robot_packages, load_season_settings
@@ -247,6 +248,16 @@ def test_a_mistake_in_toml_is_named(tmp_path: Path) -> None:
         TomlFile(file)
     file.write_bytes(b"\xef\xbb\xbf[tool.pyfrc]\nmain = 'a.py'\n")
     assert TomlFile(file).table_at("tool", "pyfrc") == {"main": "a.py"}
+
+
+def test_a_byte_order_mark_is_accepted_also_when_another_library_reads_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(toml_file.tomllib, "loads", toml_file.tomllib.loads)  # what it was is restored
+    file = tmp_path / "pyproject.toml"
+    file.write_text("\ufeffa = 1\n", "utf-8")
+    assert TomlFile(file).table_at() == {"a": 1}
+    assert toml_file.tomllib.loads(file.read_text("utf-8")) == {"a": 1}
 
 
 @pytest.mark.parametrize(

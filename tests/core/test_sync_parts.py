@@ -8,6 +8,7 @@ import hashlib
 import ssl
 import threading
 import urllib.error
+from collections.abc import Callable
 from dataclasses import replace
 from email.message import Message
 from pathlib import Path
@@ -207,6 +208,19 @@ def test_a_file_without_an_address_comes_from_the_directory_that_has_it(tmp_path
     assert work._get(six) == six
     assert Cache(tmp_path / "cache", CURRENT).has(six)
     assert seen.lines == ["copied six.whl"]
+
+
+def test_a_download_shows_how_much_has_come(work: _Work, seen: Seen, monkeypatch: pytest.MonkeyPatch) -> None:
+    def get(wanted: download.Download, advanced: Callable[[int, int | None], None]) -> bool:
+        advanced(1, 3)
+        wanted.to.parent.mkdir(parents=True)
+        wanted.to.write_bytes(b"six")
+        return True
+
+    monkeypatch.setattr(work._downloader, "get", get)
+    six = LockedFile("six", "1", "six.whl", 3, hashlib.sha256(b"six").hexdigest(), "https://a.invalid/six.whl")
+    assert work._get(six) == six
+    assert seen.lines == ["six 1: 1 of 3", "downloaded six.whl"]
 
 
 def test_files_that_the_disk_has_no_room_for_are_refused(work: _Work, monkeypatch: pytest.MonkeyPatch) -> None:
