@@ -22,7 +22,7 @@ class PyfrcError(Exception):
         self.message = message
         self.where = None if where is None else str(where)
         self.remedy = remedy
-        super().__init__(str(self))
+        Exception.__init__(self, str(self))  # an error that is a library's, too, has another first argument there
 
     def __str__(self) -> str:
         text = f"{self.where}: {self.message}" if self.where else self.message

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import sys
 from pathlib import Path
@@ -61,7 +62,13 @@ def test_migrate(tmp_path: Path) -> None:
 def test_a_comment_may_have_any_bytes_as_in_an_import(tmp_path: Path) -> None:
     file = tmp_path / "robot.py"
     file.write_bytes(b"speed = 1  # h\xf6chstens\n")
-    assert read_source(file) == "speed = 1  # h\ufffdchstens\n"
+    try:
+        ast.parse(file.read_bytes())
+    except SyntaxError:  # a late Python 3.14
+        with pytest.raises(SourceError, match=r"robot\.py:1: this line is not UTF-8"):
+            read_source(file)
+    else:
+        assert read_source(file) == "speed = 1  # h\ufffdchstens\n"
     file.write_bytes(b"name = 'h\xf6chstens'\n")
     with pytest.raises(SourceError, match=r"robot\.py:1: this line is not UTF-8"):
         read_source(file)

@@ -71,7 +71,7 @@ def _mistakes(owner: Any, module: str, prefix: str, robot_path: str, seen: set[i
         if code is None or id(code) in seen or code.__module__ != module or ignore_object(code, robot_path):
             continue
         seen.add(id(code))
-        if code.__name__ == "<lambda>":
+        if code.__name__ in ("<lambda>", "__annotate__"):  # Python 3.14 makes one of a class's annotations
             continue
         # A property and its functions have one docstring, which may be inherited.
         documentation = code.__doc__ if inspect.isclass(value) else inspect.getdoc(value) or inspect.getdoc(code)

@@ -5,6 +5,7 @@ A page asks for them from time to time, so that it also shows what another page,
 
 from __future__ import annotations
 
+import urllib.error
 import urllib.request
 from http.client import HTTPException
 from pathlib import Path
@@ -108,7 +109,12 @@ def _fetched(address: str) -> bytes:
     """Return what a robot serves; a proxy is of the internet, not of its network."""
     opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
     text, ends = b"", monotonic() + _LAYOUT_SECONDS
-    with opener.open(address, timeout=_LAYOUT_SECONDS) as response:
+    try:
+        response = opener.open(address, timeout=_LAYOUT_SECONDS)
+    except urllib.error.HTTPError as refused:
+        refused.close()
+        raise
+    with response:
         while piece := response.read1(1 << 16):
             text += piece
             if len(text) > _MOST_LAYOUT or monotonic() > ends:
