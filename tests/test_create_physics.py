@@ -135,6 +135,7 @@ VARIANTS = {
         self.drive = wpilib.drive.DifferentialDrive(self.left_1, self.right_1)
         self.pad = wpilib.XboxController(0)
         self.gyro = wpilib.ADXRS450_Gyro()
+        self.TRACK_WIDTH = 0.61
         """,
         "self.drive.arcadeDrive(-self.pad.getLeftY(), -self.pad.getRightX())",
         heading="-robot.gyro.getAngle()",
@@ -148,6 +149,8 @@ VARIANTS = {
 def test_the_robot_moves_as_its_driver_means_it(make_project: MakeProject, variant: Variant) -> None:
     project = make_project(variant.files())
     assert variant.says in create(project)
+    width = "0.61 * units.metre" if "TRACK_WIDTH" in variant.init else "22 * units.inch"
+    assert f"TRACK_WIDTH = {width}  # from" in (project.path / "physics.py").read_text()
     run_tests(project)
 
 
@@ -228,7 +231,8 @@ def test_the_templates(make_project: MakeProject, template: str, says: str) -> N
     assert (project.path / ".pyfrc/create-physics/physics.py").exists() == (result.code == 1)
 
 
-@pytest.mark.parametrize("robot", sampled(SAMPLES, SAMPLES[-1]))
+@pytest.mark.slow
+@pytest.mark.parametrize("robot", SAMPLES)
 def test_every_sample_robot_runs_with_it(make_project: MakeProject, robot: str) -> None:
     project = make_project({})
     project.copy(ROBOTS / robot)
@@ -350,12 +354,6 @@ def test_the_width_is_that_of_the_robots_code(path: str, thing: object, width: f
     assert find_track_width(objects) == width
 
 
-def test_the_width_is_written(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": TANK.format("TRACK_WIDTH = 0.61")})
-    create(project)
-    assert "TRACK_WIDTH = 0.61 * units.metre  # from" in (project.path / "physics.py").read_text()
-
-
 @pytest.mark.slow
 def test_names_and_inversion_tell_where_no_stick_does(make_project: MakeProject) -> None:
     """A climber has sides too, a conveyor runs by itself, and a loop that sleeps takes its time: none of it matters."""
@@ -436,16 +434,13 @@ def test_something_else_in_the_place_of_a_file(make_project: MakeProject, file: 
     assert not any((project.path / name).is_file() for name in FILES)
 
 
-@pytest.mark.parametrize("options", sampled([["--main", "src/robot.py"], []], []), ids=["--main", "pyproject.toml"])
-def test_files_are_named_from_the_current_directory(make_project: MakeProject, options: list[str]) -> None:
-    project = make_project({"src/robot.py": EMPTY["robot.py"]})
-    below = project.path / "src"
-    if not options:
-        project.write({"pyproject.toml": '[tool.pyfrc]\nmain = "src/robot.py"\n'})
-    printed = project.run("create-physics", *options).stdout
+def test_files_are_named_from_the_current_directory(make_project: MakeProject) -> None:
+    settings = '[tool.pyfrc]\nmain = "src/robot.py"\n'
+    project = make_project({"src/robot.py": EMPTY["robot.py"], "pyproject.toml": settings})
+    printed = create(project)
     assert "\nwrote src/sim/config.json\nwrote src/sim/config.schema.json\nwrote src/physics.py\n" in printed
     assert "at the top of src/physics.py to" in printed
-    printed = project.run("create-physics", *(options and ["--main", "robot.py"]), cwd=below).stdout
+    printed = project.run("create-physics", cwd=project.path / "src").stdout
     assert "unchanged: physics.py (exists)\n" in printed
 
 
@@ -559,28 +554,15 @@ def test_a_file_that_is_not_valid_is_never_written() -> None:
         checked("x = 1\ndef = 1\n")
 
 
-SWERVE = {
-    "lists": """
-        self.drive_motors = [wpilib.Talon(i) for i in range(4)]
-        self.steer_motors = [wpilib.Talon(i) for i in range(4, 8)]
-        self.steer_encoders = [wpilib.Encoder(2 * i, 2 * i + 1) for i in range(4)]
-    """,
-    "modules": """
-        self.modules = [Module(i) for i in range(4)]
-        self.arm_pivot = wpilib.Talon(9)
-    """,
-}
-
-
-@pytest.mark.parametrize("init", sampled(SWERVE.values(), next(iter(SWERVE.values()))), ids=SWERVE.keys())
-def test_swerve_is_recognised_and_left_to_the_team(make_project: MakeProject, init: str) -> None:
+def test_swerve_is_recognised_and_left_to_the_team(make_project: MakeProject) -> None:
     module = """
 class Module:
     def __init__(self, i):
         self.drive, self.turn = wpilib.Talon(i), wpilib.Talon(i + 4)
         self.turn_encoder = wpilib.Encoder(2 * i, 2 * i + 1)
 """
-    head = "class MyRobot(wpilib.TimedRobot):\n    def robotInit(self):"
+    head = "class MyRobot(wpilib.TimedRobot):\n    def robotInit(self):\n        "
+    init = "self.modules, self.arm_pivot = [Module(i) for i in range(4)], wpilib.Talon(9)\n"
     project = make_project({"robot.py": f"import wpilib\n\n{module}\n\n{head}{init}"})
     printed = create(project)
     assert printed.startswith("no drivetrain recognised\n")

@@ -143,6 +143,13 @@ def test_a_python_that_cannot_run_it(robot: LocalRobot) -> None:
     assert not isinstance(caught.value, ConnectionFailedError)
 
 
+def test_a_python_that_is_too_old(robot: LocalRobot) -> None:
+    program = agent_command("python3").partition(" -c '")[2].removesuffix("'")
+    old = f"{sys.executable} -c 'import sys\nsys.version_info = (3, 8, 10)\n{program}'"
+    with pytest.raises(DeployError, match=r"the robot's Python 3\.8 is too old: pyfrc needs 3\.9 or newer\n  Prep"):
+        robot.start(Processes(shell=old))
+
+
 def test_something_else_that_prints_before(robot: LocalRobot) -> None:
     """A login script's greeting, say."""
     with pytest.raises(DeployError, match=r"the robot sent data that is not from pyfrc's agent: .*Welco"):

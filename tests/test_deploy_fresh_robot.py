@@ -19,9 +19,8 @@ from pyfrc_core.deploy.facts import RobotFacts
 from pyfrc_core.deploy.robot_checks import NO_CHECK, PREPARE, refuse_installation, refuse_unfit_robot
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.doctor import CheckResult
-from pyfrc_core.doctor.check_result import hint, ok
 from pyfrc_core.doctor.robot import RobotSearch, check_robot_facts, missing_on_robot
-from pyfrc_core.doctor.steps import Step, first_missing
+from pyfrc_core.doctor.steps import Step
 from pyfrc_core.project import find_project
 
 OURS = version("wpilib")
@@ -154,12 +153,6 @@ def test_a_robot_that_is_ready() -> None:
 def test_the_doctor_reports_all_problems_at_once() -> None:
     facts = replace(READY, wpilib=None, python="3.9.1", image="FRC_roboRIO_2025_v2.0")
     assert [each.status for each in check_robot_facts(facts, ROBORIO, None)] == ["problem"] * 3
-
-
-def test_with_the_downloads_at_hand_only_the_deploy_is_left() -> None:
-    missing = (Step.PACKAGES, PREPARE)
-    assert first_missing(hint("sync", "", "pyfrc sync"), missing).remedy == "pyfrc sync"
-    assert str(first_missing(ok("sync", ""), missing).remedy).startswith("At the robot: pyfrc deploy")
 
 
 def test_packages_that_the_project_asks_for_and_the_robot_lacks(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from loops import for_each
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
 
-from pyfrc_core.deploy.agent.imports import installed_packages, is_there
+from pyfrc_core.deploy.agent.imports import is_there
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.facts import DeployRequest
 from pyfrc_core.deploy.program_imports import ProgramImports, imports_in
@@ -98,8 +98,6 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         "space/part.py": "1 / 0",
         f"fast{EXTENSION_SUFFIXES[0]}": "",
         "other.cpython-399-sparc.so": "",
-        "robotpy_thing-2026.1.dist-info/METADATA": "",
-        "Old.Thing-1.5-py3.9.egg-info": "",
     }
     site = tmp_path / "site"
     project_of(site, files)
@@ -111,12 +109,6 @@ def test_modules_that_are_there_and_none_is_imported_to_find_it(site: Path) -> N
     assert all(map(is_there, ("sys", "os", "json", "package", "space", "fast")))
     assert not any(map(is_there, ("no_such", "other")))
     assert "package" not in sys.modules
-
-
-def test_installed_packages_by_their_normalized_names(site: Path) -> None:
-    packages = installed_packages()
-    assert packages["robotpy-thing"] == "2026.1"
-    assert packages["old-thing"] == "1.5"
 
 
 def test_the_current_directory_is_not_the_robots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

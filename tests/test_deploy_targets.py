@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+import threading
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,6 +16,7 @@ import pytest
 from core.agent_disk import AgentDisk
 
 import pyfrc_core.deploy
+from pyfrc_core.deploy import connection as connection_module
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.layout import Layout
 from pyfrc_core.deploy.connection import VIRTUAL_ROBOT_GREETING, Connection
@@ -171,7 +173,7 @@ def test_the_team_of_an_address() -> None:
     assert {host: team_of_host(host) for host in (*teams, *nothing)} == {**teams, **dict.fromkeys(nothing)}
 
 
-def test_a_channel_is_closed_whatever_happens() -> None:
+def test_a_channel_is_closed_whatever_happens(monkeypatch: pytest.MonkeyPatch) -> None:
     events: list[str] = []
     channel = SimpleNamespace(
         settimeout=lambda seconds: None, exec_command=events.append, close=lambda: events.append("closed")
@@ -181,6 +183,16 @@ def test_a_channel_is_closed_whatever_happens() -> None:
     with pytest.raises(ValueError, match="odd"), connection.opened("command"):
         raise ValueError("odd")
     assert events == ["command", "closed"]
-    channel.exec_command = None
+    transport.is_active = lambda: False
+    channel.exec_command = lambda command: channel.missing
+    with pytest.raises(ConnectionFailedError, match="the connection to the robot was lost"):
+        connection.open("command")
+    transport.is_active = lambda: True
     with pytest.raises(ConnectionFailedError, match="the robot does not run commands over SSH: "):
         connection.open("command")
+    monkeypatch.setattr(connection_module, "STEP_SECONDS", 0.01)
+    is_closed = threading.Event()
+    channel.close = is_closed.set
+    channel.exec_command = lambda command: is_closed.wait(60) and channel.missing
+    with pytest.raises(ConnectionFailedError, match="the robot does not run commands over SSH: "):
+        connection.open("command that is never responded to")

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import io
-import json
 import sys
 import unicodedata
 
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pyfrc_core.deploy.progress import DeployProgress, JsonProgress
 from pyfrc_core.terminal_text import one_line, visible
 
 #: Clears the screen, sets the title, has the terminal answer, reverses the text.
@@ -43,23 +40,3 @@ def test_no_text_has_control_characters_afterwards(text: str) -> None:
     assert all(each in "\n\t" or not (ord(each) < 32 or 127 <= ord(each) < 160) for each in visible(text))
     assert one_line(text).count("\n") == 0
     assert visible(visible(text)) == visible(text)
-
-
-def test_all_that_a_deploy_prints() -> None:
-    stream = io.StringIO()
-    progress = DeployProgress(stream)
-    with progress.phase("look") as phase:
-        phase.detail = HOSTILE
-    for tell in (progress.note, progress.warning, progress.output):
-        tell(HOSTILE)
-    progress.result({}, HOSTILE)
-    assert stream.getvalue().count("\\x1b[2J") == 5
-    assert not set(stream.getvalue()) & set("\x1b\x07\x9b\r\x7f\u202e\u2028")
-
-
-def test_json_has_the_text_as_it_was_and_no_control_characters() -> None:
-    stream = io.StringIO()
-    JsonProgress(stream).output(HOSTILE)
-    assert stream.getvalue().rstrip("\n").isprintable()
-    assert stream.getvalue().isascii()
-    assert json.loads(stream.getvalue())["text"] == HOSTILE

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -336,6 +337,12 @@ def test_a_file_that_changes_while_it_is_sent(
         with pytest.raises(RefusedError, match=r"arm.py was changed while it was sent\n  Deploy again."):
             robot.deploy(agents, manifest)
         assert robot.startable() == before
+    manifest = project.write("arm.py", "LENGTH = 2\n").manifest
+    (tmp_path / "project/arm.py").unlink()
+    os.mkfifo(tmp_path / "project/arm.py")
+    with pytest.raises(RefusedError, match=r"arm.py was changed while it was sent"):
+        robot.deploy(agents, manifest)
+    (tmp_path / "project/arm.py").unlink()
     robot.deploy(agents, project.manifest)
 
 

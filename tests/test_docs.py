@@ -62,7 +62,7 @@ SHORT_MATCHES = SHORT_MATCH + "\n[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"
 def written(make_shared_project):
     """What `pyfrc init` writes."""
     project = make_shared_project({})
-    result = project.run("init")
+    result = project.run_here("init")
     assert result.code == 0, result.output
     return project
 
@@ -385,7 +385,8 @@ GUIDES_COMMANDS = [
 ]
 
 
-@pytest.mark.parametrize("command", sampled(GUIDES_COMMANDS, "pyfrc test --no-isolation"))
+@pytest.mark.slow
+@pytest.mark.parametrize("command", GUIDES_COMMANDS)
 def test_the_commands_in_the_guides_work(command: str, project) -> None:
     program, *arguments = shlex.split(command)
     assert program == "pyfrc"

@@ -17,8 +17,7 @@ from packaging.requirements import Requirement
 from ports import refusing_port
 
 from pyfrc_core._version import __version__
-from pyfrc_core.deploy.targets.roborio import ROBORIO
-from pyfrc_core.doctor import NEXT_STEP, CheckResult, installed, robot, robot_project
+from pyfrc_core.doctor import NEXT_STEP, CheckResult, installed, robot_project
 from pyfrc_core.doctor.check_result import hint, ok, problem
 from pyfrc_core.doctor.examine import (
     DoctorOptions,
@@ -484,19 +483,3 @@ def test_what_an_installed_package_needs_here() -> None:
     rev = installed._package(found("robotpy-rev", "2026.1.2", *needs))
     assert rev is not None
     assert (str(rev), rev.season, [str(each) for each in rev.needs]) == ("robotpy-rev 2026.1.2", 2026, [needs[0]])
-
-
-def test_the_first_step_that_is_missing_on_a_robot(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(robot, "image_problem", lambda image, wpilib, controller: image == "old")
-
-    def missing(*found: CheckResult, **facts: Any) -> tuple[Step, str]:
-        there = {"not_controller": None, "image": "new", "current": "a", "other_code": False, "running": True}
-        return robot.missing_on_robot(SimpleNamespace(**there | facts), ROBORIO, found)  # type: ignore[arg-type]
-
-    wrong = problem("robot", "six is missing", "pyfrc sync")
-    assert missing(wrong, not_controller="a laptop")[0] is missing(wrong, image="old")[0] is Step.CONTROLLER
-    assert missing(ok("robot", "all is well"), wrong, current=None) == (Step.PACKAGES, "pyfrc sync")
-    assert missing(current=None, running=False) == (Step.PROGRAM, "pyfrc deploy")
-    assert missing(current=None, other_code=True, running=False)[1].startswith("It is there, but does not run.")
-    assert missing(running=False)[1].startswith("It is there, but does not run.")
-    assert missing()[0] not in (Step.CONTROLLER, Step.PACKAGES)

@@ -109,7 +109,7 @@ def test_settings_that_contradict_each_other(command: str, make_project: MakePro
     assert "Write packages of one season there." in result.output
 
 
-@pytest.mark.parametrize("command", [*COMMANDS, *OTHERS])
+@pytest.mark.parametrize("command", sampled([*COMMANDS, *OTHERS], "test", "pytest", "doctor"))
 def test_without_wpilib(command: str, make_project: MakeProject, tmp_path: Path) -> None:
     project = make_project(FILES | {"pyproject.toml": asks_for(THERE), "any.jsonl": ""})
     program, arguments, code = (COMMANDS | OTHERS)[command]
@@ -174,28 +174,6 @@ FITTING = [f"{CURRENT.year}.1.1", "newest", "ignored", *(["2025.3.2.0"] if CURRE
 def test_a_project_of_this_season_or_an_earlier_one_runs(wanted: str, make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, "pyproject.toml": asks_for(wanted)})
     assert project.run("test", "--builtin").code == 0
-
-
-@pytest.mark.parametrize(
-    ("requirement", "year"),
-    [
-        ("wpilib==2026.2.2", 2026),
-        ("wpilib==2026.*", 2026),
-        ("robotpy-commands-v2~=2027.0.0a7", 2027),
-        ("robotpy-rev<2027,>=2026.0.4", 2026),
-        ("pyntcore>=2027.0.0a7", 2027),
-        ("robotpy-pathplannerlib>=2026.1.2", None),  # either
-        ("robotpy-ctre==2024.1.1", None),  # none of those that pyfrc knows
-        ("phoenix6~=26.1", None),
-        ("numpy==2026.1", None),
-        ("not a requirement", None),
-    ],
-)
-def test_packages_of_one_season(requirement: str, year: int | None, tmp_path: Path) -> None:
-    pyproject = tmp_path / "pyproject.toml"
-    pyproject.write_text(f'[tool.robotpy]\nrequires = ["{requirement}"]\n', "utf-8")
-    found = [(each.text, each.year, each.where) for each in load_season_settings(pyproject)]
-    assert found == ([(f"requires has {requirement!r}", year, "pyproject.toml:2")] if year else [])
 
 
 def test_a_project_from_before_them_needs_the_oldest(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ import jsonschema
 import pytest
 from conftest import LoadConfig as Load
 from conftest import MakeProject
+from loops import for_each
 from test_generated_docs import expanded
 
 from pyfrc_core.config.sim import Polygon, Rectangle, SimConfig, sim_config_schema
@@ -43,17 +44,15 @@ def test_without_a_file_everything_is_at_its_default(tmp_path: Path) -> None:
     assert loaded.warnings == ()
 
 
-@pytest.mark.parametrize(
-    ("robot", "length"), [({"h": 4}, 4), ({"l": 5}, 5), ({"l": 5, "h": 4}, 5), ({}, 3)], ids=["h", "l", "both", "none"]
-)
+@for_each("robot, length", [({"h": 4}, 4), ({"l": 5}, 5), ({"l": 5, "h": 4}, 5), ({}, 3)])
 def test_h_is_the_older_name_of_the_robots_length(load: Load, robot: dict[str, float], length: float) -> None:
     config = config_of(load, robot=robot)
     assert config.robot.l == length
     assert config.robot.h == length
 
 
-@pytest.mark.parametrize(
-    ("season", "w", "h", "messages", "auto_joysticks"),
+@for_each(
+    "season, w, h, messages, auto_joysticks",
     [
         (2017, 29, 31, (), False),
         (2018, 30, 27, ("RRR", "RLR", "LRL", "LLL"), False),
@@ -61,7 +60,7 @@ def test_h_is_the_older_name_of_the_robots_length(load: Load, robot: dict[str, f
         (2026, 54.25, 26 + 5 / 12, (), False),
     ],
 )
-@pytest.mark.parametrize("written", [int, str])
+@for_each("written", [int, str])
 def test_a_season_brings_its_field_and_defaults(
     load: Load,
     season: int,
@@ -100,6 +99,7 @@ def test_the_only_start_position_is_taken(load: Load) -> None:
     assert (config.start.x, config.start.y, config.start.angle) == (7, 0, 0)
     assert [position.name for position in config.robot.start_positions] == ["left", "right"]
     assert not config_of(load, robot={"w": 3}).says_start
+    assert all(config_of(load, robot={f"starting_{key}": 1}).says_start for key in ("x", "y", "angle"))
 
 
 def test_objects_are_rectangles_and_polygons(load: Load) -> None:
@@ -133,8 +133,8 @@ def test_other_tools_keys_and_the_schemas_are_left_alone(load: Load) -> None:
 # -- what has no effect ---------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
+@for_each(
+    "text, expected",
     [
         ('{"pyfrc": {\n"robt": 1}}', "2: unknown key 'pyfrc.robt'\n  did you mean 'robot'?"),
         (
@@ -179,23 +179,11 @@ def test_what_has_no_effect_is_warned_of_with_its_line(load: Load, text: str, ex
     assert str(warning).startswith(f"sim/config.json:{expected}")
 
 
-@pytest.mark.parametrize("is_link", [False, True])
-def test_an_image_outside_of_the_project_is_warned_of(is_link: bool, load: Load, root: Path) -> None:
-    outside = root.parent / "outside.png"
-    outside.write_bytes(b"\x89PNG\r\n\x1a\n")
-    name = "../../outside.png"
-    if is_link:
-        name = "link.png"
-        (root / "sim" / name).symlink_to(outside)
-    (warning,) = load(json.dumps({"pyfrc": {"field": {"image": name}}})).warnings
-    assert "it is outside of the project, and is not shown" in str(warning)
-
-
 # -- what is surely not meant ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("robot", "expected"),
+@for_each(
+    "robot, expected",
     [
         ({"w": 0.4}, ["pyfrc.robot.w = 0.4: this is very small: is that in metres? Lengths are in feet"]),
         ({"h": 36}, ["pyfrc.robot.h = 36: the robot is larger than the field (54.25 by 26.4167 ft)"]),
@@ -222,7 +210,7 @@ def test_what_is_surely_not_meant_is_doubted(load: Load, robot: dict[str, Any], 
         assert str(doubt).startswith(f"sim/config.json:1: {start}")
 
 
-@pytest.mark.parametrize(
+@for_each(
     "robot",
     [
         {"w": 0.5, "l": 4, "starting_x": 54.25, "starting_y": 26},
@@ -242,8 +230,8 @@ def test_a_season_names_those_that_are_known(load: Load) -> None:
 # -- mistakes -------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
+@for_each(
+    "text, expected",
     [
         ('{"pyfrc": {"robot": {\n"w": "wide"}}}', '2: pyfrc.robot.w = "wide": input should be a valid number'),
         ('{"pyfrc":\n{"field": []}}', "2: pyfrc.field = []: input should be an object"),
@@ -272,18 +260,9 @@ def test_a_season_names_those_that_are_known(load: Load) -> None:
             '2: pyfrc.joysticks.0.axes.w = "a": the key should be a number from 0 to 11, or one of the letters x',
         ),
         ("[\n]", "1: the whole file = [ ]: input should be an object"),
-        ("", "1: not valid JSON: the file is empty"),
-        ('{\n"a": [1,\n2', "3: not valid JSON: the file ends too early"),
-        ('{\n"a": "b', "2: not valid JSON: a string begins here that does not end"),
         ('{\n"a": 1,\n}', "2: not valid JSON: JSON allows no comma before a closing bracket"),
-        ('{\n"a": [1,]}', "2: not valid JSON: JSON allows no comma before a closing bracket"),
-        ("{\n// robot\n}", "2: not valid JSON: JSON has no comments"),
-        ("{\n'a': 1}", "2: not valid JSON: JSON has its strings in double quotes"),
-        ('{"a": 1\n"b": 2}', "2: not valid JSON: expected a comma or the closing bracket, found '\"'"),
-        ('{"a":\nTrue}', "2: not valid JSON: expected a value, found 'True'"),
         ('{"a": "NaN",\n"b": NaN}', "2: not valid JSON: NaN is not a number that JSON has"),
         ('{"a": "[[",\n"b": ' + "[" * 101, "2: not valid JSON: objects and arrays are nested more than 100 deep"),
-        ("{}\nx", "2: not valid JSON: expected the end of the file, found 'x'"),
     ],
 )
 def test_a_mistake_is_told_with_its_line_its_value_and_what_is_allowed(load: Load, text: str, expected: str) -> None:
@@ -358,10 +337,10 @@ def test_the_documents_example_is_without_mistakes_and_warnings(make_project: Ma
     project = make_project(
         {"robot.py": ROBOT, "sim/config.json": EXAMPLE, "sim/field.png": "<svg xmlns='http://www.w3.org/2000/svg'/>"}
     )
-    result = project.run("config", "check", "--strict")
+    result = project.run_here("config", "check", "--strict")
     assert (result.code, result.output) == (0, "sim/config.json: no mistakes\n")
     commands = re.findall(r"^[$] pyfrc (.+)$", DOCUMENT, re.MULTILINE)
     assert "config check --strict" in commands
     for command in commands:
-        assert project.run(*command.split()).code == 0, command
+        assert project.run_here(*command.split()).code == 0, command
     assert SCHEMA.is_valid(json.loads(EXAMPLE))

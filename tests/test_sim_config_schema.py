@@ -18,7 +18,7 @@ SCHEMA = jsonschema.Draft202012Validator(json.loads(sim_config_schema()))
 
 
 def test_the_schema_tells_an_editor_keys_meanings_and_defaults(make_project: MakeProject) -> None:
-    result = make_project({}).run("config", "schema")
+    result = make_project({}).run_here("config", "schema")
     assert result.code == 0, result.output
     schema = json.loads(result.stdout)
     assert schema["$schema"] == "https://json-schema.org/draft/2020-12/schema"
@@ -104,7 +104,7 @@ def configs(valid_only: bool) -> st.SearchStrategy[dict[str, Any]]:
     return st.fixed_dictionaries({}, optional={"pyfrc": pyfrc, "other": ANYTHING, "$schema": ANYTHING})
 
 
-@settings(max_examples=50)
+@settings(max_examples=25)
 @given(document=configs(valid_only=True), indent=st.none() | st.integers(0, 4), ascii_only=st.booleans())
 def test_what_is_valid_loads(load: Load, document: dict[str, Any], indent: int | None, ascii_only: bool) -> None:
     loaded = load(json.dumps(document, indent=indent, ensure_ascii=ascii_only))
@@ -112,7 +112,7 @@ def test_what_is_valid_loads(load: Load, document: dict[str, Any], indent: int |
     assert loaded.config.robot.l == given_robot.get("l", given_robot.get("h", 3))
 
 
-@settings(max_examples=50)
+@settings(max_examples=25)
 @given(document=configs(valid_only=False))
 def test_the_schema_accepts_what_the_loader_accepts(load: Load, document: dict[str, Any]) -> None:
     try:

@@ -225,23 +225,18 @@ def test_a_component_that_does_not_exist_is_refused_before_the_download(laptop: 
     assert laptop.index.requests == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("requires", "message"),
     [
         ('"needs-c"', f"there is no wheel of only-for-pcs>=1 for the {CONTROLLER} (Python 3.14); needs-c needs it"),
-        pytest.param(
-            '"simple-lib>5"',
-            f"there is no wheel of simple-lib>5 for the {CONTROLLER} (Python 3.14); there are wheels of 0.5, 1.0",
-            marks=pytest.mark.slow,
-        ),
-        pytest.param(
+        (
             '"needs-old", "simple-lib==1.0"',
             "the requirements contradict each other: [tool.robotpy] has simple-lib==1.0; needs-old 1.0 depends on "
             "simple-lib<1",
-            marks=pytest.mark.slow,
         ),
     ],
-    ids=["only for others", "another version", "contradiction"],
+    ids=["only for others", "contradiction"],
 )
 def test_what_cannot_be_found_is_named_and_what_to_do(laptop: Laptop, requires: str, message: str) -> None:
     laptop.index.add("needs-c", "1.0", ["only-for-pcs>=1"])

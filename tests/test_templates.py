@@ -59,7 +59,7 @@ def project_of(make_shared_project: MakeProject) -> Callable[[str], RobotProject
     @functools.cache
     def project_of(template: str) -> RobotProject:
         project = make_shared_project({})
-        made = project.run("init", "--template", template)
+        made = project.run_here("init", "--template", template)
         assert made.code == 0, made.output
         return project
 
@@ -194,6 +194,7 @@ def robot() -> Iterator[Roborio]:
 
 
 @sampled_templates
+@pytest.mark.slow
 def test_it_starts_on_a_robot(
     project: RobotProject, template: str, robot: Roborio, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -270,7 +271,7 @@ def test_todays_tools_and_pip_read_what_it_needs(project: RobotProject, template
 
 def test_the_editor_finds_its_tests_its_schema_and_the_commands(make_project: MakeProject) -> None:
     project = make_project({})
-    assert project.run("init").code == 0
+    assert project.run_here("init").code == 0
     settings, launch, config = (
         json.loads((project.path / file).read_text("utf-8"))
         for file in (".vscode/settings.json", ".vscode/launch.json", "sim/config.json")
@@ -281,7 +282,7 @@ def test_the_editor_finds_its_tests_its_schema_and_the_commands(make_project: Ma
     assert association["fileMatch"] == ["/sim/config.json"]
     schema = project.path / association["url"]
     assert (project.path / "sim" / config["$schema"]).samefile(schema)
-    assert schema.read_text("utf-8").strip() == project.run("config", "schema").stdout.strip()
+    assert schema.read_text("utf-8").strip() == project.run_here("config", "schema").stdout.strip()
     assert {entry["args"][0] for entry in launch["configurations"]} == {"sim", "test", "deploy"}
     assert all(entry["args"][0] in COMMANDS and entry["module"] == "pyfrc" for entry in launch["configurations"])
 

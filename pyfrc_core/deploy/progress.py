@@ -229,8 +229,7 @@ class JsonProgress(DeployProgress):
         self._event("phase", phase=phase.name, detail=phase.detail, seconds=round(seconds, 3))
 
     def _event(self, event: str, **fields: object) -> None:
-        # JSON does not escape this control character.
-        self._write(json.dumps({"event": event, **fields}).replace("\x7f", "\\u007f"))
+        self._write(json.dumps({"event": event, **fields}))
 
 
 @dataclass(frozen=True)

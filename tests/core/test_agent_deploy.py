@@ -162,6 +162,11 @@ def test_errors_of_the_disk_and_of_the_agent(robot: AgentDisk, monkeypatch: pyte
     mode = failing(PermissionError(13, "Permission denied", str(robot.home / "py")))
     assert (mode["error"], mode["message"]) == ("disk", f"{robot.home / 'py'}: Permission denied")
     assert failing(OSError(5, "Input/output error"))["message"] == "the robot: Input/output error"
+    assert (
+        failing(OSError(30, ""))["message"] == "the robot's disk cannot be written: it is read-only, as after an error"
+    )
+    taken = OSError(21, "Is a directory", str(robot.home / "missing"), None, str(robot.home))
+    assert failing(taken)["message"] == f"{robot.home}: Is a directory"
     assert failing(shutil.SpecialFileError("`x` is a named pipe"))["message"] == "the robot: `x` is a named pipe"
     assert failing(OSError())["message"] == "the robot: OSError"
     bug = failing(KeyError("x"))

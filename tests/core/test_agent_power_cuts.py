@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Protocol
 
 import pytest
+from conftest import sampled
 from roborio.local import LocalRobot, directory_in_memory
 
 from pyfrc_core.deploy.agent import releases
@@ -134,11 +135,12 @@ def test_deploys(directory: Path, controller: ControllerKind, files: Files, chec
     check(controller, lambda robot: deploy(robot, files), (ONE, {}), (files, {}))
 
 
+@pytest.mark.slow
 def test_the_first_deploy(check: Check) -> None:
     check(ROBORIO, lambda robot: deploy(robot, ONE), None, (ONE, {}))
 
 
-@pytest.mark.parametrize("exchanges", [True, False])
+@pytest.mark.parametrize("exchanges", sampled([True, False], True))
 def test_another_tools_program_is_taken_over(
     directory: Path, exchanges: bool, check: Check, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -153,7 +155,8 @@ def test_another_tools_program_is_taken_over(
     check(ROBORIO, lambda robot: deploy(robot, ONE), (theirs, {}), (ONE, {}))
 
 
-@BOTH
+@pytest.mark.slow
+@pytest.mark.parametrize("controller", [ROBORIO, SYSTEMCORE], ids=lambda each: each.name)
 def test_rollbacks(directory: Path, controller: ControllerKind, check: Check) -> None:
     robot = AgentDisk(directory / "robot", controller.layout)
     deploy(robot, ONE)
@@ -162,6 +165,7 @@ def test_rollbacks(directory: Path, controller: ControllerKind, check: Check) ->
     check(controller, lambda robot: robot.ask(back), (RENAMED, {}), (ONE, {}))
 
 
+@pytest.mark.slow
 def test_an_undeploy(directory: Path, check: Check, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(RealRobot, "stop", lambda host, start: False)
     deploy(AgentDisk(directory / "robot", ROBORIO.layout), ONE)

@@ -246,8 +246,6 @@ def test_a_mistake_in_toml_is_named(tmp_path: Path) -> None:
     file.write_text("[[a]]\nx = 1\n[[a]]\nx = 2\n[b]\ny = 1\ny = 2\n")
     with pytest.raises(SettingsError, match=r"pyproject.toml:7: .*b.y.* 6"):
         TomlFile(file)
-    file.write_bytes(b"\xef\xbb\xbf[tool.pyfrc]\nmain = 'a.py'\n")
-    assert TomlFile(file).table_at("tool", "pyfrc") == {"main": "a.py"}
 
 
 def test_a_byte_order_mark_is_accepted_also_when_another_library_reads_the_file(
@@ -285,29 +283,17 @@ def test_what_is_no_json_is_named_with_its_column(text: str, message: str, proje
     assert str(error.value.where).startswith("sim/config.json:")
 
 
-def test_where_the_robot_starts(project: Project) -> None:
-    for robot_part in ({}, {"starting_x": 1}, {"starting_y": 2}, {"starting_angle": 3}):
-        write_files(project.root, {"sim/config.json": json.dumps({"pyfrc": {"robot": robot_part}})})
-        config = load_sim_config(project.root).config
-        assert config.says_start is bool(robot_part)
-    assert (config.start.name, config.start.angle) == ("start", 3)
-    for season, messages in ((2018, False), (2019, True)):
-        write_files(project.root, {"sim/config.json": json.dumps({"pyfrc": {"field": {"season": season}}})})
-        assert (load_sim_config(project.root).config.game_specific_messages == ()) is messages
-    given = '{"pyfrc": {"game_specific_messages": ["X"], "field": {"season": 2018}}}'
-    write_files(project.root, {"sim/config.json": given})
-    assert load_sim_config(project.root).config.game_specific_messages == ("X",)
-
-
 def test_pictures_of_fields(tmp_path: Path) -> None:
     root = tmp_path / "robot"
     (root / "sim").mkdir(parents=True)
     (root / "sim/a.png").write_bytes(b"\x89PNG\r\n\x1a\n")
     (root / "sim/a.txt").write_bytes(b"x")
     (tmp_path / "out.png").write_bytes(b"\x89PNG\r\n\x1a\n")
+    (root / "sim/link.png").symlink_to(tmp_path / "out.png")
     assert field_picture(root, "a.png") == (root / "sim/a.png", "")
     assert field_picture(root, "a.txt") == (None, "it is no picture (PNG, JPEG, GIF, WebP, BMP or SVG)")
-    assert field_picture(root, "../../out.png") == (None, "it is outside of the project, and is not shown")
+    for name in ("../../out.png", "link.png"):
+        assert field_picture(root, name) == (None, "it is outside of the project, and is not shown")
     for name in ("none.png", "a\0b", "sim"):
         assert field_picture(root, name) == (None, "there is no such file")
 
