@@ -49,10 +49,12 @@ _NOT_PASSED_ON_EITHER = {
 # The matrices of robots are too small for threads.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-# The same examples in each run, and no limits by the clock: a failure is not chance, nor a busy machine.
+# The same examples in each run, and no limits by the clock: a failure is not chance, nor a busy machine. By day, half
+# as many as Hypothesis takes by default.
 settings.register_profile(
     "suite", deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]
 )
+settings.register_profile("day", settings.get_profile("suite"), max_examples=50)
 settings.load_profile("suite")
 
 # A suite that a shell has started in the background ignores Ctrl-C. The commands that are tested must not inherit that.
@@ -142,6 +144,8 @@ def _environment() -> dict[str, str]:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Compile our packages, as installing them does: commands would do it each time, since they keep nothing."""
+    if not config.getoption("run_slow"):
+        settings.load_profile("day")
     if hasattr(config, "workerinput"):
         _forking.extend(config.workerinput["forking"])
         return

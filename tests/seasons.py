@@ -33,7 +33,7 @@ IN_2027: dict[str, set[str]] = {
         "test_whose_loop_it_is_shows_nowhere_outside[wpilib's]",
         "test_whose_loop_it_is_shows_nowhere_outside[its own]",
     },
-    "scripts": {"test_a_recordings_replay_does_the_same[command]"},
+    "scripts": {"test_a_failure_comes_back"},
     "sim_headless": {"test_a_practice_match", "test_a_robot_that_fails"},
     "sim_session": {
         "test_driving_as_from_a_driver_station",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import sys
 from pathlib import Path
-from subprocess import run
+from subprocess import DEVNULL, PIPE
 
 import magicbot
 import pytest
@@ -13,6 +13,7 @@ from loops import for_each
 
 from pyfrc_core import wpi
 from pyfrc_core.compat.private_name import IncompatibleLibraryError, PrivateName
+from pyfrc_core.processes import spawn
 from pyfrc_core.season import CURRENT
 from pyfrc_core.wpi import commands, network, reports, robots
 
@@ -37,11 +38,14 @@ def test_it_is_there(name: PrivateName) -> None:
 
 
 def said_by(program: str) -> list[str]:
-    """Run a program that uses the HAL in an interpreter of its own, and return the lines that it prints."""
+    """Run a program that uses the HAL in a process of its own, and return the lines that it prints."""
     start = "import time, hal, wpilib, hal.simulation\nhal.initialize(500, 0)\n"
-    done = run([sys.executable, "-c", start + program], capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
-    return [line for line in done.stdout.splitlines() if "CameraServer" not in line]
+    process = spawn.popen([sys.executable, "-c", start + program], stdin=DEVNULL, stdout=PIPE)
+    assert process.stdout is not None
+    with process.stdout as stdout:
+        said = stdout.read().decode()
+    assert process.wait() == 0, said
+    return [line for line in said.splitlines() if "CameraServer" not in line]
 
 
 def test_the_loop_function_calls_the_robots_functions() -> None:
@@ -158,7 +162,7 @@ hal.removeNewDataEventHandle(event)
 """
 
 
-@pytest.mark.parametrize(
+@for_each(
     "before",
     [
         "",
@@ -220,7 +224,7 @@ packets()
     assert "stopped" in said, "packets do not wake WPILib's motor-safety thread: is there nothing left to replace?"
 
 
-@pytest.mark.parametrize("before", ["", "other, _ = hal.initializeNotifier()", "dog = wpilib.Watchdog(1, print)"])
+@for_each("before", ["", "other, _ = hal.initializeNotifier()", "dog = wpilib.Watchdog(1, print)"])
 def test_the_thread_of_watchdogs_ends(before: str) -> None:
     program = f"""
 from pyfrc_core.wpi import watchdogs

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from conftest import MakeProject, RobotProject, sampled
+from conftest import MakeProject, RobotProject
 from skips import missing_python, requires
 
-pytestmark = requires("robots with vendors' packages", missing_python())
+pytestmark = [pytest.mark.slow, requires("robots with vendors' packages", missing_python())]
 
 ROBOTS = Path(__file__).parent / "robots" / "competition"
 NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
@@ -21,7 +21,7 @@ NOISE = "do not repeat exactly, because REV's library draws the noise of their v
 SETTINGS = "\n[tool.pyfrc.match]\nautonomous = 2\npause = 0.1\nteleop = 2\n"
 
 
-@pytest.fixture(params=sampled(NAMES, "magic_swerve"))
+@pytest.fixture(params=NAMES)
 def project(request: pytest.FixtureRequest, make_project: MakeProject) -> RobotProject:
     made = make_project({})
     made.copy(ROBOTS / request.param)

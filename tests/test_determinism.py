@@ -71,7 +71,7 @@ def hashes(directory: Path) -> Iterator[tuple[str, str]]:
             yield test, trace_hash(trace)
 
 
-@pytest.mark.parametrize("name", sample_robots(WHOLE_MATCHES, "worker"))
+@pytest.mark.parametrize("name", sample_robots("worker"))
 def test_sample_robot_passes_all_tests_and_does_the_same_again_and_again(
     name: str, project: RobotProject, tmp_path: Path
 ) -> None:

@@ -8,8 +8,6 @@ from pathlib import Path
 import pytest
 from conftest import SHORT_MATCH, MakeProject, sampled
 
-from pyfrc_core.processes.fork import FORK_IS_SAFE
-
 #: Keeps a log under a name that is the same in every run, and fails if another run has changed its file.
 WRITES = """
     {imports}
@@ -65,13 +63,10 @@ def test_tests_at_the_same_time(make_project: MakeProject, name: str) -> None:
     assert result.code == 0, result.output
 
 
-@pytest.mark.parametrize(
-    "isolation",
-    sampled(["fork", "reuse"] if FORK_IS_SAFE else ["reuse"], "fork" if FORK_IS_SAFE else "reuse"),
-)
-def test_either_isolation(make_project: MakeProject, isolation: str) -> None:
+@pytest.mark.slow
+def test_where_interpreters_are_used_again(make_project: MakeProject) -> None:
     project = make_project({"robot.py": robot("random"), "pyproject.toml": SHORT_MATCH})
-    result = project.run("test", "--builtin", "-j", "3", "--isolation", isolation)
+    result = project.run("test", "--builtin", "-j", "3", "--isolation", "reuse")
     assert result.code == 0, result.output
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 from collections.abc import Iterator
@@ -144,9 +145,14 @@ def test_match(tree: HalData) -> None:
         tree["event"]["game_specific_message"] = "x" * 65
 
 
+@functools.cache
+def one_tree() -> HalData:
+    return HalData()
+
+
 @given(st.integers(0, 5), st.integers(0, 11), st.floats(-1, 1, width=32))
 def test_a_joystick_axis_reaches_the_robot_with_the_next_packet(stick: int, axis: int, value: float) -> None:
-    data = HalData()
+    data = one_tree()
     data["joysticks"][stick]["axes"][axis] = value
     assert data["joysticks"][stick]["axes"][axis] == value
     packet()

@@ -61,7 +61,9 @@ def check(output: str, times: int, defaults: Container[int] = (1,)) -> None:
         assert hidden not in output
 
 
-@pytest.mark.parametrize("isolation", [pytest.param("fork", marks=needs_fork), "reuse"])
+@pytest.mark.parametrize(
+    "isolation", [pytest.param("fork", marks=needs_fork), pytest.param("reuse", marks=pytest.mark.slow)]
+)
 def test_of_the_output_of_tests_that_failed(project: RobotProject, isolation: str) -> None:
     # What an interpreter prints once is in its first test: in the one that passes; or, if a second interpreter was
     # ready before the first one was as good as new, in one that fails, too.

@@ -65,11 +65,11 @@ TESTS = """
 """
 
 
-def run(project: RobotProject, *args: str, library: str = LIBRARY) -> tuple[list[str], str]:
+def run(project: RobotProject, *args: str) -> tuple[list[str], str]:
     """Run a command with the library at hand; return what pyfrc explains, and the output."""
     others = project.path.parent / "others"
     others.mkdir(exist_ok=True)
-    RobotProject(others, others).write({"bus/__init__.py": library, "urcl/__init__.py": URCL})
+    RobotProject(others, others).write({"bus/__init__.py": LIBRARY, "urcl/__init__.py": URCL})
     result = project.run(*args, env={"PYTHONPATH": str(others)})
     assert result.code == 0, result.output
     return [line for line in result.output.splitlines() if line.startswith("pyfrc: ")], result.output
@@ -81,19 +81,14 @@ def test_each_test_imports_a_robot_whose_import_starts_a_librarys_thread(make_pr
     assert "libraries start 1 thread" in explained[0]
 
 
-def test_a_robot_with_urcl_is_told_where_to_import_it(make_project: MakeProject) -> None:
-    robot = ROBOT.replace("    bus.start()\n", "    import urcl\n").replace("assert bus.ask(1) == 2", "pass")
-    explained, output = run(make_project({"robot.py": robot, "tests/test_a.py": TESTS}), "test")
-    assert "1 passed" in output
-    assert "`import urcl` makes a notifier. Do that in robotInit." in explained[0]
-
-
-def test_a_device_beside_urcl_is_named_too(make_project: MakeProject) -> None:
+def test_a_robot_with_urcl_is_told_where_to_import_it_and_a_device_beside_it_is_named_too(
+    make_project: MakeProject,
+) -> None:
     robot = ROBOT.replace("    bus.start()\n", "    import urcl\n    motor = wpilib.PWMSparkMax(3)\n")
     robot = robot.replace("assert bus.ask(1) == 2", "pass")
-    explained, _ = run(make_project({"robot.py": robot, "tests/test_a.py": TESTS}), "test")
-    assert "`import urcl` makes a notifier" in explained[0]
-    assert "pwm[3]" in explained[0]
+    explained, output = run(make_project({"robot.py": robot, "tests/test_a.py": TESTS}), "test")
+    assert "1 passed" in output
+    assert explained[0].endswith("`import urcl` makes a notifier; devices are made: pwm[3]. Do that in robotInit.")
 
 
 @pytest.mark.slow
@@ -102,17 +97,10 @@ def test_fuzz_imports_such_a_robot_in_each_match(make_project: MakeProject) -> N
     assert "Nothing was found" in output
 
 
-def test_a_library_whose_thread_starts_with_the_robot_needs_none_of_this(make_project: MakeProject) -> None:
-    robot = ROBOT.replace("    bus.start()\n", "").replace("assert bus", "bus.start()\n            assert bus")
-    explained, output = run(make_project({"robot.py": robot, "tests/test_a.py": TESTS}), "test")
-    assert "1 passed" in output
-    assert explained == []
-
-
-def test_numpys_threads_keep_no_test_from_being_forked(make_project: MakeProject) -> None:
-    robot = ROBOT.replace("    bus.start()\n", "").replace("assert bus.ask(1) == 2", "pass")
-    explained, output = run(
-        make_project({"robot.py": robot, "tests/test_a.py": TESTS}), "test", library="    import numpy"
+def test_a_library_whose_thread_starts_with_the_robot_and_numpy_need_none_of_this(make_project: MakeProject) -> None:
+    robot = ROBOT.replace("    bus.start()\n", "    import numpy\n").replace(
+        "assert bus", "bus.start()\n            assert bus"
     )
+    explained, output = run(make_project({"robot.py": robot, "tests/test_a.py": TESTS}), "test")
     assert "1 passed" in output
     assert explained == []

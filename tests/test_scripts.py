@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from conftest import sample_robots, trace_hash
+from conftest import MakeProject, RobotProject, sample_robots, trace_hash
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -19,18 +19,61 @@ ROBOTS = Path(__file__).parent / "robots"
 HEADER = {"format": FORMAT, "end": 1.0}
 
 ROBOT = """
+    import ntcore
     import wpilib
+    from wpimath.geometry import Pose2d
 
     class MyRobot(wpilib.TimedRobot):
         def robotInit(self):
             self.stick = wpilib.Joystick(0)
-            self.motor = wpilib.PWMSparkMax(0)
+            self.motors = [wpilib.PWMSparkMax(port) for port in range(3)]
             self.switch = wpilib.DigitalInput(4)
+            table = ntcore.NetworkTableInstance.getDefault().getTable("camera")
+            self.pose = table.getStructTopic("pose", Pose2d).subscribe(Pose2d())
+            self.tags = table.getStructArrayTopic("tags", Pose2d).subscribe([])
+            self.own = table.getStructTopic("own", Pose2d).publish()
 
         def teleopPeriodic(self):
-            self.motor.set(self.stick.getY())
+            self.motors[0].set(self.stick.getY())
+            self.motors[1].set(self.pose.get().x)
+            self.motors[2].set(sum(tag.y for tag in self.tags.get()))
+            self.own.set(self.pose.get())
             if self.stick.getRawButton(3) and self.stick.getRawButton(2):
                 raise RuntimeError("both at once")
+    """
+
+#: A match; poses from a camera; a failure; a drive.
+TESTS = """
+    import ntcore
+    from pyfrc.tests import test_practice
+    from wpimath.geometry import Pose2d
+
+    def test_camera(control, hal_data):
+        table = ntcore.NetworkTableInstance.getDefault().getTable("camera")
+        pose = table.getStructTopic("pose", Pose2d).publish()
+        tags = table.getStructArrayTopic("tags", Pose2d).publish()
+        table.getRawTopic("image").publish("raw").set(b"12345678")
+        with control.run_robot():
+            pose.set(Pose2d(0.5, 0, 0))
+            control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+            tags.set([Pose2d(0, 0.25, 0), Pose2d(0, -0.5, 1)])
+            control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+        assert hal_data["pwm"][1]["value"] == 0.5
+
+    def test_failing(control, hal_data, robot):
+        control.set_operator_control()
+
+        def on_step(tm):
+            hal_data["joysticks"][0]["buttons"][3] = tm > 0.5
+            hal_data["joysticks"][0]["buttons"][2] = tm > 0.7
+            return tm < 1
+
+        control.run_test(on_step)
+
+    def test_drive(control, hal_data, robot):
+        hal_data["joysticks"][0]["axes"][1] = 0.5
+        control.set_operator_control()
+        control.run_test(lambda tm: tm < 1)
     """
 
 # Season 2027 has no choosers; other tests have its opmodes and tunables.
@@ -70,7 +113,7 @@ def text(*lines: object, header: object = HEADER) -> str:
 # -- recordings ----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", sample_robots("command"))
+@pytest.mark.parametrize("name", sample_robots())
 def test_a_recordings_replay_does_the_same(name: str, make_project) -> None:
     """For each sample robot, the one of its own tests with the most inputs, but not a whole match."""
     project = make_project({})
@@ -83,18 +126,74 @@ def test_a_recordings_replay_does_the_same(name: str, make_project) -> None:
     assert "The trace equals the recorded one." in replayed.stdout
 
 
-def test_a_matchs_time_is_one_countdown(make_project) -> None:
-    project = make_project({"robot.py": ROBOT, "pyproject.toml": "[tool.pyfrc.match]\nteleop = 4\n"})
-    assert project.run("test", "--builtin", "--record", "recordings", "--", "-k", "practice").code == 0
-    (script,) = (file for file in (project.path / "recordings").iterdir() if ".trace." not in file.name)
-    assert [dict(step.writes) for step in load_script(script).steps] == [
+@pytest.fixture(scope="module")
+def recorded(make_shared_project: MakeProject) -> RobotProject:
+    """A project whose tests were recorded, which tests do not change."""
+    files = {"robot.py": ROBOT, "tests/test_it.py": TESTS, "pyproject.toml": "[tool.pyfrc.match]\nteleop = 4\n"}
+    project = make_shared_project(files)
+    result = project.run("test", "--record", "recordings")
+    assert "1 failed, 3 passed" in result.stdout, result.output
+    return project
+
+
+def script_of(test: str) -> Path:
+    return Path("recordings", f"tests_test_it.py.{test}.jsonl")
+
+
+def steps_of(project: RobotProject, test: str) -> list[dict[str, object]]:
+    return [dict(step.writes) for step in load_script(project.path / script_of(test)).steps]
+
+
+def assert_replayed(project: RobotProject, test: str) -> None:
+    replayed = project.run("replay", script_of(test))
+    assert "The trace equals the recorded one." in replayed.stdout, replayed.output
+
+
+def test_a_matchs_time_is_one_countdown(recorded: RobotProject) -> None:
+    assert steps_of(recorded, "test_practice") == [
         {"time.remaining": 0.0},
         {"mode": "autonomous", "match_time": 15.0},
         {"mode": "disabled"},
         {"mode": "teleop", "match_time": 4.0},
     ]
+    assert_replayed(recorded, "test_practice")
+
+
+def test_structs_that_a_test_publishes_are_recorded(recorded: RobotProject) -> None:
+    """Such as the pose from a camera; what the robot publishes itself is not an input."""
+    steps = steps_of(recorded, "test_camera")
+    written = {target: value for step in steps for target, value in step.items() if target.startswith("nt:")}
+    assert written == {
+        "nt:struct:Pose2d:/camera/pose": [0.5, 0, 0],
+        "nt:struct:Pose2d[]:/camera/tags": [0, 0.25, 0, 0, -0.5, 1],
+    }
+    assert_replayed(recorded, "test_camera")
+
+
+def test_a_failure_comes_back(recorded: RobotProject) -> None:
+    replayed = recorded.run("replay", script_of("test_failing"))
+    assert replayed.code == 1
+    assert "replayed 0.72 s" in replayed.stdout
+    assert f"then {recorded.place('robot.py', 'raise RuntimeError')}: RuntimeError: both at once" in replayed.stdout
+    assert "equals" in replayed.stdout
+    assert recorded.run("replay", script_of("test_failing"), "--until", "0.7").code == 0
+
+
+def test_where_a_changed_robot_first_differs_is_told(recorded: RobotProject, make_project: MakeProject) -> None:
+    project = make_project({})
+    project.copy(recorded.path)
+    project.write({"robot.py": ROBOT.replace("self.stick.getY()", "self.stick.getY() / 2")})
+    script = project.path / script_of("test_drive")
+    replayed = project.run("replay", script, "--trace", "now.jsonl")
+    assert replayed.code == 1
+    assert "first at 0.02 s:" in replayed.stdout
+    assert "pwm[0].value was 0.5, is 0.25" in replayed.stdout, "what code sets comes before its consequences"
+    assert trace_hash(project.path / "now.jsonl") != load_script(script).trace
+
+    script.with_name(f"{script.stem}.trace.jsonl").unlink()
     replayed = project.run("replay", script)
-    assert "The trace equals the recorded one." in replayed.stdout, replayed.output
+    assert replayed.code == 1
+    assert "The trace differs from the recorded one." in replayed.stdout
 
 
 TODAYS_WAYS = """
@@ -125,16 +224,37 @@ TODAYS_WAYS = """
     """
 
 
+SCRIPT = text(
+    {"t": 0, "set": {"mode": "disabled autonomous", "nt:/SmartDashboard/gain": 3}},
+    {"t": 0.1, "set": {"mode": "autonomous", "match_time": 15, "nt:/SmartDashboard/Auto/selected": "Right"}},
+    {"t": 0.3, "set": {"mode": "teleop", "joysticks[0].axes[1]": -0.5}},
+    {"t": 0.5, "set": {"joysticks[0].plugged": False, "dio[4].value": False}},
+    {"t": 0.7, "set": {"joysticks[0].plugged": True}},
+)
+PLAYED = """
+    def test_script(control, robot, robot_path, hal_data):
+        control.replay(robot_path + "/script.jsonl")
+        seen = dict(zip([round(0.02 * (n + 1), 2) for n in range(len(robot.seen))], robot.seen))
+        assert seen[0.08] == (False, True, 12, -1.0, True, 3)
+        assert seen[0.1] == (True, True, 12, 15.0, True, 3)
+        assert seen[0.28] == (True, True, 12, 14.82, True, 3)
+        assert seen[0.48][:3] == (True, False, 12)
+        assert seen[0.5][2:] == (0, 14.6, False, 3)
+        assert seen[0.7][2] == 12
+        assert len(seen) == 49
+        assert hal_data["pwm"][0]["value"] == 0  # plugged in again, nothing is pushed
+    """
+
+
 @pytest.mark.season_2026
-def test_whatever_a_test_does_is_recorded(make_project) -> None:
-    project = make_project({"robot.py": CHOOSING, "tests/test_it.py": TODAYS_WAYS})
-    assert project.run("test", "--record", "recordings").code == 0
-    script = project.path / "recordings" / "tests_test_it.py.test_it.jsonl"
-    replayed = project.run("replay", script)
-    assert replayed.code == 0, replayed.output
-    assert "equals" in replayed.stdout
-    written = {target for line in script.read_text().splitlines()[1:] for target in json.loads(line)["set"]}
-    assert written >= {
+def test_all_that_comes_from_outside_is_recorded_and_can_be_in_a_script(make_project: MakeProject) -> None:
+    tests = {"tests/test_it.py": TODAYS_WAYS, "tests/test_script.py": PLAYED}
+    project = make_project({"robot.py": CHOOSING, "script.jsonl": SCRIPT, **tests})
+    result = project.run("test", "--record", "recordings")
+    assert result.code == 0, result.output
+    assert_replayed(project, "test_it")
+    steps = steps_of(project, "test_it")
+    assert {target for step in steps for target in step} >= {
         "mode",
         "nt:/SmartDashboard/gain",
         "nt:/SmartDashboard/Auto/selected",
@@ -146,151 +266,19 @@ def test_whatever_a_test_does_is_recorded(make_project) -> None:
         "event.game_specific_message",
         "control.eStop",
     }
-    assert (
-        '"joysticks[0].axes[1]": -0.3,' in script.read_text() or '"joysticks[0].axes[1]": -0.3}' in script.read_text()
-    )
+    assert -0.3 in [step.get("joysticks[0].axes[1]") for step in steps]
 
 
-def test_structs_that_a_test_publishes_are_recorded(make_project) -> None:
-    """Such as the pose from a camera; what the robot publishes itself is not an input."""
-    robot = """
-        import ntcore
-        import wpilib
-        from wpimath.geometry import Pose2d
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                table = ntcore.NetworkTableInstance.getDefault().getTable("camera")
-                self.pose = table.getStructTopic("pose", Pose2d).subscribe(Pose2d())
-                self.tags = table.getStructArrayTopic("tags", Pose2d).subscribe([])
-                self.own = table.getStructTopic("own", Pose2d).publish()
-                self.motors = [wpilib.PWMSparkMax(port) for port in range(2)]
-
-            def teleopPeriodic(self):
-                self.motors[0].set(self.pose.get().x)
-                self.motors[1].set(sum(tag.y for tag in self.tags.get()))
-                self.own.set(self.pose.get())
-        """
-    test = """
-        import ntcore
-        from wpimath.geometry import Pose2d
-
-        def test_it(control, hal_data):
-            table = ntcore.NetworkTableInstance.getDefault().getTable("camera")
-            pose = table.getStructTopic("pose", Pose2d).publish()
-            tags = table.getStructArrayTopic("tags", Pose2d).publish()
-            table.getRawTopic("image").publish("raw").set(b"12345678")
-            with control.run_robot():
-                pose.set(Pose2d(0.5, 0, 0))
-                control.step_timing(seconds=0.1, autonomous=False, enabled=True)
-                tags.set([Pose2d(0, 0.25, 0), Pose2d(0, -0.5, 1)])
-                control.step_timing(seconds=0.1, autonomous=False, enabled=True)
-            assert hal_data["pwm"][0]["value"] == 0.5
-        """
-    project = make_project({"robot.py": robot, "tests/test_it.py": test})
-    recorded = project.run("test", "--record", "recordings")
-    assert recorded.code == 0, recorded.output
-    script = project.path / "recordings" / "tests_test_it.py.test_it.jsonl"
-    steps = [json.loads(line)["set"] for line in script.read_text().splitlines()[1:]]
-    written = {target: value for step in steps for target, value in step.items() if target.startswith("nt:")}
-    assert written == {
-        "nt:struct:Pose2d:/camera/pose": [0.5, 0, 0],
-        "nt:struct:Pose2d[]:/camera/tags": [0, 0.25, 0, 0, -0.5, 1],
-    }
-    replayed = project.run("replay", script)
-    assert "The trace equals the recorded one." in replayed.stdout, replayed.output
-
-
-@pytest.mark.parametrize("option", ["--record", "--trace"])
-def test_where_nothing_can_be_written_is_told_once(option: str, make_project) -> None:
-    project = make_project({"robot.py": "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n", "file": ""})
-    result = project.run("test", "--builtin", option, "file/within")
-    assert (result.code, result.first_error) == (2, f"{option} {Path('file/within')} cannot be written: file is a file")
-    assert "test_practice" not in result.output
-
-
-FAILING = """
-    def test_it(control, hal_data, robot):
-        control.set_operator_control()
-
-        def on_step(tm):
-            hal_data["joysticks"][0]["buttons"][3] = tm > 0.5
-            hal_data["joysticks"][0]["buttons"][2] = tm > 0.7
-            return tm < 1
-
-        control.run_test(on_step)
-    """
-
-
-def test_a_failure_comes_back(make_project) -> None:
-    project = make_project({"robot.py": ROBOT, "tests/test_it.py": FAILING})
-    assert project.run("test", "--record", "recordings").code == 1
-    script = project.path / "recordings" / "tests_test_it.py.test_it.jsonl"
-    replayed = project.run("replay", script)
-    assert replayed.code == 1
-    assert "replayed 0.72 s" in replayed.stdout
-    assert f"then {project.place('robot.py', 'raise RuntimeError')}: RuntimeError: both at once" in replayed.stdout
-    assert "equals" in replayed.stdout
-    assert project.run("replay", script, "--until", "0.7").code == 0
-
-
-def test_where_a_changed_robot_first_differs_is_told(make_project) -> None:
-    test = """
-        def test_it(control, hal_data, robot):
-            hal_data["joysticks"][0]["axes"][1] = 0.5
-            control.set_operator_control()
-            control.run_test(lambda tm: tm < 1)
-        """
-    project = make_project({"robot.py": ROBOT, "tests/test_it.py": test})
-    assert project.run("test", "--record", "recordings").code == 0
-    project.write({"robot.py": ROBOT.replace("self.stick.getY()", "self.stick.getY() / 2")})
-    script = project.path / "recordings" / "tests_test_it.py.test_it.jsonl"
-    replayed = project.run("replay", script, "--trace", "now.jsonl")
-    assert replayed.code == 1
-    assert "first at 0.02 s:" in replayed.stdout
-    assert "pwm[0].value was 0.5, is 0.25" in replayed.stdout, "what code sets comes before its consequences"
-    digest = trace_hash(project.path / "now.jsonl")
-    assert digest != load_script(script).trace
-
-    script.with_name("tests_test_it.py.test_it.trace.jsonl").unlink()
-    replayed = project.run("replay", script)
-    assert replayed.code == 1
-    assert "The trace differs from the recorded one." in replayed.stdout
+def test_where_nothing_can_be_written_is_told_once(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": "raise Exception('this has run')\n", "file": ""})
+    said = f"{Path('file/within')} cannot be written: file is a file"
+    for option in ("--record", "--trace"):
+        result = project.run_here("test", "--builtin", option, "file/within")
+        assert (result.code, result.first_error) == (2, f"{option} {said}")
+        assert "this has run" not in result.output
 
 
 # -- scripts written by hand ---------------------------------------------------------------------------------------
-
-
-@pytest.mark.season_2026
-def test_a_script_can_say_all_that_comes_from_outside(make_project) -> None:
-    script = text(
-        {"t": 0, "set": {"mode": "disabled autonomous", "nt:/SmartDashboard/gain": 3}},
-        {"t": 0.1, "set": {"mode": "autonomous", "match_time": 15, "nt:/SmartDashboard/Auto/selected": "Right"}},
-        {"t": 0.3, "set": {"mode": "teleop", "joysticks[0].axes[1]": -0.5}},
-        {"t": 0.5, "set": {"joysticks[0].plugged": False, "dio[4].value": False}},
-        {"t": 0.7, "set": {"joysticks[0].plugged": True}},
-    )
-    project = make_project(
-        {
-            "robot.py": CHOOSING,
-            "script.jsonl": script,
-            "tests/test_it.py": """
-                def test_it(control, robot, robot_path, hal_data):
-                    control.replay(robot_path + "/script.jsonl")
-                    seen = dict(zip([round(0.02 * (n + 1), 2) for n in range(len(robot.seen))], robot.seen))
-                    assert seen[0.08] == (False, True, 12, -1.0, True, 3)
-                    assert seen[0.1] == (True, True, 12, 15.0, True, 3)
-                    assert seen[0.28] == (True, True, 12, 14.82, True, 3)
-                    assert seen[0.48][:3] == (True, False, 12)
-                    assert seen[0.5][2:] == (0, 14.6, False, 3)
-                    assert seen[0.7][2] == 12
-                    assert len(seen) == 49
-                    assert hal_data["pwm"][0]["value"] == 0  # plugged in again, nothing is pushed
-                """,
-        }
-    )
-    result = project.run("test")
-    assert result.code == 0, result.output
 
 
 @pytest.mark.slow

@@ -106,7 +106,7 @@ def reference_of_measured() -> Reference:
 # -- the pose, exactly -------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(steps)
 def test_one_step_or_a_hundred_gives_the_same_pose(values: list[tuple[float, float, float]]) -> None:
     one, hundred = Track(measured()), Track(measured())
@@ -150,7 +150,7 @@ def test_tuned_numbers_keep() -> None:
 # -- what each side does -----------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(steps)
 def test_free_speed_is_never_exceeded(values: list[tuple[float, float, float]]) -> None:
     model = theory()
@@ -160,7 +160,7 @@ def test_free_speed_is_never_exceeded(values: list[tuple[float, float, float]]) 
         assert max(abs(model.l_velocity), abs(model.r_velocity)) <= free * 1.0001
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(st.floats(0.2, 1), st.floats(-1, 0.1), st.floats(0.001, 1))
 def test_a_stalled_or_braking_motor_never_gains_speed(before: float, power: float, seconds: float) -> None:
     motor = MotorModel(MOTOR_CFG_CIM, 0.925 * units.tm_kv, 0.22 * units.tm_ka, 1.3 * units.volt)
@@ -171,7 +171,7 @@ def test_a_stalled_or_braking_motor_never_gains_speed(before: float, power: floa
     assert motor.acceleration <= 0
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(steps)
 def test_each_side_is_a_motor_model(values: list[tuple[float, float, float]]) -> None:
     model = measured()
@@ -198,7 +198,7 @@ def test_a_motor_model_comes_to_its_steady_speed() -> None:
 # -- the two views, and the heading ------------------------------------------------------------------------------------
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(steps)
 def test_feet_clockwise_and_metres_counter_clockwise_agree(values: list[tuple[float, float, float]]) -> None:
     feet, metres = theory(), theory()

@@ -75,7 +75,7 @@ def changed(value: Any) -> Any:
 def test_each_value_is_found_when_it_changes(tree: HalData, every: int) -> None:
     create_all(tree)
     changes = looking(tree)
-    written = 0
+    written, now = 0, HalData(defaults=False)
     values = [(path, value) for path, value in tree.leaves() if tree.can_write(path) and path != "control.dsAttached"]
     for path, value in values[::every]:
         for new in (changed(value), value):
@@ -84,7 +84,7 @@ def test_each_value_is_found_when_it_changes(tree: HalData, every: int) -> None:
                 new = 3
             before = tree.read(path)
             tree.write(path, new)
-            look, after = changes.look(), dict(HalData(defaults=False).leaves())
+            look, after = changes.look(), dict(now.leaves())
             if path in after:
                 assert found(look).get(path, before) == after[path], path
             else:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import sys
 import types
 from pathlib import Path
@@ -198,6 +200,21 @@ def test_who_runs_the_tests_otherwise(plugin: Any) -> None:
     assert [left(), left(collects=True), left(has_dsession=True), left(workerinput={})] == [False, True, True, True]
     plugin.options.isolation = "none"
     assert left()
+
+
+def test_without_isolation_no_object_of_the_robot_is_destroyed_at_the_end(
+    plugin: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """REV's library ended the process by SIGABRT when the interpreter did that."""
+    plugin.options.isolation = "none"
+    at_exit: list[object] = []
+    monkeypatch.setattr(atexit, "register", at_exit.append)
+    config: Any = SimpleNamespace(
+        option=SimpleNamespace(collectonly=False), pluginmanager=SimpleNamespace(hasplugin=lambda name: False)
+    )
+    session: Any = SimpleNamespace(config=config)
+    assert IsolatedTests(plugin).pytest_runtestloop(session) is None
+    assert at_exit == [gc.freeze]
 
 
 def test_stopping_as_pytest_does() -> None:

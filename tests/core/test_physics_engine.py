@@ -205,6 +205,18 @@ INITIALIZED = """
         """
 
 
+MADE = """
+        class PhysicsEngine:
+            def __init__(self, physics_controller, robot):
+                self.arguments = dict(locals())
+                self.motor = robot.motor  # made in its constructor
+                self.calls = []
+
+            def update_sim(self, now, tm_diff):
+                self.calls.append(tm_diff)
+        """
+
+
 def attached(run: RobotRun, module: PhysicsModule, robot: type[wpilib.RobotBase], seconds: float = 0.2) -> Physics:
     physics = module.attach(run)
     run.construct(robot)
@@ -238,6 +250,26 @@ def test_todays_physics_are_made_when_the_robot_is_there(run: RobotRun, load: Lo
     assert "hal_data" not in physics.engine.calls[0]
     assert {round(each["tm_diff"], 6) for each in physics.engine.calls} == {0.02}
     assert round(physics.engine.calls[-1]["now"], 6) == 0.2
+
+
+def test_the_engine_gets_a_robot_with_a_loop_of_its_own(run: RobotRun, load: Load) -> None:
+    class Robot(wpilib.RobotBase):
+        def __init__(self) -> None:
+            super().__init__()
+            self.motor = wpilib.PWMSparkMax(8)
+            self.over = False
+
+        def startCompetition(self) -> None:
+            while not self.over:
+                run.threads.sleep_until(run.clock.now_us + 50_000)
+
+        def endCompetition(self) -> None:
+            self.over = True
+
+    physics = attached(run, load(MADE), Robot, 1.0)
+    assert physics.engine.arguments["robot"] is run.robot
+    assert [round(tm_diff, 6) for tm_diff in physics.engine.calls] == [0.02] * 50
+    run.end()
 
 
 @pytest.mark.parametrize(("period", "expected"), [(0.005, 0.01), (0.015, 0.015), (0.05, 0.02)])
@@ -298,6 +330,19 @@ def test_a_disabled_robot_rolls_on_and_dashboards_see_it(run: RobotRun, load: Lo
     entry = ntcore.NetworkTableInstance.getDefault().getTable("SmartDashboard/Field").getEntry("Robot")
     assert entry.getDoubleArray([])[0] == pytest.approx(physics.controller.get_pose().X(), abs=0.02)
     assert physics.controller.get_position()[0] > 0.5
+
+
+def test_a_gyro_has_the_mean_rate_of_what_an_update_drives_and_none_when_it_drives_nothing(
+    run: RobotRun, load: Load
+) -> None:
+    turn = 'now < 0.5 and [self.arguments["physics_controller"].drive(0, rate, tm_diff / 2) for rate in (1, 2)]'
+    attached(run, load(engine("self, physics_controller", "self, hal_data, now, tm_diff", turn)), robot_class([]), 0.4)
+    gyro = run.hal_data["analog_gyro"][0]
+    assert gyro["rate"] == pytest.approx(math.degrees(1.5))
+    run.run_until(800_000)
+    assert gyro["rate"] == 0
+    assert gyro["angle"] == pytest.approx(math.degrees(1.5 * 0.48))
+    gyro["angle"] = 0.0
 
 
 @pytest.mark.parametrize("takes", ["hal_data, ", ""])

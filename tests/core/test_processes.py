@@ -380,6 +380,8 @@ def test_what_becomes_of_a_call(capfd: pytest.CaptureFixture[str]) -> None:
 
     assert result_of(print_and_return) == "the result"
     assert capfd.readouterr().out == ""
+    # Ctrl-C, which each process of a terminal gets, is for the one that has started it.
+    assert result_of(lambda log: signal.raise_signal(signal.SIGINT) or "goes on") == "goes on"
     with pytest.raises(UsageError, match="the user's mistake"):
         result_of(fail_with(UsageError("the user's mistake")))
     with pytest.raises(RuntimeError, match="a mistake in pyfrc itself") as raised:

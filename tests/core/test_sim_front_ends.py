@@ -172,6 +172,7 @@ def test_a_view_of_the_field_keeps_its_middle_on_another_screen() -> None:
     assert (resized.center_x, resized.center_y) == (view.center_x, view.center_y)
     assert Viewport.whole(54, 27, 540, 300).scale == pytest.approx(9.3)
     assert view.resized(540, 300) == view
+    assert Viewport.whole(54, 27, 540, 300).resized(1080, 200) == Viewport.whole(54, 27, 1080, 200)
 
 
 def test_the_robot_is_within_reach_of_its_centre() -> None:

@@ -32,7 +32,6 @@ class FieldView:
         self._image_problem = self._color_problem = ""
         self._picture: tk.PhotoImage | None = None
         self.view = Viewport.whole(field.width, field.height, 100, 100)
-        self._whole = True
         #: Whether the view has changed since the field was drawn.
         self.moved = True
         self._robot: Pose | None = None
@@ -80,12 +79,11 @@ class FieldView:
 
     def see_whole(self) -> None:
         """Show the whole field."""
-        self._whole = True
         self._see(Viewport.whole(self._field.width, self._field.height, self.view.width, self.view.height))
 
     def zoom(self, factor: float, x: float | None = None, y: float | None = None) -> None:
         """Zoom by a factor, towards a pixel or towards the middle."""
-        view, self._whole = self.view, False
+        view = self.view
         self._see(view.zoomed(factor, view.width / 2 if x is None else x, view.height / 2 if y is None else y))
 
     def _see(self, view: Viewport) -> None:
@@ -214,10 +212,7 @@ class FieldView:
         canvas.bind("<Button-5>", lambda event: self.zoom(1 / _ZOOM_STEP, event.x, event.y))
 
     def _resized(self, event: tk.Event[tk.Canvas]) -> None:
-        if self._whole:
-            self._see(Viewport.whole(self._field.width, self._field.height, event.width, event.height))
-        else:
-            self._see(self.view.resized(event.width, event.height))
+        self._see(self.view.resized(event.width, event.height))
 
     def _drag_of_robot(self, event: tk.Event[tk.Canvas], kind: Literal["move", "turn"]) -> RobotDrag | None:
         place = self.view.to_field(event.x, event.y)
@@ -238,7 +233,6 @@ class FieldView:
         if self._panned_from is not None:
             x, y = self._panned_from
             self._panned_from = event.x, event.y
-            self._whole = False
             self._see(self.view.panned(event.x - x, event.y - y))
         elif self._robot_drag is not None and self._robot is not None:
             self._robot_drag.drag(self._robot, self.view.to_field(event.x, event.y))
