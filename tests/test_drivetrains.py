@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from loops import for_each
 from wpimath.geometry import Rotation2d, Translation2d
 from wpimath.kinematics import (
     ChassisSpeeds,
@@ -54,8 +55,8 @@ def as_metres(vector: DriveVector) -> tuple[float, float, float]:
 # -- as documented -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("name", "defaults"),
+@for_each(
+    "name, defaults",
     [
         ("TwoMotorDrivetrain", {"x_wheelbase": 2, "speed": 5, "deadzone": None}),
         ("FourMotorDrivetrain", {"x_wheelbase": 2, "speed": 5, "deadzone": None}),
@@ -89,8 +90,8 @@ def test_the_motors_of_a_chained_side_share_the_work() -> None:
     assert drivetrain.r_speed == pytest.approx(1.5)
 
 
-@pytest.mark.parametrize(
-    ("lr", "rr", "lf", "rf", "vector"),
+@for_each(
+    "lr, rr, lf, rf, vector",
     [
         (1, 1, 1, 1, (0, 5, 0)),
         (-1, 1, 1, -1, (5, 0, 0)),
@@ -116,8 +117,8 @@ def test_the_misprint_of_the_documentation_is_the_same_function() -> None:
     assert parameters == [*motors_and_angles, "x_wheelbase", "y_wheelbase", "speed", "deadzone"]
 
 
-@pytest.mark.parametrize(
-    ("angles", "vector"),
+@for_each(
+    "angles, vector",
     [
         ((0, 0, 0, 0), (0, 5, 0)),
         ((90, 90, 90, 90), (5, 0, 0)),
@@ -308,8 +309,8 @@ def test_deadzones_apply_to_each_motor_and_may_be_changed() -> None:
     assert four_motor_swerve_drivetrain(1, 1, 1, 1, 0, 0, 0, 0, deadzone=half).vy_fps == 2.5
 
 
-@pytest.mark.parametrize(
-    ("name", "parameter"),
+@for_each(
+    "name, parameter",
     [
         ("TwoMotorDrivetrain", "x_wheelbase"),
         ("TwoMotorDrivetrain", "speed"),

@@ -17,8 +17,8 @@ def test_what_is_formatted_is_parsed_back(segments: list[str | int]) -> None:
     assert parse_path(format_path(segments)) == tuple(segments)
 
 
-@pytest.mark.parametrize(
-    ("path", "segments"),
+@for_each(
+    "path, segments",
     [
         ("alliance_station", ("alliance_station",)),
         ("joysticks[0].axes[1]", ("joysticks", 0, "axes", 1)),

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from loops import for_each
 from written_logs import BOOT, SECOND, Written, a_match
 
 from pyfrc_core.errors import UsageError
@@ -80,7 +81,7 @@ def test_structs_and_their_arrays_unfold(tmp_path: Path) -> None:
     assert run.histories["network"].now["nt:/raw"]["type"] == "Unknown"
 
 
-@pytest.mark.parametrize("table", ["/DriverStation", "NT:/AdvantageKit/DriverStation"])
+@for_each("table", ["/DriverStation", "NT:/AdvantageKit/DriverStation"])
 def test_layouts_of_advantagekit_and_pykit(tmp_path: Path, table: str) -> None:
     log = Written()
     log.values(f"{table}/Enabled", "boolean", "?", (0, False), (1, True))
@@ -270,8 +271,8 @@ def test_no_damage_is_more_than_a_sentence(tmp_path_factory: pytest.TempPathFact
             assert list(times) == sorted(times)
 
 
-@pytest.mark.parametrize(
-    ("name", "content", "says"),
+@for_each(
+    "name, content, says",
     [
         ("empty.wpilog", b"", "empty.wpilog: this file is empty"),
         ("only_a_head.wpilog", b"WPILOG\x00\x01", "there is nothing in it: it ends within its header"),

@@ -139,8 +139,8 @@ def test_back_again_is_where_it_began(speed: float, turn: float, time: float) ->
     assert same(before, robot.get_pose())
 
 
-@pytest.mark.parametrize(
-    ("start", "move", "end"),
+@for_each(
+    "start, move, end",
     [
         ((2, 20, 0), lambda robot: robot.distance_drive(3, 1, math.pi / 2), (1, 23, math.pi / 2)),
         ((2, 20, 90), lambda robot: robot.distance_drive(3, 1, 0), (1, 23, math.pi / 2)),
@@ -184,10 +184,9 @@ def stop_in_an_emergency() -> None:
     hs.setDriverStationEStop(True)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "stop",
     [lambda: station.set_mode(enabled=False), lambda: hs.setDriverStationDsAttached(False), stop_in_an_emergency],
-    ids=["disabled", "no driver station", "emergency stop"],
 )
 def test_a_robot_that_is_not_enabled_rolls_on(stop: Callable[[], None]) -> None:
     """In all ways to move it: physics that set encoders by the wheels' speed move the pose with them."""
@@ -285,7 +284,7 @@ def test_vision_targets_are_shown_on_the_field() -> None:
     assert len(robot.field.getObject("vision targets in view").getPoses()) == 1
 
 
-@pytest.mark.parametrize(
+@for_each(
     "move",
     [
         lambda robot: robot.drive(math.nan, 0, 0.02),
@@ -303,9 +302,7 @@ def test_what_is_no_number_does_not_get_into_the_pose(move: Callable[[PhysicsInt
     assert robot.get_position() == (10, 10, 0)
 
 
-@pytest.mark.parametrize(
-    "arguments", [(1.0,), (1.0, 2.0), (ChassisSpeeds(),), (ChassisSpeeds(), 1.0, 2.0)], ids=lambda it: str(len(it))
-)
+@for_each("arguments", [(1.0,), (1.0, 2.0), (ChassisSpeeds(),), (ChassisSpeeds(), 1.0, 2.0)])
 def test_a_call_that_cannot_be_says_what_can(arguments: tuple[float, ...]) -> None:
     with pytest.raises(TypeError, match=r"drive\(.+, tm_diff\) takes"):
         controller().drive(*arguments)  # type: ignore[call-overload]

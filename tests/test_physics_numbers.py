@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import pytest
 from conftest import MakeProject
+from loops import for_each
 
 from pyfrc.physics import drivetrains, motion, motor_cfgs, tankmodel
 from pyfrc.physics.can_motors import Mechanism, SwerveDrive, SwerveModule
@@ -131,7 +132,7 @@ NUMBERS: dict[Callable[[], list[float]], list[float]] = {
 }
 
 
-@pytest.mark.parametrize("computed", NUMBERS, ids=lambda each: each.__name__)
+@for_each("computed", NUMBERS)
 def test_numbers(computed: Callable[[], list[float]]) -> None:
     try:
         assert computed() == pytest.approx(NUMBERS[computed], rel=1e-12, abs=1e-12)

@@ -233,40 +233,6 @@ def test_robot_time_waits_for_no_other_device(with_phoenix: PhoenixProject, use:
         assert len(times) > 8
 
 
-MEETING = {
-    "tests/test_robot.py": """
-        import os
-
-
-        def meet(this, other):
-            open(this, "w").close()
-            for _ in range(600):
-                if os.path.exists(other):
-                    return
-                os.system("sleep 0.05")
-            raise AssertionError(f"{other} is not there")
-
-
-        def test_one(robot, control):
-            with control.run_robot():
-                meet("one", "other")
-
-
-        def test_other(robot, control):
-            with control.run_robot():
-                meet("other", "one")
-        """
-}
-
-
-@pytest.mark.slow
-def test_one_more_test_runs_at_a_time_than_there_are_processors(with_phoenix: PhoenixProject) -> None:
-    """Each of these two waits for the other, in real time."""
-    with_phoenix.project.write(MEETING)
-    with_phoenix.environment["PYTHON_CPU_COUNT"] = "1"
-    assert "2 passed" in with_phoenix.output("test")
-
-
 # -- the commands say it once ------------------------------------------------------------------------------------------
 
 

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING
 import pytest
 from browser_pages import shared_browser  # noqa: F401 - `browser`
 from conftest import MakeProject, RobotProject, sampled
+from loops import for_each
 from sim_robots import PATIENCE
+from test_sim_source import Elsewhere
 from web_pages import Served, served_source
 from wpiutil import DataLogWriter
 from wpiutil.log import BooleanLogEntry, DoubleArrayLogEntry, DoubleLogEntry, StringLogEntry
@@ -21,11 +23,17 @@ from written_logs import a_match
 
 from pyfrc_core.project import find_project
 from pyfrc_core.runtime.scripts.inputs_file import load_inputs
+from pyfrc_core.runtime.scripts.script import InputScript
 from pyfrc_core.season import CURRENT
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.engine.past_run import Comparison
+from pyfrc_core.sim.engine.changes import Change, RunBegan
+from pyfrc_core.sim.engine.past_run import Comparison, PastRun
+from pyfrc_core.sim.engine.scene import Scene
+from pyfrc_core.sim.engine.snapshot import Snapshot
+from pyfrc_core.sim.engine.source import Abilities
 from pyfrc_core.sim.engine.value_history import ValueHistory
-from pyfrc_core.sim.log_run import log_run
+from pyfrc_core.sim.log_report import LogReport
+from pyfrc_core.sim.log_run import LogRun, log_run
 from pyfrc_core.sim.ui.web.differences import FirstDifference
 
 if TYPE_CHECKING:
@@ -130,70 +138,6 @@ def test_unchanged_code_does_the_same_and_changed_code_differs_where_the_change_
     assert "pwm[1].value" in said
     from_log = "analog_in[0], analog_in[1], dio[0], dio[1], encoder[0], fpga_button, power"
     assert f"sensors from the log, whatever today's code does: {from_log}" in said
-
-
-TWICE = """{"format": "pyfrc-input 1", "end": 7.0}
-{"t": 1.0, "set": {"mode": "teleop"}}
-{"t": 2.0, "set": {"joysticks[0].buttons[2]": true}}
-{"t": 2.5, "set": {"joysticks[0].buttons[2]": false}}
-{"t": 3.0, "set": {"mode": "disabled"}}
-{"t": 4.0, "set": {"mode": "teleop"}}
-{"t": 5.0, "set": {"joysticks[0].buttons[2]": true}}
-{"t": 5.5, "set": {"joysticks[0].buttons[2]": false}}
-{"t": 6.0, "set": {"mode": "disabled"}}
-"""
-NAMED = """
-            for number in range(12):
-                wpilib.SmartDashboard.putString(f"name {number}", "the name of part " * 4 + NAME)
-
-        def disabledPeriodic(self):
-            pass
-
-        def make_talon(self):
-            talon = hal.SimDevice("CANMotor:Talon FX (v6)", 11)
-            talon.createDouble("rotorPos", hal.SimDevice.Direction.kInput, 0.0)
-            return talon
-
-"""
-
-
-def test_what_differs_is_named_anew_after_each_enabling_and_shortly(make_project: MakeProject) -> None:
-    named = ROBOT.replace("GAIN = 0.5", 'GAIN = 0.5\n    NAME = "before"')
-    named = named.replace('setDefaultNumber("kP", 1.0)\n\n', f'setDefaultNumber("kP", 1.0){NAMED}')
-    named = "\n    import hal\n" + named.replace(
-        "self.encoder = ", "self.talon = self.make_talon()\n            self.encoder = "
-    )
-    named = named.replace("self.encoder = ", "self.turn = wpilib.DutyCycleEncoder(5)\n            self.encoder = ")
-    turning = PHYSICS.replace("self.turns +=", "DutyCycleEncoderSim(5).set(now % 1)\n            self.turns +=")
-    turning = "\n    from wpilib.simulation import DutyCycleEncoderSim\n" + turning
-    project = make_project({"robot.py": named, "physics.py": turning, "twice.jsonl": TWICE})
-    assert project.run(*SIM, "--script", "twice.jsonl", "--wpilog", "match.wpilog").code == 0
-    change(project, "robot.py", "GAIN = 0.5", "GAIN = 0.75")
-    said = log_of(project, "match.wpilog")
-    # The lift's output is one value of a device that has more, which are named once.
-    differing = "differs in 2 values, those that change rarely first:\n  Elevator/setpoint (0:02.00): "
-    assert [line.partition(": ")[0] for line in said[said.index(differing) :].splitlines()[1:3]] == [
-        "  Elevator/setpoint (0:02.00)",
-        "  pwm[1].value (0:02.00)",
-    ]
-    assert "after it was enabled at 0:04.00, in Elevator/setpoint (0:05.00), pwm[1].value (0:05.00)\n" in said
-    of_encoder = [line for line in said.splitlines() if "DutyCycleEncoder[5]" in line]
-    assert [line.partition(",")[0] for line in of_encoder] == ["sensors from the log"]
-    assert "simulated in real time, so what depends on them differs in each run: Talon FX 11\n" in said
-    assert " only: " not in said
-    change(project, "robot.py", '"before"', '"after"')
-    change(project, "robot.py", '"Elevator/setpoint"', '"Elevator/goal"')
-    said = log_of(project, "match.wpilog")
-    assert (
-        len(re.findall(r"  name \d+ \(.*: \.\.\..{,20} before in match.wpilog, \.\.\..{,20} after here\n", said)) == 12
-    )
-    assert "in match.wpilog only: Elevator/setpoint (0:01.00)\nhere only: Elevator/goal (0:01.00)\n" in said
-    change(project, "robot.py", "GAIN if", "(GAIN if wpilib.Timer.getFPGATimestamp() > 4 else 0.5) if")
-    said = project.run("-v", *SIM, "--log", "match.wpilog").stdout
-    (line,) = re.findall(r"^  name 11 \(.*", said, re.MULTILINE)
-    assert re.search(r": \.\.\..{,20} before in match.wpilog, \.\.\..{,20} after here$", line)
-    assert "in match.wpilog only:\n  Elevator/setpoint (0:01.00)\nhere only:\n" in said
-    assert said.count("pwm[1].value (0:05.00)") == 1  # it was equal until then, so it is not named again
 
 
 def test_sensors_measure_what_they_measured_in_the_log(recorded: RobotProject) -> None:
@@ -570,8 +514,8 @@ def history(*changes: tuple[float, object]) -> ValueHistory:
 STEPS = [(0.02 * number, float(number % 10)) for number in range(200)]
 
 
-@pytest.mark.parametrize(
-    ("here", "log", "differs"),
+@for_each(
+    "here, log, differs",
     [
         (STEPS, STEPS, None),
         (STEPS, [(time + 0.04, value) for time, value in STEPS], None),  # late
@@ -598,7 +542,7 @@ def test_a_value_of_a_log_may_be_late_and_noisy(here: list, log: list, differs: 
     assert found.compared == 1
 
 
-@pytest.mark.parametrize(("share", "first", "time"), [(0.05, "nt:/limit", 3.0), (0.0, "nt:/battery", 0.0)])
+@for_each("share, first, time", [(0.05, "nt:/limit", 3.0), (0.0, "nt:/battery", 0.0)])
 def test_where_runs_do_not_repeat_what_changes_rarely_comes_first(share: float, first: str, time: float) -> None:
     found = FirstDifference(0.0, 4.0, Comparison(True, share, 0.06))
     here, log = ValueHistory(), ValueHistory()
@@ -611,8 +555,8 @@ def test_where_runs_do_not_repeat_what_changes_rarely_comes_first(share: float, 
     assert (plain["t"], plain["paths"], plain["count"]) == (time, [first], 2)
 
 
-@pytest.mark.parametrize(
-    ("here", "log", "slight"),
+@for_each(
+    "here, log, slight",
     [
         (STEPS, [(time, value + 0.4) for time, value in STEPS], 0.4 / 9.4),
         (STEPS, [(time + 0.04, value) for time, value in STEPS], None),
@@ -625,8 +569,8 @@ def test_how_much_a_value_differs_that_does_not_count(here: list, log: list, sli
     assert [share for _, share, _ in found.sorted_slight()] == ([] if slight is None else [pytest.approx(slight)])
 
 
-@pytest.mark.parametrize(
-    ("values", "differs"),
+@for_each(
+    "values, differs",
     [
         ([(3.0, 3.0), (3.14, -3.14), (-3.0, -3.0)], None),
         ([(179.0, 179.0), (-180.0, 179.98), (-179.0, -179.0)], None),
@@ -653,6 +597,73 @@ def test_the_times_of_a_log_are_those_of_another_clock() -> None:
     found.compare(history(*STEPS), history(*log), "nt:/x")
     assert found.time == pytest.approx(1.0)
     assert found.paths == ["nt:/x"]
+
+
+# -- what is said ------------------------------------------------------------------------------------------------------
+
+Values = dict[str, list[tuple[float, object]]]
+
+
+def said_of(directory: Path, here: Values, log: Values, share: float, names_all: bool = False) -> list[str]:
+    """Return what is said of a simulation of 7 s, and of the log that drives it, with these values of both."""
+
+    def changes(values: Values, of_network: bool) -> Iterator[Change]:
+        chosen = {
+            path: all_of for path, all_of in values.items() if path.startswith(("nt:", "type:", "sim.")) is of_network
+        }
+        for moment in sorted({at for all_of in chosen.values() for at, _ in all_of}):
+            yield Change(moment, {path: each for path, all_of in chosen.items() for at, each in all_of if at == moment})
+
+    histories = {"hal": ValueHistory(), "network": ValueHistory()}
+    for name, history in histories.items():
+        for change in changes(log, name == "network"):
+            history.add(change.time, change.values)
+    past = PastRun("match.wpilog", 7.0, histories, (), compared=Comparison(True, share, 0.06))
+    source = Elsewhere(directory, Abilities("simulation"))
+    source.branches = (past,)
+    report = LogReport(source, LogRun(InputScript((), 7_000_000), past), names_all)
+    for name, feed in (("hal", source.hal), ("network", source.network)):
+        feed.add(RunBegan(1, 0.0, {}))
+        for change in changes(here, name == "network"):
+            feed.add(change)
+    source.snapshot = Snapshot(7.0, "disabled", Scene(source.field))
+    return list(report.lines())
+
+
+def twice(goal: float, setpoint: str = "/SmartDashboard/Elevator/setpoint", of: str = "") -> Values:
+    """Return the values of a robot that is enabled twice, and moves its lift to a goal each time."""
+    steps: list[tuple[float, object]] = [(0.0, 0.0), (2.0, goal), (2.5, 0.0), (5.0, goal), (5.5, 0.0)]
+    modes: list[tuple[float, object]] = [(0.0, "disabled"), (1.0, "teleop"), (3.0, "disabled"), (4.0, "teleop")]
+    return {
+        "sim.mode": modes,
+        f"nt:{setpoint}": [(1.0, 0.0), *steps[1:]],
+        f"type:{setpoint}": [(1.0, "double")],
+        "pwm[1].value": [*steps, (6.0, 0.1), (6.1, 0.0)],  # changes more often
+        "pwm[1].raw_value": [*steps, (6.0, 0.1), (6.1, 0.0)],
+        'CAN["CANMotor:Talon FX (v6)[11]"].rotorPos': [(0.0, 0.0)],
+        **{f"nt:/SmartDashboard/name {n}": [(0.0, "the name of part " * 4 + of)] for n in range(12)},
+    }
+
+
+def test_what_differs_is_named_anew_after_each_enabling_and_shortly(tmp_path: Path) -> None:
+    said = said_of(tmp_path, twice(0.75), twice(0.5), 0.05)
+    # The lift's output is one value of a device that has more, which are named once.
+    lift = "pwm[1].value (0:02.00): 0.5 in match.wpilog, 0.75 here"
+    differing = (
+        "differs in 2 values, those that change rarely first:\n  Elevator/setpoint (0:02.00): 0.5 in match.wpilog"
+    )
+    assert f"{differing}, 0.75 here\n  {lift}" in said
+    assert "after it was enabled at 0:04.00, in Elevator/setpoint (0:05.00), pwm[1].value (0:05.00)" in said
+    assert not any(" only: " in line for line in said)
+    late = {"nt:/SmartDashboard/late": [(0.0, 1.0)]}, {"nt:/SmartDashboard/late": [(0.0, 1.0), (5.0, 2.0)]}
+    said = said_of(tmp_path, twice(0.75) | late[1], twice(0.5) | late[0], 0.05)
+    assert "\n".join(said).count("late (0:05.00)") == 1  # it was equal until then, so it is not named again
+    changed = twice(0.75, setpoint="/SmartDashboard/Elevator/goal", of="now"), twice(0.5, of="then")
+    shortly, whole = ("\n".join(said_of(tmp_path, *changed, 0.05, names_all)) for names_all in (False, True))
+    for text in (shortly, whole):
+        assert len(re.findall(r"  name \d+ \(.*: \.\.\..{,20}then in match.wpilog, \.\.\..{,20}now here\n", text)) == 12
+    assert "in match.wpilog only: Elevator/setpoint (0:01.00)\nhere only: Elevator/goal (0:01.00)" in shortly
+    assert "in match.wpilog only:\n  Elevator/setpoint (0:01.00)\nhere only:\n" in whole
 
 
 # -- the page ---------------------------------------------------------------------------------------------------------

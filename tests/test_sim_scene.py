@@ -38,28 +38,8 @@ def points(line: Line) -> list[tuple[float, float]]:
     return [(round(x, 6), round(y, 6)) for x, y in line.points]
 
 
-def test_nothing_draws_in_tests(make_project) -> None:
+def test_nothing_draws_without_a_simulation() -> None:
     assert get_user_renderer() is None
-    project = make_project(
-        {
-            "robot.py": """
-                import wpilib
-                from pyfrc.sim import get_user_renderer
-
-
-                class MyRobot(wpilib.TimedRobot):
-                    def robotInit(self):
-                        self.renderer = get_user_renderer()
-            """,
-            "tests/test_renderer.py": """
-                def test_renderer(control, robot):
-                    with control.run_robot():
-                        assert robot.renderer is None
-            """,
-        }
-    )
-    result = project.run("test", "--", "-q")
-    assert result.code == 0, result.output
 
 
 def test_a_line_in_field_coordinates(renderer: UserRenderer) -> None:

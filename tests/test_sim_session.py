@@ -370,22 +370,6 @@ def test_a_file_that_is_saved_twice_in_a_second(project: Project, monkeypatch) -
     assert reached[1] > reached[0] + 1
 
 
-@pytest.mark.slow
-def test_new_code_gets_what_was_commanded_in_a_pause(simulation: Simulation) -> None:
-    run(simulation, 0.1)
-    drive_forward(simulation)
-    wait(simulation, lambda: simulation.snapshot.enabled)
-    simulation.reload()
-    simulation.write({"dio[3].value": False})
-    simulation.step(50)
-    simulation.reload()
-    wait(simulation, lambda: simulation.status.state == "paused" and simulation.snapshot.time > 1)
-    assert simulation.snapshot.time == 1.1
-    assert simulation.snapshot.mode == "teleop"
-    assert simulation.snapshot.values["dio[3].value"] is False
-    assert simulation.snapshot.scene.robot.x == pytest.approx(15, abs=0.3)
-
-
 def test_real_time_goes_on_by_itself(project: Project) -> None:
     with Simulation(project, SimOptions(recording=False)) as simulation:
         wait(simulation, lambda: simulation.snapshot is not None and simulation.snapshot.time > 0.1)

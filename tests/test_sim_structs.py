@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 
-import pytest
+from loops import for_each
 
 from pyfrc_core.sim.engine.structs import Structs
 
@@ -52,8 +52,8 @@ def test_every_kind_of_field_is_read() -> None:
     }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("type_name", "size"),
+@for_each(
+    "type_name, size",
     [
         *(("struct:Pose2d", 23), ("struct:Pose2d", 48), ("struct:Pose2d[]", 25), ("struct:Rotation2d[]", 8 * 9999)),
         *(

@@ -249,7 +249,7 @@ def test_a_page_that_does_not_read_gets_merged_updates(make_project) -> None:
 
 
 @pytest.mark.bare
-def test_a_layout_is_saved_for_the_project(make_project) -> None:
+def test_a_layout_and_recordings_are_saved_in_the_project_and_nowhere_else(make_project) -> None:
     made = make_project(FILES)
     with served(made) as server:
         with server.page() as page:
@@ -259,7 +259,12 @@ def test_a_layout_is_saved_for_the_project(make_project) -> None:
             assert page.hello["layout"] == {"panels": ["field", "plot"]}
             too_large = page.ask(type="layout", layout={"x": "x" * 300_000})
             assert too_large["type"] == "error"
+            page.run_for(0.2)
+            assert page.command("save", file="drives/first")["file"] == "drives/first.jsonl"
+            assert page.ask(type="command", name="save", file="../outside.jsonl")["type"] == "error"
     assert json.loads((made.path / ".pyfrc" / "sim-layout.json").read_text()) == {"panels": ["field", "plot"]}
+    assert (made.path / "drives" / "first.jsonl").is_file()
+    assert not (made.path.parent / "outside.jsonl").exists()
 
 
 @pytest.mark.slow
@@ -276,16 +281,6 @@ def test_a_recording_that_is_there_is_replaced_only_when_that_is_wanted(make_pro
         assert (made.path / "drive.jsonl").read_text() != before
         (made.path / "other.trace.jsonl").touch()  # a recording has two files
         assert page.command("save", file="other")["exists"] == "other.trace.jsonl"
-
-
-def test_a_recording_is_saved_in_the_project_and_nowhere_else(make_project) -> None:
-    made = make_project(FILES)
-    with served(made) as server, server.page() as page:
-        page.run_for(0.2)
-        assert page.command("save", file="drives/first")["file"] == "drives/first.jsonl"
-        assert (made.path / "drives" / "first.jsonl").is_file()
-        assert page.ask(type="command", name="save", file="../outside.jsonl")["type"] == "error"
-        assert not (made.path.parent / "outside.jsonl").exists()
 
 
 def test_messages_that_make_no_sense_are_errors_and_nothing_more(make_project) -> None:
@@ -306,6 +301,7 @@ def test_messages_that_make_no_sense_are_errors_and_nothing_more(make_project) -
             page.socket.send(text)
             page.until_type("error")  # which belongs to no question
         page.run_for(0.1)
+        page.quit()
 
 
 def test_a_mistake_of_pyfrcs_own_is_printed_and_ends_one_connection(make_project, monkeypatch, capsys) -> None:
@@ -333,11 +329,6 @@ def test_a_mistake_of_pyfrcs_own_that_would_stop_all_pages_ends_the_simulation(m
     simulation = Simulation(find_project(make_project(FILES).path), SimOptions(paused=True, network_values=True))
     with pytest.raises(ZeroDivisionError):
         WebFrontEnd(lambda _: None, WebOptions(opens_browser=False)).run(simulation)
-
-
-def test_the_page_closes_the_simulation(make_project) -> None:
-    with served(make_project(FILES)) as server, server.page() as page:
-        page.quit()
 
 
 @pytest.mark.bare

@@ -11,6 +11,7 @@ from urllib.parse import urlsplit
 
 import pytest
 from conftest import MakeProject, sampled
+from loops import for_each
 from recorded_pages import run_in
 from sim_robots import FILES
 from web_pages import PATIENCE, Served, served
@@ -130,9 +131,11 @@ def test_a_codespace_serves_the_name_at_which_its_port_is_forwarded(
         assert opened(server, local, "null") == 403
 
 
-def test_a_host_that_the_user_allows(make_project) -> None:
+def test_a_host_that_the_user_allows(make_project, quiet: Served) -> None:
     hosts = ("Pit.example", "http://cart.local:8080", "[fd00::7]:9000")
     with served(make_project(QUIET), allowed_hosts=hosts) as server:
+        addresses = (quiet.address, quiet.viewing_address, server.address, server.viewing_address)
+        assert len({urlsplit(address).query for address in addresses}) == 4, "they differ from start to start"
         query = urlsplit(server.address).query
         origins = ("https://pit.example", "http://cart.local:8080", "https://[fd00::7]:9000")
         for origin in origins:
@@ -147,7 +150,7 @@ def test_a_host_that_the_user_allows(make_project) -> None:
         assert opened(server, "pit.example", "https://pit.example:444") == 403
 
 
-@pytest.mark.parametrize(
+@for_each(
     "host", ["", "*", "*.example", "ftp://pit.example", "pit.example/page", "pit.example:x", "a b", "user@pit.example"]
 )
 def test_what_is_no_host(host: str) -> None:
@@ -271,13 +274,3 @@ def test_a_layout_that_is_a_link_is_not_handed_out(make_project) -> None:
     (made.path / ".pyfrc/sim-layout.json").symlink_to(outside)
     with served(made) as server, server.page(server.viewing_address) as page:
         assert page.hello["layout"] is None
-
-
-def test_addresses_differ_from_start_to_start(make_project) -> None:
-    made = make_project(QUIET)
-    with served(made) as first:
-        one = first.address, first.viewing_address
-    with served(made) as second:
-        two = second.address, second.viewing_address
-    tokens = {urlsplit(address).query for address in (*one, *two)}
-    assert len(tokens) == 4

@@ -7,6 +7,7 @@ import random
 from bisect import bisect
 
 import pytest
+from loops import for_each
 
 from pyfrc_core.sim.engine.changes import Change, RunBegan
 from pyfrc_core.sim.engine.value_history import MISSING, ValueHistory
@@ -36,7 +37,7 @@ def random_value(chance: random.Random) -> object:
     return chance.choice(kinds)()
 
 
-@pytest.mark.parametrize("seed", range(8))
+@for_each("seed", range(8))
 def test_every_moment_has_the_values_that_it_had(seed: int) -> None:
     """Against a plain model: a list of all values at each packet."""
     chance = random.Random(seed)

@@ -290,21 +290,3 @@ def test_the_field_is_moved_zoomed_and_turned_round(person: Seen) -> None:
     person.until(lambda: person.simulation.snapshot.scene.robot.angle == pytest.approx(robot.angle + math.radians(15)))
     page.keyboard.press("ArrowUp")
     person.until(lambda: person.simulation.snapshot.scene.robot.y == pytest.approx(robot.y - 0.25))
-
-
-def test_a_lost_driver_station_and_a_restart_after_a_failure(person: Seen) -> None:
-    page = person.page
-    person.choose("Restart, save, end", "Disconnect the driver station")
-    person.until(lambda: person.value("control.dsAttached") is False)
-    person.state("Driver station lost")  # the menu has the other item then
-    person.choose("Restart, save, end", "Connect the driver station")
-    person.until(lambda: person.value("control.dsAttached") is True)
-    person.button("Enable").click()
-    page.locator(".stick-button").nth(4).hover()
-    page.mouse.down()
-    page.locator(".failure strong", has_text="ValueError: button 5").wait_for()
-    page.mouse.up()
-    starts = person.simulation.status.starts
-    person.button("Restart").click()
-    page.locator(".failure").wait_for(state="detached")
-    person.until(lambda: person.simulation.status.starts > starts)

@@ -1,4 +1,7 @@
-"""The simulator's window on a virtual display, used as its user does: with real keys and a real mouse."""
+"""The simulator's window on a virtual display, used as its user does: with real keys and a real mouse.
+
+By day, a user drives, and the field is looked at. What the window shows and binds is in `test_sim_window_models`.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from conftest import MakeProject, sampled
+from conftest import MakeProject
 from skips import missing_tkinter
 from virtual_display import VirtualDisplay, require_window, virtual_display
 
@@ -51,6 +54,7 @@ ROBOT = {
 
         class MyRobot(wpilib.TimedRobot):
             def robotInit(self):
+                self.driven = 0
                 self.motor = wpilib.PWMSparkMax(2)
                 self.switch = wpilib.DigitalInput(3)
                 self.ready = wpilib.DigitalOutput(4)
@@ -81,7 +85,9 @@ ROBOT = {
             def teleopPeriodic(self):
                 self.motor.set(-self.stick.getY())
                 if self.stick.getY() < 0:
-                    Path(__file__).with_name("driven").touch()
+                    self.driven += 1
+                    if self.driven == 50:  # until then, the window has known for long that it drives
+                        Path(__file__).with_name("driven").touch()
                 if self.stick.getRawButton(1):
                     raise RuntimeError("the arm has come off")
                 if self.stick.getRawButton(2):
@@ -314,6 +320,7 @@ def test_driving_by_keys_in_all_kinds_of_time(sit: Sit, tank: Path) -> None:
     user.until(lambda: user.snapshot.scene.robot[:2] == pytest.approx(start[:2], abs=1e-6))
 
 
+@pytest.mark.slow
 def test_modes_emergency_stop_and_restart(user: User) -> None:
     station = user.window.station
     user.click(station.mode_buttons["autonomous"])
@@ -336,6 +343,7 @@ def test_modes_emergency_stop_and_restart(user: User) -> None:
     user.until(lambda: user.snapshot.mode == "autonomous" and user.snapshot.practice_since is not None)
 
 
+@pytest.mark.slow
 def test_devices_are_shown_and_set(user: User) -> None:
     devices = user.window.devices
     assert [panel.title for panel in devices.rows.panels][:2] == ["PWM", "Digital I/O"]
@@ -427,6 +435,7 @@ def test_the_field_and_what_robot_code_draws(user: User) -> None:
     user.until(lambda: user.snapshot.scene.robot == pytest.approx(start, abs=1e-6))
 
 
+@pytest.mark.slow
 def test_a_robot_that_crashes_is_restarted(user: User) -> None:
     console = user.window.console
     user.until(lambda: "the robot is there" in console.text.get("1.0", "end"))
@@ -447,7 +456,8 @@ def test_a_robot_that_crashes_is_restarted(user: User) -> None:
     assert user.snapshot.mode == "disabled"
 
 
-@pytest.mark.parametrize("what", sampled(["an endless loop", "a thread that never ends"], "an endless loop"))
+@pytest.mark.slow
+@pytest.mark.parametrize("what", ["an endless loop", "a thread that never ends"])
 def test_closing_whatever_the_robot_does(what: str, sit: Sit, make_project: MakeProject) -> None:
     user = sit(make_project(ROBOT).path)
     user.press("ctrl+e")
@@ -466,6 +476,7 @@ def test_closing_whatever_the_robot_does(what: str, sit: Sit, make_project: Make
     assert user.simulation.status.state == "closed"
 
 
+@pytest.mark.slow
 def test_the_command(make_project: MakeProject, display: VirtualDisplay) -> None:
     """`pyfrc sim --ui tk` opens the window, and ends when it is closed; what was done in it can be replayed."""
     project = make_project(ROBOT)

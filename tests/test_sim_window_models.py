@@ -161,8 +161,8 @@ def spark(mode: int, velocity_factor: float = 1.0) -> dict[str, Any]:
     }
 
 
-@pytest.mark.parametrize(
-    ("values", "label", "unit"),
+@for_each(
+    "values, label, unit",
     [
         (spark(0), "Setpoint (duty cycle)", ""),
         (spark(1), "Setpoint (velocity)", "rpm"),
@@ -229,8 +229,8 @@ def driver(layout: str, *keys: str) -> KeyDriver:
     return made
 
 
-@pytest.mark.parametrize(
-    ("layout", "keys", "axes"),
+@for_each(
+    "layout, keys, axes",
     [
         ("Tank: both sides", "w", {(0, 1): -1.0, (1, 1): -1.0}),
         ("Tank: both sides", "s", {(0, 1): 1.0, (1, 1): 1.0}),
@@ -274,8 +274,8 @@ def test_digits_are_buttons_whether_or_not_shift_is_held() -> None:
     assert canonical("dollar") == "4"
 
 
-@pytest.mark.parametrize(
-    ("joysticks", "layout"),
+@for_each(
+    "joysticks, layout",
     [
         ({}, "Tank: both sides"),
         ({0: {"axes": {"y": "left side"}}, 1: {"axes": {"y": "right side"}}}, "Tank: both sides"),

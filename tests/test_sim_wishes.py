@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from loops import for_each
 from sim_robots import FILES
 
 from pyfrc_core.project import Project
@@ -218,7 +219,7 @@ def test_every_sequence_of_commands_ends_as_the_user_wants(project: Project, wor
     assert simulation.status.speed == next((speeds[word] for word in reversed(wanted) if word in speeds), 1.0)
 
 
-@settings(max_examples=150)
+@settings(max_examples=60)
 @given(
     words=st.lists(st.sampled_from(["step", "write", "unwrite", "reload", "fail", "fast", *HAPPENINGS]), max_size=12)
 )
@@ -240,8 +241,8 @@ def test_new_code_loses_no_step_and_no_input(project: Project, words: list[str])
     assert processes.robot.inputs.get("dio[0].value") == (written[-1] if written else None)
 
 
-@pytest.mark.parametrize("paused", [True, False])
-@pytest.mark.parametrize(
+@for_each("paused", [True, False])
+@for_each(
     "words",
     [
         ["reload", "reload"],

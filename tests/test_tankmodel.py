@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from loops import for_each
 from wpimath.geometry import Transform2d
 
 from pyfrc.physics.motor_cfgs import MOTOR_CFG_CIM, MOTOR_CFG_NEO
@@ -124,27 +125,6 @@ def test_pose_agrees_with_a_fine_integration(values: list[tuple[float, float, fl
         track.drive(l_forward, r_forward, seconds)
         reference.drive(l_forward, r_forward, seconds)
     assert track.state == pytest.approx(reference.state, abs=1e-6)
-
-
-def test_tuned_numbers_keep() -> None:
-    """Within 0.5 % of small trapezoid-like steps of 5 ms, which is how this used to be computed."""
-    model, others = theory(), {}
-    angle = 0.0
-    for side, power, sign in (("l", 1.0, 1), ("r", 0.6, -1)):
-        velocity = position = 0.0
-        kv, ka = 12 / 12.980, 12 / 54.671
-        for _ in range(400):
-            acceleration = (12 * power - 1.3 - kv * velocity) / ka
-            gained = acceleration * 0.005
-            position += (velocity + gained / 2) * 0.005
-            velocity += gained
-        others[f"{side}_position"], others[f"{side}_velocity"] = position, velocity
-        angle += sign * position * 2.0 / 2 * 90 / 108.776
-    track = Track(model)
-    track.drive(1.0, 0.6, 2.0, count=100)
-    assert track.angle == pytest.approx(angle, rel=0.005)
-    for name, value in others.items():
-        assert getattr(model, name) == pytest.approx(value, rel=0.005)
 
 
 # -- what each side does -----------------------------------------------------------------------------------------------
@@ -268,8 +248,8 @@ def test_any_units_will_do() -> None:
     assert metric.get_distance(-1, 0.3, 0.3) == pytest.approx(theory().get_distance(-1, 0.3, 0.3))
 
 
-@pytest.mark.parametrize(
-    ("parameters", "error"),
+@for_each(
+    "parameters, error",
     [
         (
             {"robot_mass": 90 * units.foot},
@@ -288,7 +268,7 @@ def test_a_wrong_dimension_is_named(parameters: dict[str, Any], error: str) -> N
     assert error in str(raised.value)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "parameters",
     [
         {"robot_mass": -90 * units.lbs},
@@ -307,7 +287,7 @@ def test_a_value_that_cannot_be_names_its_parameter(parameters: dict[str, Any]) 
         theory(**parameters)
 
 
-@pytest.mark.parametrize("unit", ["rpm", "rad / second", "turn / minute"])
+@for_each("unit", ["rpm", "rad / second", "turn / minute"])
 def test_a_free_speed_in_radians_is_a_warning(unit: str) -> None:
     motor = MOTOR_CFG_NEO._replace(freeSpeed=5676 * units(unit))
     with pytest.warns(UserWarning, match=r"Use units\.cpm") as warned:
@@ -329,7 +309,7 @@ def test_what_is_no_motor_is_told() -> None:
         TankModel.theory("CIM", MASS, 10.71)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(("step", "name"), [((math.nan, 0, 0.02), "l_motor"), ((0, math.nan, 0.02), "r_motor")])
+@for_each("step, name", [((math.nan, 0, 0.02), "l_motor"), ((0, math.nan, 0.02), "r_motor")])
 def test_nan_never_gets_into_the_pose(step: tuple[float, float, float], name: str) -> None:
     model = theory()
     with pytest.raises(ParameterError, match=name):
@@ -337,7 +317,7 @@ def test_nan_never_gets_into_the_pose(step: tuple[float, float, float], name: st
     assert model.l_position == model.r_position == 0
 
 
-@pytest.mark.parametrize("seconds", [-0.02, math.nan, math.inf])
+@for_each("seconds", [-0.02, math.nan, math.inf])
 def test_time_does_not_run_backwards(seconds: float) -> None:
     model = TankModel.theory(MOTOR_CFG_NEO, MASS, 10.71)
     with pytest.raises(ParameterError, match="tm_diff"):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import struct
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
@@ -437,7 +438,7 @@ def started(what_if: WhatIf) -> str:
     return address
 
 
-def test_a_simulation_that_a_log_drives_is_started_and_ended(make_project: Any) -> None:
+def test_a_simulation_that_a_log_drives_is_started_and_ended(make_project: Any, monkeypatch: Any) -> None:
     made = make_project({"robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"})
     log = a_match().save(made.path / "match.wpilog")
     said: list[str] = []
@@ -451,8 +452,10 @@ def test_a_simulation_that_a_log_drives_is_started_and_ended(make_project: Any) 
     finally:
         what_if.close()
     assert f"The simulator is at {address.geturl()}\n" in said
-    broken = WhatIf(Project(made.path / "robot.py"), made.path / "none.wpilog", said.append)
-    with pytest.raises(PyfrcError, match=r"The simulation did not start: .*there is no file"):
+    # What a simulation that does not start prints is the reason: here, its command.
+    monkeypatch.setattr("pyfrc_core.sim.what_if.sys", SimpleNamespace(executable="echo"))
+    broken = WhatIf(Project(made.path / "robot.py"), log, said.append)
+    with pytest.raises(PyfrcError, match=r"The simulation did not start: -m pyfrc sim .* --log .*match.wpilog"):
         started(broken)
     broken.close()
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
+from loops import for_each
 
 from pyfrc_core.hal import HalData
 
@@ -10,7 +10,7 @@ from pyfrc_core.hal import HalData
 KINDS = ("time", "pwm", "solenoid", "custom", "reports", "CAN")
 
 
-@pytest.mark.parametrize("key", KINDS)
+@for_each("key", KINDS)
 def test_a_name_is_there_before_its_value_was_read(key: str) -> None:
     tree = HalData()
     assert key in tree
@@ -19,7 +19,7 @@ def test_a_name_is_there_before_its_value_was_read(key: str) -> None:
     assert key in tree
 
 
-@pytest.mark.parametrize("key", ["pwn", "", "PWM", 0, None, ("pwm",)])
+@for_each("key", ["pwn", "", "PWM", 0, None, ("pwm",)])
 def test_what_is_no_name_is_not_there(key: object) -> None:
     assert key not in HalData()
 

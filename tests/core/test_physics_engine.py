@@ -12,6 +12,7 @@ from typing import Any
 import ntcore
 import pytest
 import wpilib
+from loops import for_each
 
 from pyfrc_core.config.sim import SimConfig
 from pyfrc_core.errors import PyfrcError, RobotCodeError
@@ -57,8 +58,8 @@ def engine(constructor: str, update: str, calls: str = "pass") -> str:
         """
 
 
-@pytest.mark.parametrize(
-    ("constructor", "update", "takes_hal_data", "takes_robot"),
+@for_each(
+    "constructor, update, takes_hal_data, takes_robot",
     [
         ("self, physics_controller", "self, hal_data, now, tm_diff", True, False),
         ("self, physics_controller", "self, now, tm_diff", False, False),
@@ -149,7 +150,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("mistake", WRONG)
+@for_each("mistake", WRONG)
 def test_a_class_that_cannot_be_is_named_with_its_line_and_what_it_must_have(load: Load, mistake: str) -> None:
     text, place, message = WRONG[mistake]
     with pytest.raises(PhysicsInitException) as wrong:
@@ -158,8 +159,8 @@ def test_a_class_that_cannot_be_is_named_with_its_line_and_what_it_must_have(loa
     assert wrong.value.remedy.startswith("It must have a class PhysicsEngine with __init__(self, physics_controller)")
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
+@for_each(
+    "text, message",
     [
         ("class PhysicsEngine:\n    def\n", "physics.py:2: SyntaxError"),
         ("import math\nmath.nothing\n", "physics.py:2: AttributeError"),
