@@ -175,7 +175,7 @@ def _none_from_call(frame: FrameType, line: int) -> Explanation | None:
 def _no_number(found: re.Match[str], frame: FrameType, line: int) -> Explanation | None:
     """Explain a text, None, or an object of a library's class, such as a Rotation2d, among numbers."""
     names = [each for each in found.groups() if each]
-    computed = (_operands(node) for node in ast.walk(statement_at(frame, line)) if not isinstance(node, ast.Call))
+    computed = map(_operands, ast.walk(statement_at(frame, line)))
     operands = next((each for each in computed if each and _may_be_of(names, each, frame)), [])
     for each, name in zip(operands, names, strict=False):
         written, cls = ast.unparse(each), class_of(name)
@@ -231,8 +231,6 @@ def _whole_number(frame: FrameType, line: int) -> Explanation | None:
 def _operands(node: ast.AST) -> list[ast.expr]:
     if isinstance(node, ast.UnaryOp):
         return [node.operand]
-    if isinstance(node, ast.Call) and last_name(node.func) in _COMPUTING:
-        return node.args
     if isinstance(node, (ast.BinOp, ast.AugAssign)):
         return [node.left, node.right] if isinstance(node, ast.BinOp) else [node.target, node.value]
     return [node.left, *node.comparators] if isinstance(node, ast.Compare) else []

@@ -821,13 +821,15 @@ def test_imports_of_the_projects_own_files(tmp_path: Path, monkeypatch: pytest.M
             assert found is not None
             return f"{found.text}. {found.remedy}"
         finally:
-            for name in ("one", "subsystems", "subsystems.arm"):
+            for name in ("one", "two", "subsystems", "subsystems.arm"):
                 sys.modules.pop(name, None)
         raise AssertionError("it raises nothing")
 
     assert "write subsystems, as the file or folder is called" in explained("import Subsystems.arm")
     assert "write subsystems.arm, as" in explained("import subsystems.Arm")
     assert "Did you mean one?" in explained("import onee")
+    (tmp_path / "two.py").write_text("def _turn(): pass\n")
+    assert "Is the name right?" in explained("from two import turn"), "what is private is not suggested"
     circle = explained("import one")
     assert "subsystems/arm.py imports one.py, which is importing subsystems/arm.py and does not have Two yet" in circle
     assert "if TYPE_CHECKING:" in circle

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -15,9 +16,12 @@ from pyfrc_core.errors import RobotCodeError
 from pyfrc_core.fuzz.campaign import executors
 from pyfrc_core.fuzz.campaign.executors import LocalMatchExecutor
 from pyfrc_core.fuzz.guidance.seed_schedule import SeedSchedule
+from pyfrc_core.fuzz.match import imported_robot
+from pyfrc_core.fuzz.match.imported_robot import import_libraries
 from pyfrc_core.fuzz.match.journal import Journal
 from pyfrc_core.fuzz.match.work import FuzzTask, MatchResult, NoMoreWork, ReplayTask, ShrinkTask, Shrunk, Work
 from pyfrc_core.fuzz.oracle.failure import HANGS, PROCESS_ENDED, FuzzFailure, NotedFailure
+from pyfrc_core.processes.crash_report import CrashLog
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import InputScript, Step
 
@@ -98,6 +102,25 @@ def test_the_libraries_of_a_robot_are_not_its_own_modules(tmp_path: Path) -> Non
     names = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True).stdout.split()
     assert "html.parser" in names
     assert not {"robot", "parts"}.intersection(names)
+
+
+def test_a_process_that_has_imported_libraries_may_be_forked_unless_they_started_threads(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reasons: list[str] = []
+    monkeypatch.setattr(imported_robot, "reasons_not_to_fork", lambda: reasons)
+    monkeypatch.setattr(imported_robot.patches, "install", lambda files: None)
+    monkeypatch.setattr(imported_robot.library_threads, "begin", lambda: None)
+    project = Project(tmp_path / "robot.py")
+    assert import_libraries(project, ["html.parser", "no.such.library"])
+    reasons.append("a thread")
+    assert not import_libraries(project, [])
+
+
+def test_a_process_returns_the_lines_of_the_robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    lines = frozenset({("robot.py", 1)})
+    monkeypatch.setattr(executors, "robot_lines", lambda project: SimpleNamespace(all=lines))
+    assert executors.all_lines(Project(tmp_path / "robot.py"), CrashLog(0)) == lines
 
 
 def test_results_come_in_the_order_of_the_tasks_and_no_more_run_than_there_are_jobs(local: Local) -> None:

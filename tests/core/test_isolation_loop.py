@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import atexit
 import gc
+import os
 import sys
 import types
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from pyfrc_core.project import Project
 from pyfrc_core.project.robot_files import RobotFiles
-from pyfrc_core.test_support.isolation import loop
+from pyfrc_core.test_support import run_tests
+from pyfrc_core.test_support.isolation import loop, messages
 from pyfrc_core.test_support.isolation.loop import IsolatedTests, _made_up, _other_parameters, _report, _stop_if_asked
+from pyfrc_core.test_support.pytest_plugin import PyFrcPlugin
 from pyfrc_core.test_support.reporting import BUG
 
 SEED = ("pyfrc", "random seed: 1")
@@ -261,3 +267,96 @@ def test_a_slow_start_is_explained_once(plugin: Any) -> None:
     tests._explain(config, "why")
     tests._explain(config, "why, too")
     assert lines == ["pyfrc: why"]
+
+
+# -- what a test's process sends, and what is set up for several -------------------------------------------------------
+
+
+class Sent:
+    """Runs a test that does `protocol` as in its own process: the messages of its `ReportSender`."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, protocol: Any = lambda **about: None) -> None:
+        self.messages: list[Any] = []
+        monkeypatch.setattr(messages, "written_files", [])
+        monkeypatch.setattr(messages, "real_time_libraries", list)
+        monkeypatch.setattr(messages, "loaded_from_elsewhere", lambda project, with_pyfrc: [])
+        project: Any = None
+        self.sender = messages.ReportSender(self.messages.append, project)
+        self.item: Any = SimpleNamespace(
+            config=SimpleNamespace(pluginmanager=SimpleNamespace(register=lambda plugin, name: None)),
+            session=SimpleNamespace(shouldstop=""),
+            ihook=SimpleNamespace(pytest_runtest_protocol=protocol),
+            parent="its module",
+        )
+
+
+def test_what_ends_a_test_ends_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    for raised, sent, here in (
+        (KeyboardInterrupt(), ("interrupted", None), KeyboardInterrupt),
+        (pytest.exit.Exception("enough", 4), ("exit", ("enough", 4)), pytest.exit.Exception),
+    ):
+
+        def protocol(raised: BaseException = raised, **about: object) -> None:
+            raise raised
+
+        made = Sent(monkeypatch, protocol)
+        made.sender.run(made.item)
+        assert made.messages == [sent, ("done", None)]
+        with pytest.raises(here):
+            messages.replay(made.item, made.messages[0])
+
+
+def test_what_a_test_shares_is_left_to_the_other_side(monkeypatch: pytest.MonkeyPatch) -> None:
+    following: list[object] = []
+    made = Sent(monkeypatch, lambda item, nextitem: following.append(nextitem))
+    made.sender.run(made.item)
+    made.sender.run(made.item, shares=False)
+    assert following == ["its module", None]
+
+
+def test_a_run_has_one_directory_for_temporary_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[str] = []
+    factory = SimpleNamespace(getbasetemp=lambda: made.append("directory"))
+
+    @contextmanager
+    def shared(session: object, item: object) -> Iterator[Any]:
+        yield SimpleNamespace(getfixturevalue=lambda name: made.append(name) or factory), ["wide"]
+
+    monkeypatch.setattr(loop.pytest_private, "shared_fixtures", shared)
+    monkeypatch.setattr(loop.pytest_private, "captured_setup", nullcontext)
+    session: Any = None
+    loop._set_up_shared(session, Item("a", [], fixtures=("tmp_path_factory", "wide")))  # type: ignore[arg-type]
+    assert made == ["tmp_path_factory", "directory", "wide"]
+    made.clear()
+    loop._set_up_shared(session, Item("a", []))  # type: ignore[arg-type]
+    assert made == ["wide"]
+
+
+# -- the run -----------------------------------------------------------------------------------------------------------
+
+
+def test_pytest_starts_elsewhere_and_goes_back_to_the_users_directory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path.parent)
+    run_tests._ChangesBack(tmp_path).pytest_load_initial_conftests()
+    assert Path.cwd() == tmp_path
+
+
+def test_hypothesis_reports_what_used_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    unregistered: list[object] = []
+    plugins = SimpleNamespace(getplugin=lambda name: name, unregister=unregistered.append)
+    session: Any = SimpleNamespace(config=SimpleNamespace(pluginmanager=plugins))
+    run_tests._NoUnusedHypothesis().pytest_sessionfinish(session)
+    assert unregistered == []
+    monkeypatch.delitem(sys.modules, "hypothesis")
+    run_tests._NoUnusedHypothesis().pytest_sessionfinish(session)
+    assert unregistered == ["hypothesispytest"]
+
+
+def test_the_terminal_is_known_before_pytest_redirects_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "dup", lambda descriptor: descriptor + 100)
+    made = PyFrcPlugin.__new__(PyFrcPlugin)
+    made.project = Project(tmp_path / "robot.py")
+    made.pytest_sessionstart()
+    assert made._terminal == 102
