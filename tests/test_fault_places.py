@@ -72,31 +72,6 @@ def test_what_was_bound_to_a_trigger_is_named_and_not_its_subsystem(
     assert "arm.py:" not in result.stdout
 
 
-def test_a_loop_that_does_not_end_is_named_and_not_what_it_calls(make_project: MakeProject) -> None:
-    robot = """
-        import wpilib
-
-
-        class MyRobot(wpilib.TimedRobot):
-            def teleopPeriodic(self):
-                self.wait()
-
-            def wait(self):
-                while not self.is_there():
-                    pass
-
-            def is_there(self):
-                return sum(range(20_000)) < 0
-    """
-    settings = "[tool.pyfrc.test]\nhang_seconds = 1\n"
-    test = (
-        "def test_it(control, robot):\n    control.set_operator_control()\n    control.run_test(lambda now: now < 1)\n"
-    )
-    project = make_project({"robot.py": robot, "pyproject.toml": settings, "tests/test_robot.py": test})
-    result = project.run("test")
-    assert f"{project.place('robot.py', 'while not')}: the robot code hangs here" in result.stdout, result.output
-
-
 @pytest.fixture
 def module(tmp_path: Path) -> ModuleType:
     """A robot file whose function `outer` calls what it is given."""

@@ -13,7 +13,7 @@ from typing import Any
 
 import forked
 import pytest
-from conftest import MakeProject, Result, RobotProject, _forking_process, sampled
+from conftest import MakeProject, Result, RobotProject, _forking_process
 from sim_robots import settle, wait
 
 from pyfrc_core.processes import spawn
@@ -180,7 +180,8 @@ def left(directory: Path) -> dict[str, str]:
     }
 
 
-@pytest.mark.parametrize("command", sampled(COMMANDS, COMMANDS[0]))
+@pytest.mark.slow
+@pytest.mark.parametrize("command", COMMANDS)
 def test_a_command_does_the_same_as_in_a_new_interpreter(command: str, make_shared_project: MakeProject) -> None:
     cold, warm = make_shared_project(FILES), make_shared_project(FILES)
     program, *words = command.split()

@@ -75,7 +75,7 @@ def test_a_campaign_ends_with_hints(make_project: Any) -> None:
     )
 
 
-@pytest.mark.parametrize("isolation", sampled(["fork", "reuse"] if FORK_IS_SAFE else ["reuse"], "reuse"))
+@pytest.mark.parametrize("isolation", sampled(["fork", "reuse"], "fork" if FORK_IS_SAFE else "reuse"))
 def test_a_thread_that_does_not_end_with_the_robot_program(isolation: str, make_project: Any) -> None:
     robot = """
         import threading
@@ -90,7 +90,7 @@ def test_a_thread_that_does_not_end_with_the_robot_program(isolation: str, make_
                 while True:
                     time.sleep(0.5)  # for ever
         """
-    project = make_project({"robot.py": robot})
+    project = make_project({"robot.py": robot, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 2\n"})
     fuzzed = project.run("fuzz", "--runs", "5", "--isolation", isolation)
     assert fuzzed.code == 0, fuzzed.output
     (hint,) = [line for line in fuzzed.output.splitlines() if line.startswith("hint: ")]

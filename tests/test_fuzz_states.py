@@ -8,6 +8,8 @@ import sys
 import textwrap
 from typing import Any
 
+from conftest import _start_python
+
 from pyfrc_core.fuzz.guidance.goals import BRANCH, LINE, STATE, kind_of
 from pyfrc_core.fuzz.guidance.seed_schedule import SeedSchedule, SeedScheduler
 
@@ -85,9 +87,11 @@ GOALS = """
 
 def goals_of(project: Any) -> list[tuple[str | None, list[str]]]:
     program = textwrap.dedent(GOALS)
-    done = subprocess.run([sys.executable, "-c", program], cwd=project.path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    found: list[tuple[str | None, list[str]]] = json.loads(done.stdout.splitlines()[-1])
+    done = _start_python([sys.executable, "-c", program], cwd=project.path, stdout=subprocess.PIPE)
+    with done.stdout:
+        *_, last = done.stdout
+    assert done.wait() == 0
+    found: list[tuple[str | None, list[str]]] = json.loads(last)
     return found
 
 

@@ -102,8 +102,8 @@ def fuzz(make_project, seeds: int, robot: str = EVERYTHING, **env: str) -> list[
 
 @pytest.fixture(scope="module")
 def matches(make_shared_project) -> list[Written]:
-    """What was written in twelve matches of a robot with one of everything."""
-    return fuzz(make_shared_project, 12)
+    """What was written in some matches of a robot with one of everything."""
+    return fuzz(make_shared_project, 8)
 
 
 # -- which inputs are written -------------------------------------------------------------------------------------
@@ -138,18 +138,18 @@ def test_every_input_of_the_robot_is_written(target: str, matches: list[Written]
     assert any(target == written for match in matches for _, written, _ in match)
 
 
-@pytest.mark.parametrize("target", ["dio[1].value", "dio[2].value", "dio[5].value", "analog_in[0].voltage"])
-def test_inputs_without_a_device_are_not_written(target: str, matches: list[Written]) -> None:
+def test_inputs_without_a_device_are_not_written(matches: list[Written]) -> None:
     """An output, an encoder's wire, a channel that the robot has not made, a gyro's wire."""
-    assert all(target != written for match in matches for _, written, _ in match)
+    written = {target for match in matches for _, target, _ in match}
+    assert not written & {"dio[1].value", "dio[2].value", "dio[5].value", "analog_in[0].voltage"}
 
 
 def values(matches: list[Written], pattern: str) -> set[object]:
     return {value for match in matches for _, target, value in match if re.fullmatch(pattern, target)}
 
 
-@pytest.mark.parametrize(
-    ("pattern", "low", "high"),
+@for_each(
+    "pattern, low, high",
     [
         (r"joysticks\[0\]\.axes\[[0145]\]", -1, 1),
         (r"joysticks\[0\]\.axes\[[23]\]", 0, 1),  # an Xbox controller's triggers
@@ -224,7 +224,7 @@ def test_the_joysticks_of_the_robot_are_used_most(where: str, make_project) -> N
         def robotInit(self):
             {where}
     """
-    matches = fuzz(make_project, 4, robot=robot)
+    matches = fuzz(make_project, 2, robot=robot)
     ports = [target.partition(".")[0] for match in matches for _, target, _ in match if target.startswith("joysticks")]
     assert ports.count("joysticks[3]") > 0.8 * len(ports)
 
@@ -233,9 +233,8 @@ def test_the_joysticks_of_the_robot_are_used_most(where: str, make_project) -> N
 
 
 def test_the_same_seed_writes_the_same_whatever_python_hashes(make_shared_project, matches) -> None:
-    again = fuzz(make_shared_project, 3, PYTHONHASHSEED="77")
-    assert again == matches[:3]
-    assert again[0] != again[1] != again[2]
+    assert fuzz(make_shared_project, 1, PYTHONHASHSEED="77") == matches[:1]
+    assert matches[0] != matches[1] != matches[2]
 
 
 @given(kind=st.sampled_from(get_args(InputKind)), seed=st.integers(0, 2**32), now=st.floats(-1e6, 1e6))
@@ -274,10 +273,10 @@ SIMULATED = """
 
 def test_inputs_that_physics_drives_are_left_to_it(make_project) -> None:
     """Also sensors that the test has not named."""
-    for match in fuzz(make_project, 3, robot=SIMULATED):
-        targets = {target for _, target, _ in match}
-        assert "encoder[1].count" in targets
-        assert not targets & {"encoder[0].count", "encoder[0].rate"}
+    (match,) = fuzz(make_project, 1, robot=SIMULATED)
+    targets = {target for _, target, _ in match}
+    assert "encoder[1].count" in targets
+    assert not targets & {"encoder[0].count", "encoder[0].rate"}
 
 
 # -- the test itself -------------------------------------------------------------------------------------------------

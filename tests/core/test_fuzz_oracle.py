@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 import wpilib
+from wpilib.drive import DifferentialDrive
 
 from pyfrc_core.config.settings import FuzzSettings
 from pyfrc_core.fuzz.oracle.checks import attach_oracle
@@ -33,6 +34,7 @@ def play(run: RobotRun) -> Play:
         modes: dict[float, str],
         seconds: float = 3.0,
         always_set: Collection[str] = (),
+        texts: list[str] | None = None,
         robot: type[wpilib.RobotBase] | None = None,
         **settings: Any,
     ) -> list[tuple[str, str, float]]:
@@ -54,6 +56,8 @@ def play(run: RobotRun) -> Play:
                 where = f"+{int(place) - loop.__code__.co_firstlineno} {error.function}"  # type: ignore[attr-defined]
             if not found or found[-1][:2] != (error.kind, where):
                 found.append((error.kind, where, run.clock.now))
+            if texts is not None:
+                texts.append(str(error))
             assert f"(Disable this check with {error.kind} = false under [tool.pyfrc.fuzz]" in str(error)
             return False
 
@@ -129,8 +133,23 @@ def test_a_motor_runs_on_in_teleop_with_what_autonomous_has_set(play: Play) -> N
         if robot.isAutonomousEnabled():
             robot.motor.set(0.5)
 
-    found = play(loop, {0.1: "autonomous", 1.0: "teleop"}, 5.0)
+    texts: list[str] = []
+    found = play(loop, {0.1: "autonomous", 1.0: "teleop"}, 5.0, texts=texts)
     assert [(kind, where) for kind, where, _ in found] == [("motors_left_running", "+2 loop")]
+    said = "the motor still runs at 0.50, as autonomous has set it here, 1 s after the beginning of teleop: no code has"
+    assert said in texts[0]
+
+
+@pytest.mark.season_2026  # in 2027, drives of opmodes count, too
+def test_a_motor_of_a_drive_is_not_left_running(play: Play) -> None:
+    def loop(robot: Any) -> None:
+        if robot.loops == 1:
+            robot.drive = DifferentialDrive(robot.motor, wpilib.PWMSparkMax(CHANNEL + 1))
+            robot.drive.setSafetyEnabled(False)
+        elif robot.isAutonomousEnabled():
+            robot.motor.set(0.4)
+
+    assert play(loop, {0.1: "autonomous", 1.0: "teleop"}, 5.0) == []
 
 
 @pytest.mark.parametrize("stop", ["set it again", "set it while disabled", "stop it"])
