@@ -161,8 +161,12 @@ ALLIANCE_IN_ROBOT_INIT = """
 @pytest.mark.parametrize(
     "command",
     sampled(
-        [["test", "--builtin"], ["sim", "--ui", "none", "--seconds", "1"], ["fuzz", "--runs", "1", "-j1"]],
-        ["test", "--builtin"],
+        [
+            ["test", "--builtin", "--", "-k", "disabled"],
+            ["sim", "--ui", "none", "--seconds", "1"],
+            ["fuzz", "--runs", "1", "-j1"],
+        ],
+        ["test", "--builtin", "--", "-k", "disabled"],
     ),
 )
 def test_code_that_needs_the_alliance_at_boot_fails_everywhere(command: list[str], make_project: MakeProject) -> None:

@@ -486,9 +486,8 @@ TESTS_THAT_DRAW = """
 
 def test_a_seed_repeats_what_robot_and_tests_draw(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT_THAT_DRAWS, "tests/test_drawing.py": TESTS_THAT_DRAW})
-    seven, again, eight = (project.run("test", "--seed", seed) for seed in ("7", "7", "8"))
+    seven, again = (project.run("test", "--seed", "7") for _ in range(2))
     assert seven.stdout.count("random seed: 7 (--seed 7 repeats it)") == 2
     drawn = re.findall(r"^drew .+$", seven.stdout, re.MULTILINE)
     assert len(drawn) == 2
     assert re.findall(r"^drew .+$", again.stdout, re.MULTILINE) == drawn
-    assert not set(re.findall(r"^drew .+$", eight.stdout, re.MULTILINE)) & set(drawn)

@@ -68,7 +68,7 @@ def test_plain_pytest_tells_a_robot_that_cannot_be_imported_in_a_line(make_proje
     project = make_project(
         {
             "robot.py": "import wpilib\n\nimport not_installed\n\n\nclass Robot(wpilib.TimedRobot):\n    pass\n",
-            "tests/pyfrc_test.py": "from pyfrc.tests import *\n",
+            "tests/pyfrc_test.py": "from pyfrc.tests.basic import test_autonomous, test_disabled\n",
         }
     )
     result = project.pytest()

@@ -88,6 +88,8 @@ def test_controllers_on_the_can_bus_are_inert_while_disabled(created: str, disab
     project = make(make_project, created=created, disabled=disabled, seconds=20)
     result = project.run("fuzz", "--seed", "1", "--runs", "1")
     assert result.code == 0, result.output
+    assert "Nothing was found." in result.stdout
+    assert not (project.path / "tests").exists()
 
 
 @pytest.mark.slow

@@ -18,6 +18,9 @@ mypy = pytest.importorskip("mypy")
 
 require("environments like other systems'", [*(["Linux"] if sys.platform != "linux" else []), *missing_python()])
 
+#: What they stand for is tested when the suite runs in them, at night.
+pytestmark = pytest.mark.slow
+
 Run = Callable[..., str]
 
 

@@ -64,7 +64,7 @@ AT_IMPORT = [(what, True) for what in REPLACES if what not in ("none", "closed")
 
 @pytest.mark.parametrize(
     ("what", "at_import"),
-    sampled([*((what, False) for what in REPLACES), *AT_IMPORT], ("closed", False), AT_IMPORT[0]),
+    sampled([*((what, False) for what in REPLACES), *AT_IMPORT], ("closed", False)),
 )
 def test_tests_and_replays(make_project: MakeProject, what: str, at_import: bool) -> None:
     project = make(make_project, what, at_import)
@@ -100,7 +100,6 @@ def test_other_ways_to_run_tests(make_project: MakeProject, what: str, options: 
             (["coverage", "test", "--builtin"], ""),
             (["profile", "test", "--builtin"], ""),
         ],
-        (["sim", "--ui", "none", "--mode", "practice", "--seconds", "3"], ""),
         (["coverage", "test", "--builtin"], ""),
     ),
 )

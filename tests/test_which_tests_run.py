@@ -19,7 +19,7 @@ def ran(result) -> list[str]:
 @pytest.mark.parametrize(
     ("tests", "expected", "line"),
     [
-        (None, READY_MADE, "4 ready-made tests and 0 other tests"),
+        pytest.param(*(None, READY_MADE, "4 ready-made tests and 0 other tests"), marks=pytest.mark.slow),
         pytest.param(
             *('"""Ready-made tests."""\n', READY_MADE, "4 ready-made tests and 0 other tests"), marks=pytest.mark.slow
         ),

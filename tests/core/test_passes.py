@@ -12,7 +12,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from skips import missing_programs, require
 
@@ -103,6 +103,7 @@ def add_another(file: Path) -> None:
 EDITS = [write_as_long, append, Path.unlink, add_another]
 
 
+@settings(max_examples=40)  # each writes a project
 @given(st.sampled_from(PLACES), st.sampled_from(NAMES) | ANY_NAME, st.sampled_from(EDITS))
 @example("dist", "sensor.py", write_as_long)
 @example("tests", "match.wpilog", write_as_long)

@@ -17,6 +17,7 @@ def drawn(*lines: str) -> str:
 def test_numpy_draws_the_same_however_and_whenever_it_is_imported() -> None:
     draw = "print(numpy.random.random(), numpy.random.normal())"
     fifth, sixth = drawn("import numpy", SEED.format(seed=5), draw, SEED.format(seed=6), draw).splitlines(keepends=True)
+    assert fifth != sixth
     for imported in ("import numpy.linalg, numpy", "from numpy import random; import numpy"):
         assert drawn(SEED.format(seed=5), imported, draw) == fifth
     assert drawn(SEED.format(seed=5), SEED.format(seed=6), "import numpy", draw) == sixth, "the last seed counts"
