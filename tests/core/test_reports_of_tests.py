@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import threading
+from collections.abc import Callable
+from contextlib import suppress
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from pyfrc_core.test_support import hangs
+from pyfrc_core.test_support.hangs import WatchedTests
 from pyfrc_core.test_support.reporting import bug_of
 
 
@@ -34,6 +38,7 @@ class Hangs:
 
     def __init__(self, raised: Exception | None = None) -> None:
         self.outside: int | None = None
+        self.judges = True
         self.outside_factor = 10.0
         self.raised = raised
         self.progress = 0
@@ -64,3 +69,43 @@ def test_a_thread_that_hangs_fails_the_test(monkeypatch: pytest.MonkeyPatch) -> 
     with pytest.raises(TimeoutError, match="thread 7 is blocked"):
         hangs._await(thread, detector)
     assert detector.outside is None
+
+
+def called(detector: Any, body: Callable[[], object]) -> None:
+    """Call a test's function as the plugin does."""
+    plugin = WatchedTests()
+    plugin._hangs = detector
+    call = plugin.pytest_runtest_call()
+    next(call)
+    body()
+    with suppress(StopIteration):
+        next(call)
+
+
+def test_a_hang_whose_interruption_the_test_catches_is_a_failure() -> None:
+    detector = Hangs()
+    called(detector, lambda: None)
+
+    def catch() -> None:
+        detector.raised = TimeoutError("the test hangs here")
+
+    with pytest.raises(TimeoutError, match="the test hangs here"):
+        called(detector, catch)
+
+
+def test_only_threads_that_a_robots_test_starts_are_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    detector, waited = Hangs(), list[str]()
+    monkeypatch.setattr(hangs, "_await", lambda thread, detector: waited.append(thread.name))
+    done = threading.Event()
+
+    def start() -> None:
+        for name, daemon in (("work", False), ("camera", True)):
+            threading.Thread(target=done.wait, name=name, daemon=daemon).start()
+
+    monkeypatch.setattr(hangs, "test_that_started", lambda thread: "the test")
+    try:
+        for detector.judges in (True, False):
+            called(detector, start)
+    finally:
+        done.set()
+    assert waited == ["work"]
