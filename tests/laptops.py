@@ -46,17 +46,6 @@ def blank_computer(**options: Any) -> Computer:
     return Systemcore(python=None, **{"disk_size": "400m", **options})
 
 
-def prepared_computer() -> Computer:
-    """One that today's tool has prepared, with WPILib and nothing else."""
-    require_computer()
-    if not IS_ROBORIO:
-        return Systemcore(wpilib=WPILIB, disk_size="400m")
-    robot = Roborio(wpilib=WPILIB)
-    # Environments are made with this machine's Python, under its true version.
-    (robot.disk / "usr/local/lib/python3.14/site-packages/sitecustomize.py").unlink()
-    return robot
-
-
 def write_python(file: Path) -> None:
     """Write this machine's Python as the season's robots get theirs."""
     if IS_ROBORIO:

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import re
 import socket
 import struct
-from collections.abc import Callable, Iterator
-from importlib.metadata import version
 
 import pytest
 from at_terminal import run_at_terminal
 from driver_stations import deploy_on_field, driver_station
 from roborio import Proxy, Roborio, require_roborio
+from roborio.fixtures import roborio  # noqa: F401 - `robot`
 from skips import missing_programs, require
-
-NewRobot = Callable[..., Roborio]
 
 ROBOT = """\
 import wpilib
@@ -39,19 +35,6 @@ if os.path.exists("/usr/local/frc"):
 
 def program(number: int = 1, more: str = "") -> dict[str, str]:
     return {"robot.py": ROBOT.format(number=number) + more}
-
-
-@pytest.fixture
-def new_robot() -> Iterator[NewRobot]:
-    """Makes look-alikes, for one test."""
-    require_roborio()
-    with contextlib.ExitStack() as stack:
-        yield lambda **how: stack.enter_context(Roborio(wpilib=how.pop("wpilib", version("wpilib")), **how))
-
-
-@pytest.fixture
-def robot(new_robot: NewRobot) -> Roborio:
-    return new_robot()
 
 
 def deploy(project, robot: Roborio | Proxy, *args: str, command: str = "deploy"):

@@ -160,7 +160,7 @@ def test_the_driver_stations_robot_is_tried_too(
     assert asked == [(Address("127.9.8.7"), "the Driver Station's robot")]
 
 
-@pytest.mark.parametrize("how", [{}, {"take_its_robot": False}])
+@for_each("how", [{}, {"take_its_robot": False}])
 def test_on_a_competition_field_it_is_refused(how: dict[str, bool], kind: Station, servers: Servers) -> None:
     robot = servers.start(BANNER)
     with pytest.raises(OnTheFieldError, match=r"FMS.*\n.*when your match is over"):
@@ -176,7 +176,7 @@ def test_a_driver_station_on_a_busy_computer_is_waited_for(servers: Servers, mon
         find(servers, servers.start(BANNER), station=station)
 
 
-@pytest.mark.parametrize("says", [b"", b"nonsense\n", b"[]\n", b'{"robotIP": "x", "FMS Connected": 1}\n', b"\xff\n"])
+@for_each("says", [b"", b"nonsense\n", b"[]\n", b'{"robotIP": "x", "FMS Connected": 1}\n', b"\xff\n"])
 def test_useless_data_of_a_driver_station_is_ignored(says: bytes, servers: Servers) -> None:
     robot = servers.start(BANNER)
     found = find(servers, robot, station=servers.start(says))
@@ -184,8 +184,8 @@ def test_useless_data_of_a_driver_station_is_ignored(says: bytes, servers: Serve
     assert found.address == robot
 
 
-@pytest.mark.parametrize(
-    ("team", "first"),
+@for_each(
+    "team, first",
     [(1, "10.0.1.2"), (254, "10.2.54.2"), (1234, "10.12.34.2"), (10000, "10.100.0.2"), (25599, "10.255.99.2")],
 )
 def test_a_teams_addresses(team: int, first: str) -> None:
@@ -195,8 +195,8 @@ def test_a_teams_addresses(team: int, first: str) -> None:
     assert [str(address) for address, _ in addresses_of(team, ROBORIO, resolve=False)] == [first, "172.22.11.2"]
 
 
-@pytest.mark.parametrize(
-    ("text", "address"),
+@for_each(
+    "text, address",
     [
         ("10.0.0.2", Address("10.0.0.2")),
         ("robot.local:2222", Address("robot.local", 2222)),
@@ -210,8 +210,8 @@ def test_addresses_are_read_and_shown_alike(text: str, address: Address) -> None
     assert parse_address(str(address)) == address
 
 
-@pytest.mark.parametrize(
-    ("text", "address"),
+@for_each(
+    "text, address",
     [
         ("::ffff:10.12.34.2", Address("10.12.34.2")),
         ("[::ffff:10.12.34.2]:22", Address("10.12.34.2")),

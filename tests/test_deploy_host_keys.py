@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import base64
+import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
+from loops import for_each
 from skips import missing_programs, require
 
 from pyfrc_core.deploy.discovery import Address, addresses_of
@@ -55,9 +57,10 @@ def refused(keys: RobotKeys, key: HostKey, accepted: str | None = None) -> str:
 # -- the table: addresses and keys -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("seen_at", OF_TEAM, ids=str)
+@for_each("seen_at", OF_TEAM)
 def test_a_team_s_addresses_are_one(seen_at: Address, tmp_path: Path) -> None:
     """Wherever the team's robots were seen first, at each address they are known, and no other is."""
+    shutil.rmtree(tmp_path / ".pyfrc", ignore_errors=True)
     assert at(tmp_path, seen_at).check(ONE).new_for == f"team {TEAM}"
     assert at(tmp_path, seen_at).check(TWO, accepted=TWO.fingerprint, name="practice").new_for
     for address in OF_TEAM:
@@ -67,8 +70,9 @@ def test_a_team_s_addresses_are_one(seen_at: Address, tmp_path: Path) -> None:
             assert (recognized.new_for, recognized.name) == (None, name), address
 
 
-@pytest.mark.parametrize("first", [UNKNOWN, ONE], ids=["first seen", "first seen, the team's"])
+@for_each("first", [UNKNOWN, ONE])
 def test_an_address_by_itself(first: HostKey, tmp_path: Path) -> None:
+    shutil.rmtree(tmp_path / ".pyfrc", ignore_errors=True)
     at(tmp_path).check(ONE)
     for address in OWN:
         assert at(tmp_path, address, None).check(first).new_for is not None
@@ -115,12 +119,13 @@ def test_another_team_s_robot(tmp_path: Path) -> None:
     assert at(tmp_path).check(THEIRS, accepted=THEIRS.fingerprint).new_for == f"team {TEAM}"
 
 
-@pytest.mark.parametrize("own_is_pinned", [True, False])
-@pytest.mark.parametrize("named", [USB, *OWN], ids=str)
+@for_each("own_is_pinned", [True, False])
+@for_each("named", [USB, *OWN])
 def test_another_team_s_robot_named_by_robot_in_a_team_s_project(
     named: Address, own_is_pinned: bool, tmp_path: Path
 ) -> None:
     """The line of the other team has the USB cable's address, too."""
+    shutil.rmtree(tmp_path / ".pyfrc", ignore_errors=True)
     (tmp_path / "robot.py").touch()
     (tmp_path / "pyproject.toml").write_text(f"[tool.pyfrc]\nteam = {TEAM}\n")
     project = Project(tmp_path / "robot.py")
@@ -138,8 +143,8 @@ def test_another_team_s_robot_named_by_robot_in_a_team_s_project(
 # -- outside of projects -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("address", "team", "key", "accepted"),
+@for_each(
+    "address, team, key, accepted",
     [
         (RADIO, None, ONE, True),
         (RADIO, TEAM, ONE, True),
@@ -162,6 +167,7 @@ def test_a_volunteer_meets_robots_of_many_teams(
     address: Address, team: int | None, key: HostKey, accepted: bool, home: Path
 ) -> None:
     """Two are known. Only at the end of a cable, where no team was named, any robot may be."""
+    shutil.rmtree(home / ".pyfrc", ignore_errors=True)
     keys = HostKeys.of_this_user()
     keys.of_robot(RADIO, ROBORIO).check(ONE)
     keys.of_robot(Address("10.56.78.2"), ROBORIO).check(THEIRS)
@@ -172,8 +178,9 @@ def test_a_volunteer_meets_robots_of_many_teams(
         refused(keys.of_robot(address, ROBORIO, team), key)
 
 
-@pytest.mark.parametrize("team", [None, TEAM])
+@for_each("team", [None, TEAM])
 def test_what_was_at_the_volunteer_s_cable_is_known_nowhere_else(team: int | None, home: Path) -> None:
+    shutil.rmtree(home / ".pyfrc", ignore_errors=True)
     assert HostKeys.of_this_user().of_robot(USB, ROBORIO, team).check(UNKNOWN).new_for == "the USB cable"
     assert HostKeys.of_this_user().of_robot(USB, ROBORIO, team).check(UNKNOWN).new_for is None
     assert HostKeys.of_this_user().of_robot(RADIO, ROBORIO).check(ONE).new_for == f"team {TEAM}"
@@ -277,7 +284,7 @@ def test_a_file_that_windows_editors_have_saved(encoding: str, tmp_path: Path) -
     refused(at(tmp_path), UNKNOWN)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "bad",
     [
         "10.12.34.2 ssh-ed25519 ***",
@@ -295,7 +302,7 @@ def test_a_file_that_windows_editors_have_saved(encoding: str, tmp_path: Path) -
 )
 def test_an_invalid_line_is_reported_with_its_number(bad: str, tmp_path: Path) -> None:
     file = tmp_path / KNOWN_HOSTS
-    file.parent.mkdir()
+    file.parent.mkdir(exist_ok=True)
     file.write_text(f"# mine\n\n{bad}\n", "utf-8")
     with pytest.raises(HostKeyError, match=r"\.pyfrc/known_hosts:3: .*\n.*Remove the line"):
         HostKeys(tmp_path)

@@ -13,7 +13,7 @@ from random import Random
 
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
-from .computer import PATIENCE, Computer, bound, crypted, listener, missing_here
+from .computer import PATIENCE, Computer, bound, listener, missing_here
 
 __all__ = [
     "KILL_SCRIPT",
@@ -31,8 +31,8 @@ LETS_PROGRAMS_SURVIVE = HERE / "kill_scripts/lets_programs_survive.sh"
 _LVUSER = 500
 _PASSWD = """\
 root:x:0:0::/:/usr/sbin/nologin
-admin:{password}:0:0::/home/admin:/bin/bash
-lvuser:{password}:500:500::/home/lvuser:/bin/bash
+admin::0:0::/home/admin:/bin/bash
+lvuser::500:500::/home/lvuser:/bin/bash
 sshd:x:74:74::/run/sshd:/usr/sbin/nologin
 """
 
@@ -81,11 +81,10 @@ class Roborio(Computer):
     """A roboRIO look-alike that is switched on, until the end of the ``with`` block.
 
     :param host:           see `Computer` for this parameter, and for others that are not here
-    :param wpilib:         the version of `wpilib` on it; none: not installed
+    :param wpilib:         the version of `wpilib` on it
     :param blank:          whether it was just imaged: it has neither Python nor packages. What `python_package` makes
                            is a Python for it
-    :param image:          its image's version; none: no image file, so that it is no roboRIO
-    :param password:       of both users
+    :param image:          its image's version
     :param kill_script:    a file to take for ``frcKillRobot.sh``
     :param driver_station: whether one is connected all the time; else the console is silent, except while packets such
                            as a Driver Station's arrive (UDP 1110)
@@ -99,19 +98,18 @@ class Roborio(Computer):
         *,
         host: str | None = None,
         port: int | None = None,
-        wpilib: str | None = "2026.2.2",
+        wpilib: str = "2026.2.2",
         blank: bool = False,
-        image: str | None = "FRC_roboRIO_2026_v1.2",
+        image: str = "FRC_roboRIO_2026_v1.2",
         python: str | Path | None = sys.executable,
         disk_size: str = "64m",
-        password: str = "",
         kill_script: Path | None = None,
         driver_station: bool = True,
     ) -> None:
         if missing_here():
             require_roborio()  # here, so that no test can go without it
         self._driver_station, self._blank = driver_station, blank
-        self._wpilib, self._image, self._password, self._kill_script = wpilib, image, password, kill_script
+        self._wpilib, self._image, self._kill_script = wpilib, image, kill_script
         super().__init__(host=host, port=port, python=python, disk_size=disk_size)
 
     def _listeners(self) -> list[socket.socket]:
@@ -139,16 +137,10 @@ class Roborio(Computer):
             (self.disk / "usr/local/bin/awk").symlink_to(Path(awk).resolve())
         metadata = self.disk / "etc/natinst/share/scs_imagemetadata.ini"
         os.chown(self.disk / "etc/natinst/share/lvrt.conf", _LVUSER, _LVUSER)
-        if self._image is None:
-            shutil.rmtree(self.disk / "etc/natinst")
-        else:
-            metadata.write_text(metadata.read_text().replace("@IMAGE_VERSION@", self._image))
+        metadata.write_text(metadata.read_text().replace("@IMAGE_VERSION@", self._image))
         packages = self.disk / "usr/local/lib/python3.14/site-packages"
         if self._blank:
             shutil.rmtree(packages.parent)
-        elif self._wpilib is None:
-            for name in ("wpilib", "wpimath", "robotpy"):
-                shutil.rmtree(packages / name)
         else:
             with (packages / "wpilib/__init__.py").open("a") as file:
                 file.write(f'\n__version__ = "{self._wpilib}"\n')
@@ -164,7 +156,7 @@ class Roborio(Computer):
         if self._kill_script is not None:
             copied = shutil.copy(self._kill_script, self.disk / "usr/local/frc/bin/frcKillRobot.sh")
             copied.chmod(0o755)
-        self.put("etc/passwd", _PASSWD.format(password=crypted(self._password)), owner=0)
+        self.put("etc/passwd", _PASSWD, owner=0)
         self.put("etc/group", "root:x:0:\nadministrators:x:0:\nni:x:500:\nsshd:x:74:\n", owner=0)
         for name, owner in (("lvuser", _LVUSER), ("admin", 0)):
             (self.disk / "home" / name).mkdir()

@@ -17,18 +17,15 @@ from first_process import FirstProcess
 
 #: So many starts within so many seconds. By default, systemd counts those within 10 s; a busy machine takes its time.
 START_LIMIT, START_LIMIT_SECONDS = 5, 600.0
+RESTART_SECONDS = 0.2  # from the end of a program to its next start
 STOP_SECONDS = 2.0  # from SIGTERM to SIGKILL; 90 is the default
 
 
 class Systemcore(FirstProcess):
-    """``robot.service``: ``Type=simple``, ``Restart=always``.
+    """``robot.service``: ``Type=simple``, ``Restart=always``."""
 
-    :param restart_after: seconds
-    """
-
-    def __init__(self, root: str, ssh: socket.socket, restart_after: float) -> None:
+    def __init__(self, root: str, ssh: socket.socket) -> None:
         super().__init__(root, ssh, ("systemcore", 1000))
-        self._restart_after = restart_after
         for name in ("journal", "systemctl"):
             (self.root / "run" / name).mkdir(0o755)
         #: What the program prints; and the same with systemd's messages about it.
@@ -79,7 +76,7 @@ class Systemcore(FirstProcess):
         self._log(f"robot.service: Main process exited, code={how}")
         self._restarts += 1
         self._log(f"robot.service: Scheduled restart job, restart counter is at {self._restarts}.")
-        self.start_at = time.monotonic() + self._restart_after
+        self.start_at = time.monotonic() + RESTART_SECONDS
 
     def printed(self, piece: bytes) -> None:
         """Write complete lines to the journal."""
@@ -120,4 +117,4 @@ class Systemcore(FirstProcess):
             os.close(descriptor)
 
 
-Systemcore(sys.argv[1], socket.socket(fileno=int(sys.argv[3])), float(sys.argv[2])).serve()
+Systemcore(sys.argv[1], socket.socket(fileno=int(sys.argv[2]))).serve()

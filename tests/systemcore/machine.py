@@ -41,8 +41,6 @@ class Systemcore(Computer):
     :param host:          see `Computer` for this parameter, and for others that are not here
     :param wpilib:        the version of `wpilib` on it; none: not installed
     :param password:      of its user
-    :param sudo:          whether its user may use sudo without a password
-    :param restart_after: seconds until systemd starts a program again that has ended
     """
 
     controller = SYSTEMCORE
@@ -57,19 +55,17 @@ class Systemcore(Computer):
         python: str | Path | None = sys.executable,
         disk_size: str = "64m",
         password: str = "systemcore",
-        sudo: bool = True,
-        restart_after: float = 0.2,
     ) -> None:
         if missing_here(_SUDO):
             require_systemcore()  # here, so that no test can go without it
-        self._wpilib, self._password, self._sudo, self._restart_after = wpilib, password, sudo, restart_after
+        self._wpilib, self._password = wpilib, password
         super().__init__(host=host, port=port, python=python, disk_size=disk_size)
 
     def _listeners(self) -> list[socket.socket]:
         return []
 
     def _program(self) -> list[str]:
-        return [str(HERE / "inside.py"), str(self._root), str(self._restart_after)]
+        return [str(HERE / "inside.py"), str(self._root)]
 
     def _python_mounts(self, prefix: Path, hidden: list[str]) -> list[str]:
         place = f"{self.home_directory}/.python"
@@ -93,8 +89,8 @@ class Systemcore(Computer):
         self.put("etc/passwd", _PASSWD.format(password=crypted(self._password)), owner=0)
         self.put("etc/group", "root:x:0:\nsystemcore:x:1000:\nsshd:x:74:\n", owner=0)
         self.put("etc/hosts", f"127.0.0.1 localhost {socket.gethostname()}\n", owner=0)
-        self.put("etc/sudoers", _SUDOERS.replace("NOPASSWD: ", "NOPASSWD: " if self._sudo else ""), owner=0, mode=0o440)
-        self.put("etc/pam.d/sudo", _PAM if self._sudo else _PAM.replace("permit", "deny"), owner=0)
+        self.put("etc/sudoers", _SUDOERS, owner=0, mode=0o440)
+        self.put("etc/pam.d/sudo", _PAM, owner=0)
         if self.executable is not None and self.prefix is not None:
             self._make_environment(f"{self.home_directory}/.python/{self.executable.relative_to(self.prefix)}")
 
