@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from loops import for_each
 from package_index import add_wheel
 
 from pyfrc_core.compat import pip_private
@@ -15,7 +16,7 @@ from pyfrc_core.season import CURRENT
 from pyfrc_core.sync.wanted import robot_environment
 
 
-@pytest.mark.parametrize("name", pip_private.NAMES, ids=lambda name: name.path)
+@for_each("name", pip_private.NAMES)
 def test_it_is_there(name: PrivateName) -> None:
     try:
         name.find()

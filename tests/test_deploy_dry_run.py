@@ -6,6 +6,7 @@ import io
 from pathlib import Path
 
 import pytest
+from loops import for_each
 
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.local_checks import DeployOptions, prepare
@@ -30,8 +31,8 @@ def test_what_can_be_compiled(tmp_path: Path) -> None:
     assert "warning" not in text
 
 
-@pytest.mark.parametrize(
-    ("name", "text", "expected"),
+@for_each(
+    "name, text, expected",
     [
         ("robot", "def f()\n    pass\n", "robot.py:1: SyntaxError: expected ':'"),
         ("arm", "x = (1,\n\ny = 2\n", "arm.py:1: SyntaxError: '(' was never closed"),

@@ -164,8 +164,8 @@ def test_packages_that_the_project_asks_for_and_the_robot_lacks(tmp_path: Path) 
     )
 
 
-@pytest.mark.parametrize(
-    ("there", "step", "remedy"),
+@for_each(
+    "there, step, remedy",
     [
         ({"not_controller": "there is no frcKillRobot.sh on it"}, Step.CONTROLLER, "roboRIO Imaging Tool"),
         ({"image": "FRC_roboRIO_2025_v2.0", "wpilib": None}, Step.CONTROLLER, "roboRIO Imaging Tool"),
@@ -176,7 +176,6 @@ def test_packages_that_the_project_asks_for_and_the_robot_lacks(tmp_path: Path) 
         ({"other_code": True, "running": True}, Step.DRIVE, ""),
         ({"current": 1, "running": True}, Step.DRIVE, ""),
     ],
-    ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
 )
 def test_the_first_missing_step_of_a_robot(there: dict[str, Any], step: Step, remedy: str) -> None:
     facts = replace(READY, **there)

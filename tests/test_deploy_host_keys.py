@@ -271,10 +271,10 @@ def test_the_file_is_not_committed_and_openssh_reads_it(tmp_path: Path) -> None:
     assert (tmp_path / KNOWN_HOSTS).with_name(".gitignore").read_text() == "*\n"
 
 
-@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+@for_each("encoding", ["utf-8-sig", "utf-16"])
 def test_a_file_that_windows_editors_have_saved(encoding: str, tmp_path: Path) -> None:
     """A byte-order mark is not part of the first host; another encoding is an error. Neither makes a pin void."""
-    (tmp_path / KNOWN_HOSTS).parent.mkdir()
+    (tmp_path / KNOWN_HOSTS).parent.mkdir(exist_ok=True)
     (tmp_path / KNOWN_HOSTS).write_text(line(RADIO.host, ONE), encoding)
     if encoding == "utf-16":
         with pytest.raises(HostKeyError, match="known_hosts:1: "):

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from loops import for_each
 from roborio.local import project_of
 
 from pyfrc_core.deploy import agent_stream
@@ -208,7 +209,7 @@ def test_the_longest_real_response_is_read(project: Manifest) -> None:
     assert len(robot.plan(project).added) == 50_000
 
 
-@pytest.mark.parametrize("status", [-1, None, 0])
+@for_each("status", [-1, None, 0])
 def test_a_link_that_is_closed_in_the_middle(status: int | None) -> None:
     for cut in (0, 1, 5, 6, len(HELLO) - 1):
         message = protocol_error(FakeRobot(HELLO[:cut], status=status), start=0.01)
@@ -372,9 +373,7 @@ def for_ever(*frames: dict[str, Any]) -> Iterator[bytes]:
         yield from map(wire.message_frame, frames)
 
 
-@pytest.mark.parametrize(
-    "frame", [{"alive": True}, {"output": "x" * 100_000}, {"output": ""}], ids=["alive", "output", "no output"]
-)
+@for_each("frame", [{"alive": True}, {"output": "x" * 100_000}, {"output": ""}])
 def test_frames_without_an_end(frame: dict[str, Any]) -> None:
     tracemalloc.start()
     try:

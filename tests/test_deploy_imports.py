@@ -157,7 +157,7 @@ def test_the_robots_own_python_decides(robot: LocalRobot, agents: Agents, tmp_pa
     session.close()
 
 
-@pytest.mark.parametrize(
+@for_each(
     "source",
     [
         "import a\n\nX = 1\n",

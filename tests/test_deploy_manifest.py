@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from loops import for_each
 
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.manifest import LARGE, build_manifest, is_excluded
@@ -76,8 +77,8 @@ def test_what_no_tool_uploads_is_left_out(tmp_path: Path) -> None:
     assert paths(tmp_path) == ["data/venv", "data/zip.py", "robot.py", "tests/test_it.py"]
 
 
-@pytest.mark.parametrize(
-    ("pattern", "left"),
+@for_each(
+    "pattern, left",
     [
         ("*.png", ["a/b/one.py", "a/two.txt", "robot.py"]),
         ("b", ["a/pic.png", "a/two.txt", "pic.png", "robot.py"]),

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 
 import click
-import pytest
 from click.testing import CliRunner
 from conftest import MakeProject
+from loops import for_each
 
 from pyfrc_cli.robot_options import errors_shown, json_option, robot_options, user_interface
 from pyfrc_core.deploy import recovery_hints, starting
@@ -30,14 +30,13 @@ def failing(choice: RobotChoice, as_json: bool) -> None:
         raise PyfrcError("it fails", remedy=REMEDY)
 
 
-@pytest.mark.parametrize(
-    ("typed", "robot"),
+@for_each(
+    "typed, robot",
     [
         (["--robot", "127.0.0.1:2222"], " --robot 127.0.0.1:2222"),
         (["--team", "1234"], " --team 1234"),
         ([], ""),
     ],
-    ids=["robot", "team", "neither"],
 )
 def test_remedies_name_the_robot_as_it_was_typed(typed: list[str], robot: str) -> None:
     expected = (
@@ -53,7 +52,7 @@ def test_remedies_name_the_robot_as_it_was_typed(typed: list[str], robot: str) -
     assert note["text"] == warning["text"] == f"see pyfrc console{robot}"
 
 
-@pytest.mark.parametrize(
+@for_each(
     "remedy",
     [
         recovery_hints.SWITCHING.remedy,

@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 from core.agent_disk import AgentDisk
+from loops import for_each
 
 import pyfrc_core.deploy
 from pyfrc_core.deploy import connection as connection_module
@@ -148,7 +149,7 @@ def test_which_python_an_agent_runs_in(tmp_path: Path) -> None:
     assert runs("b" * 16, is_virtual=True) == "system words\n", "its program runs in this computer's environment"
 
 
-@pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda each: each.name)
+@for_each("controller", CONTROLLERS)
 def test_remains_are_reported(controller: ControllerKind, tmp_path: Path) -> None:
     robot = AgentDisk(tmp_path / "disk", controller.layout)
     place = robot.places.of(controller.layout.installing)
@@ -159,7 +160,7 @@ def test_remains_are_reported(controller: ControllerKind, tmp_path: Path) -> Non
         (place / "123.ipk").touch()
 
 
-@pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda each: each.name)
+@for_each("controller", CONTROLLERS)
 def test_the_hosts_of_a_team_belong_to_it(controller: ControllerKind) -> None:
     hosts = [host for host, _ in controller.addresses(1234)]
     teams = {host: controller.team_of_host(host) for host in hosts}

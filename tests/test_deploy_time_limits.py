@@ -6,6 +6,7 @@ import threading
 from collections.abc import Iterable, Iterator
 
 import pytest
+from loops import for_each
 
 from pyfrc_core.deploy.agent import wire
 from pyfrc_core.deploy.agent_stream import AgentStream, TimeLimits
@@ -83,8 +84,8 @@ def test_keep_alive_messages_extend_the_wait_and_are_skipped() -> None:
     assert stream.read_response(release) == 7
 
 
-@pytest.mark.parametrize(
-    ("pieces", "seconds", "why"),
+@for_each(
+    "pieces, seconds, why",
     [
         ([], 60, "no response"),
         ([(50, ALIVE), (61, DONE)], 50 + 60, "no response"),
@@ -97,7 +98,6 @@ def test_keep_alive_messages_extend_the_wait_and_are_skipped() -> None:
             "it works, but exceeds the time limit",
         ),
     ],
-    ids=["silent", "silent after a keep-alive", "dripping", "half a frame", "endless keep-alives", "endless phases"],
 )
 def test_each_limit_holds(pieces: list[tuple[float, bytes]], seconds: float, why: str) -> None:
     clock = Clock()

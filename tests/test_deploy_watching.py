@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from loops import for_each
 
 from pyfrc_core.deploy.agent.start_monitor import ENDED, RUNNING, STARTED, STARTING, UNHEARD, StartMonitor
 
@@ -179,7 +180,7 @@ def test_output_of_a_crashed_process_does_not_count_for_the_next_one() -> None:
     assert monitor.lived == pytest.approx(5.0 - 0.9)
 
 
-@pytest.mark.parametrize(("output", "seconds"), [("", 10.0), (TRACEBACK, 2.0)], ids=["silent", "traceback"])
+@for_each("output, seconds", [("", 10.0), (TRACEBACK, 2.0)])
 def test_a_program_that_never_appears(output: str, seconds: float) -> None:
     assert feed((0.5, set(), output), end=seconds - 0.1)[1] is None
     monitor, verdict = feed((0.5, set(), output), end=seconds + 0.1)
@@ -246,7 +247,7 @@ def test_a_program_that_crashes_right_after_its_start_is_never_called_running(
     assert judge(replace(program, starts=starts, crashes=starts + after), **how).verdict == ENDED
 
 
-@pytest.mark.parametrize("dies", [None, 6.0])
+@for_each("dies", [None, 6.0])
 def test_a_program_that_reports_no_start_is_judged_by_its_process(dies: float | None) -> None:
     """As `magicbot.MagicRobot`, which has a loop of its own."""
     monitor = StartMonitor((), reports=lambda: False)

@@ -311,7 +311,7 @@ def test_the_project_of_those_who_come_from_elsewhere_works_as_it_is(document: s
     assert "pyfrc test" in commands(document)
 
 
-@pytest.mark.parametrize("document", COMING_FROM)
+@for_each("document", COMING_FROM)
 def test_the_commands_that_take_the_place_of_others_exist(document: str) -> None:
     named = re.findall(r"`pyfrc ([^`]+)`", (ROOT / document).read_text("utf-8"))
     assert len(named) >= 10
@@ -533,7 +533,7 @@ def test_the_modules_in_the_map_exist() -> None:
         ), name
 
 
-@pytest.mark.parametrize(("document", "most"), [("ARCHITECTURE.md", 12_000), ("benchmarks/README.md", 6_000)])
+@for_each("document, most", [("ARCHITECTURE.md", 12_000), ("benchmarks/README.md", 6_000)])
 def test_a_page_to_read_at_once_stays_short(document: str, most: int) -> None:
     assert len((ROOT / document).read_bytes()) <= most
 

@@ -13,6 +13,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from loops import for_each
 from packaging.requirements import Requirement
 from ports import refusing_port
 
@@ -81,8 +82,8 @@ def test_the_pythons_that_are_known_are_from_the_oldest_tested_one_to_the_robots
     assert (3, minors[-1]) <= NEWEST == CURRENT.controller.python
 
 
-@pytest.mark.parametrize(
-    ("version", "bits", "status"),
+@for_each(
+    "version, bits, status",
     [((3, 9), 64, "problem"), ((3, 12), 32, "problem"), ((3, 12), 64, "ok"), ((3, 15), 64, "hint")],
 )
 def test_python_itself(version: tuple[int, int], bits: int, status: str) -> None:
@@ -95,8 +96,8 @@ def test_no_wpilib() -> None:
     assert finding.remedy == 'Install the one of 2026: pip install "wpilib>=2026.2.2,<2027"'
 
 
-@pytest.mark.parametrize(
-    ("others", "said"),
+@for_each(
+    "others, said",
     [
         ([], "wpilib 2026.2.2 needs robotpy-hal==2026.2.2, which is missing"),
         (

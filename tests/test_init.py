@@ -14,6 +14,7 @@ from click.testing import CliRunner
 from conftest import MakeProject
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
+from loops import for_each
 
 import pyfrc_cli
 from pyfrc_core.errors import UsageError
@@ -99,7 +100,7 @@ def test_how_github_gets_a_pyfrc_that_is_not_from_the_index(
     assert shown is None or f"{shown}\n" in printed
 
 
-@pytest.mark.parametrize("name", TEMPLATES)
+@for_each("name", TEMPLATES)
 def test_what_the_templates_need_is_installed_for_these_tests(name: str) -> None:
     assert TEMPLATES[name].missing == []
 

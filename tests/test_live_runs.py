@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-import pytest
+from loops import for_each
 
 from pyfrc_core.sim.engine.changes import Change, RunBegan
 from pyfrc_core.sim.engine.choosers import choosers_in
@@ -203,7 +203,7 @@ def values_of(changes: Iterable[RunBegan | Change]) -> set[str]:
     return {path for each in changes for path in each.values}
 
 
-@pytest.mark.parametrize("table", ["", "/AdvantageKit"])
+@for_each("table", ["", "/AdvantageKit"])
 def test_structs_come_as_their_parts(table: str) -> None:
     robot = Robot()
     schema = Received(f"{table}/.schema/struct:Point", "structschema", b"float x;float y", ON - 1)

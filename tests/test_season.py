@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+from loops import for_each
 from packaging.requirements import Requirement
 
 from pyfrc_core._version import __version__
@@ -81,6 +82,6 @@ def test_the_robotpy_command_finds_our_commands() -> None:
     assert all(season.cli_plugins in PYPROJECT["project"]["entry-points"] for season in SEASONS.values())
 
 
-@pytest.mark.parametrize("season", SEASONS.values(), ids=lambda season: str(season.year))
+@for_each("season", SEASONS.values())
 def test_a_deploy_knows_the_controller_of_each_season(season: Season) -> None:
     assert controller_of(season).layout.home == season.controller.home

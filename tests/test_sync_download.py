@@ -10,6 +10,7 @@ from pathlib import Path
 from urllib.request import Request
 
 import pytest
+from loops import for_each
 
 from pyfrc_core.sync import download
 from pyfrc_core.sync.download import Download, Downloader, DownloadError
@@ -93,8 +94,8 @@ def test_more_than_a_file_can_have_is_not_stored(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    ("there", "to", "followed"),
+@for_each(
+    "there, to, followed",
     [
         ("https://a.invalid/x", "http://a.invalid/x", False),
         ("https://a.invalid/x", "ftp://a.invalid/x", False),

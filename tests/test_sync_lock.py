@@ -10,6 +10,7 @@ from pathlib import Path
 from zipfile import ZipFile
 
 import pytest
+from loops import for_each
 
 from pyfrc_core.errors import PyfrcError, SettingsError
 from pyfrc_core.file_hash import hash_file
@@ -85,8 +86,8 @@ def test_a_damaged_lock_is_replaced_only_by_an_upgrade(lock_file: Path):
         _previous(lock_file, CURRENT, upgrade=False)
 
 
-@pytest.mark.parametrize(
-    ("url", "indexes", "source"),
+@for_each(
+    "url, indexes, source",
     [
         (
             "https://files.pythonhosted.org/packages/1/six.whl",
@@ -107,8 +108,8 @@ def test_which_index_a_file_comes_from(url: str, indexes: list[str], source: str
     assert source_of(url, indexes) == source
 
 
-@pytest.mark.parametrize(
-    ("url", "index", "new", "is_other"),
+@for_each(
+    "url, index, new, is_other",
     [
         ("https://a.invalid/x/six.whl", "https://a.invalid/x", "https://a.invalid/x", False),
         ("https://a.invalid/x/six.whl", "https://a.invalid/x", "https://a.invalid/y", True),
@@ -154,8 +155,8 @@ RETRYING = (
 )
 
 
-@pytest.mark.parametrize(
-    ("printed", "said", "remedy"),
+@for_each(
+    "printed, said, remedy",
     [
         (
             MISSING.format("six>5", "none"),

@@ -7,6 +7,7 @@ import stat
 from zipfile import ZIP_BZIP2, ZipFile, ZipInfo
 
 import pytest
+from loops import for_each
 
 from pyfrc_core.wheel_files import WheelError, files_of, owners
 
@@ -34,7 +35,7 @@ def test_where_files_belong() -> None:
     assert paths("x-1.data/data/bin/pythonic", "x-1.data/data/lib/libx.so") == ["bin/pythonic", "lib/libx.so"]
 
 
-@pytest.mark.parametrize(
+@for_each(
     "path",
     [
         *("bin/python3", "bin/python", "bin/python3.14", "bin/PYTHON3", "bin/activate", "bin/Activate.ps1"),
@@ -47,8 +48,8 @@ def test_what_python_has_made_is_not_for_wheels(path: str) -> None:
         paths(f"x-1.data/data/{path}")
 
 
-@pytest.mark.parametrize(
-    ("names", "why"),
+@for_each(
+    "names, why",
     [
         (["../x.py"], "leads out of it"),
         (["/etc/passwd"], "leads out of it"),
@@ -68,7 +69,7 @@ def test_names_that_no_robot_can_have(names: list[str], why: str) -> None:
         paths(*names)
 
 
-@pytest.mark.parametrize("kind", [stat.S_IFLNK, stat.S_IFIFO, stat.S_IFCHR])
+@for_each("kind", [stat.S_IFLNK, stat.S_IFIFO, stat.S_IFCHR])
 def test_links_and_devices_are_the_wheels_fault(kind: int) -> None:
     link = ZipInfo("x/link")
     link.external_attr = (kind | 0o777) << 16
@@ -96,7 +97,7 @@ def test_of_several_wheels_with_the_same_file_the_last_counts() -> None:
     assert owners([("a", ["x", "y"]), ("b", ["y", "z"]), ("c", ["z"])]) == {"x": "a", "y": "b", "z": "c"}
 
 
-@pytest.mark.parametrize("wheels", [[("a", ["x"]), ("b", ["x/y/z"])], [("b", ["x/y/z"]), ("a", ["x"])]])
+@for_each("wheels", [[("a", ["x"]), ("b", ["x/y/z"])], [("b", ["x/y/z"]), ("a", ["x"])]])
 def test_a_file_of_one_wheel_cannot_be_a_directory_of_another(wheels: list[tuple[str, list[str]]]) -> None:
     with pytest.raises(WheelError, match="a has a file where b has a directory: 'x'"):
         owners(wheels)

@@ -10,6 +10,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from loops import for_each
 from packaging.requirements import Requirement
 
 from pyfrc_core.deploy import installing, logs, robot_packages
@@ -70,8 +71,8 @@ def test_compiled_forms_are_linked_beside_the_link_of_their_source(tmp_path: Pat
         assert (new / "__pycache__" / name).samefile(cache / name)
 
 
-@pytest.mark.parametrize(
-    ("version", "needed", "fits"),
+@for_each(
+    "version, needed, fits",
     [
         ("1.2", "six>=1", True),
         ("1.2", "six>=2", False),
@@ -85,8 +86,8 @@ def test_which_versions_fit_a_requirement(version: str, needed: str, fits: bool)
     assert robot_packages.fits(version, Requirement(needed)) is fits
 
 
-@pytest.mark.parametrize(
-    ("one", "other", "same"),
+@for_each(
+    "one, other, same",
     [("1.0", "1", True), ("1.0", "1.0", True), ("1.0", "1.1", False), ("odd", "odd", True), ("odd", "1", False)],
 )
 def test_which_versions_are_the_same(one: str, other: str, same: bool) -> None:

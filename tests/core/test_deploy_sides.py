@@ -14,6 +14,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from loops import for_each
 from written_files import write_files
 
 from pyfrc_core.config.robotpy import RobotPackages
@@ -87,7 +88,7 @@ def test_of_another_tools_directory_the_code_is_left(tmp_path: Path) -> None:
     }
 
 
-@pytest.mark.parametrize(("length", "kept"), [(220, 220), (221, 50)])
+@for_each("length, kept", [(220, 220), (221, 50)])
 def test_a_long_name_is_cut_for_its_suffix(length: int, kept: int, tmp_path: Path) -> None:
     target = tmp_path / ("x" * length)
     target.write_text("a")
@@ -117,8 +118,8 @@ def test_the_disk_space_that_a_python_takes(tmp_path: Path) -> None:
     assert systemcore._needed_for_python(archive) == 12 + 1250
 
 
-@pytest.mark.parametrize(
-    ("message", "found"),
+@for_each(
+    "message, found",
     [
         ({"robotIp": "10.0.0.2", "fmsControlled": True}, ("10.0.0.2", True)),
         ({"robotIp": "0.0.0.0"}, (None, False)),
@@ -207,7 +208,7 @@ def test_lines_of_a_command_over_ssh(capsys: pytest.CaptureFixture[str]) -> None
     assert capsys.readouterr().err == "10.0.0.2: no route\n"
 
 
-@pytest.mark.parametrize(("errors", "said"), [(b" no journal\n", "no journal"), (b"", "exit code 3")])
+@for_each("errors, said", [(b" no journal\n", "no journal"), (b"", "exit code 3")])
 def test_a_command_that_cannot_print_the_output(errors: bytes, said: str) -> None:
     with pytest.raises(NoConsoleError) as error:
         list(console._printed_lines(connection_with(Channel([], 3, errors))))
@@ -229,8 +230,8 @@ def test_a_report_about_a_connection_is_made_once(capsys: pytest.CaptureFixture[
 # -- on the laptop -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("error", "host", "why"),
+@for_each(
+    "error, host, why",
     [
         (TimeoutError(), "10.0.0.2", "no response within"),
         (ConnectionRefusedError(), "10.0.0.2", "refused: a computer is there, but no SSH server"),

@@ -14,6 +14,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from loops import for_each
 
 from pyfrc_core.deploy.agent import imports, release_record
 from pyfrc_core.deploy.agent import program as agent_program
@@ -83,8 +84,8 @@ def test_a_deploy_as_json(monkeypatch: pytest.MonkeyPatch) -> None:
     assert progress_for(as_json=False, quiet=True).quiet
 
 
-@pytest.mark.parametrize(
-    ("state", "known"),
+@for_each(
+    "state, known",
     [
         ({"age": 0}, "the robot has not started it yet"),
         ({"age": 0, "seen": True}, "the robot has not started it again yet"),
@@ -203,8 +204,8 @@ def test_logs_are_named_newest_first_and_read_in_pieces(tmp_path: Path) -> None:
     assert steps == ["hash", "step"]
 
 
-@pytest.mark.parametrize(
-    ("record", "standing"),
+@for_each(
+    "record, standing",
     [
         ({}, Standing(False, False, 0.0)),
         ({"files": 1}, Standing(True, False, 0.0)),

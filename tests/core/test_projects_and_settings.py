@@ -12,6 +12,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from loops import for_each
 from written_files import write_files
 
 from pyfrc_core.config import toml_file
@@ -102,8 +103,8 @@ def test_what_the_field_is_without_and_with_a_file(project: Project) -> None:
     assert with_file.pyproject == project.root / "pyproject.toml"
 
 
-@pytest.mark.parametrize(
-    ("text", "may"),
+@for_each(
+    "text, may",
     [
         ("import pyfrc\n@pyfrc.invariant\ndef rule(): pass", True),
         ("from pyfrc import invarient", True),
@@ -178,8 +179,8 @@ def test_odd_places_of_files(tmp_path: Path) -> None:
 # -- settings ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("requirement", "season"),
+@for_each(
+    "requirement, season",
     [
         ("robotpy-rev==2026.0.1", 2026),
         ("wpilib>=2027.0.0a1,<2028", 2027),
@@ -220,8 +221,8 @@ def test_settings_for_robotpy(tmp_path: Path) -> None:
         load_robot_packages(file)
 
 
-@pytest.mark.parametrize(
-    ("line", "quoted"),
+@for_each(
+    "line, quoted",
     [
         ("main = robot.py", 'main = "robot.py"'),
         ("a = [rev, 3, true]  # x", 'a = ["rev", 3, true]'),

@@ -62,8 +62,8 @@ def test_pips_report_becomes_files_of_the_lock_sorted_and_without_passwords() ->
     assert find_packages([], CURRENT) == []  # pip is not asked
 
 
-@pytest.mark.parametrize(
-    ("error", "reason"),
+@for_each(
+    "error, reason",
     [
         (urllib.error.URLError(TimeoutError()), "it did not respond in time"),
         (TimeoutError(), "it did not respond in time"),
@@ -126,12 +126,12 @@ def test_a_full_disk_is_one_sentence_and_other_errors_stay() -> None:
     assert download.cannot_write(other, Path("six.whl")) is other
 
 
-@pytest.mark.parametrize("name", ["six-1.17.0-py3-none-any.whl", "_a", "cpython+2.tar.gz", "1!2.whl"])
+@for_each("name", ["six-1.17.0-py3-none-any.whl", "_a", "cpython+2.tar.gz", "1!2.whl"])
 def test_names_of_files_that_a_lock_can_have(name: str) -> None:
     assert is_file_name(name) is True
 
 
-@pytest.mark.parametrize("name", ["", ".hidden", "-r", "a/b", "..", "a b", "a\n", "ä.whl", "C:x", "a\\b", "a~1"])
+@for_each("name", ["", ".hidden", "-r", "a/b", "..", "a b", "a\n", "ä.whl", "C:x", "a\\b", "a~1"])
 def test_names_of_files_that_would_lead_elsewhere(name: str) -> None:
     assert is_file_name(name) is False
 
