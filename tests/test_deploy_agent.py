@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import io
 import os
-import struct
 import sys
 import zlib
 from pathlib import Path
@@ -19,7 +18,7 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_
 
 from pyfrc_core import wheel_files
 from pyfrc_core.deploy import agent
-from pyfrc_core.deploy.agent import console, wire
+from pyfrc_core.deploy.agent import wire
 from pyfrc_core.deploy.agent_client import DeployRequest, Watched
 from pyfrc_core.deploy.agent_stream import agent_command, agent_package
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
@@ -161,24 +160,6 @@ def test_the_link_is_cut_while_the_agent_is_sent(robot: LocalRobot) -> None:
         with pytest.raises(ConnectionFailedError, match=r"the connection to the robot was lost"):
             robot.start(Processes(), cut_to_robot=place)
         assert list(robot.home.iterdir()) == []
-
-
-def test_console_messages() -> None:
-    """Each message of a robot's console is a line; they come in any pieces."""
-    text = b"\x0c" + struct.pack(">fH", 1.5, 7) + "Größe\n".encode()
-    error = b"\x0b" + struct.pack(">fHHiB", 2.5, 8, 1, -44, 0) + b"\0\x05wrong" + b"\0\0" + b"\0\x05stack"
-    frames = b"".join(struct.pack(">H", len(each)) + each for each in (text, b"", error, b"\x0d..."))
-    for size in (1, 5, len(frames)):
-        reader = console.ConsoleFrames()
-        pieces = [frames[begin : begin + size] for begin in range(0, len(frames), size)]
-        assert [tuple(line) for piece in pieces for line in reader.lines(piece)] == [
-            (1.5, "Größe"),
-            (2.5, "-44 wrong  stack"),
-        ]
-    sent = console.text_frame(b"x" * 70_000, 65_537)
-    ((seconds, line),) = console.ConsoleFrames().lines(sent)
-    assert (seconds > 0, line) == (True, "x" * 65_000)
-    assert sent[7:9] == b"\0\x01", "the number of a line is counted in two bytes"
 
 
 def test_the_last_traceback_counts() -> None:

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import click
-import pytest
+from loops import for_each
 
 from pyfrc_cli.main import COMMANDS, cli
 
@@ -20,7 +20,7 @@ DOCS = ROOT / "docs"
 PAGES = {file.relative_to(DOCS).as_posix(): file.read_text("utf-8") for file in DOCS.rglob("*.md")}
 
 
-@pytest.mark.parametrize("page", [page for page, text in PAGES.items() if "<!-- generated" in text])
+@for_each("page", [page for page, text in PAGES.items() if "<!-- generated" in text])
 def test_each_table_can_be_made(page: str) -> None:
     assert PAGES[page].count("<!-- generated") == len(MARK.findall(PAGES[page]))
     text = expanded(PAGES[page])

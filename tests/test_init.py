@@ -11,7 +11,7 @@ from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
-from conftest import MakeProject
+from conftest import MakeProject, RobotProject
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from loops import for_each
@@ -233,16 +233,16 @@ def test_every_file_that_is_there_is_named(make_project: MakeProject) -> None:
 # -- pyfrc add-tests ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("command", ["add-tests", "create-tests"])
+@pytest.mark.parametrize("command", ["add-tests", "create-tests"])  # its name of before
 def test_add_tests_writes_the_documented_file_once(make_project: MakeProject, command: str) -> None:
     project = make_project({"robot.py": ROBOT, "deeper/notes.txt": ""})
-    first = project.run(command, cwd=project.path / "deeper")
+    first = RobotProject(project.path / "deeper", project.temporary).run_here(command)
     assert first.code == 0, first.output
     assert first.stdout.startswith("wrote ../tests/pyfrc_test.py\n")
     assert "from pyfrc.tests import *" in (project.path / "tests/pyfrc_test.py").read_text("utf-8")
 
     (project.path / "tests/pyfrc_test.py").write_text("# mine\n")
-    second = project.run(command)
+    second = project.run_here(command)
     assert second.code == 0
     assert second.stdout.startswith("unchanged: tests/pyfrc_test.py (exists)\n")
     assert (project.path / "tests/pyfrc_test.py").read_text() == "# mine\n"
@@ -261,7 +261,7 @@ def test_the_added_tests_run_the_robot(make_project: MakeProject) -> None:
 
 def test_add_tests_goes_where_the_tests_are(make_project: MakeProject) -> None:
     project = make_project({"src/robot.py": ROBOT, "tests/test_mine.py": "def test_it():\n    pass\n"})
-    assert project.run("add-tests", cwd=project.path / "src").code == 0
+    assert RobotProject(project.path / "src", project.temporary).run_here("add-tests").code == 0
     assert (project.path / "tests/pyfrc_test.py").is_file()
     assert not (project.path / "src/tests").exists()
 

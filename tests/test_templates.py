@@ -9,7 +9,6 @@ import json
 import re
 import shlex
 import shutil
-import subprocess
 import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterator
@@ -19,12 +18,9 @@ from pathlib import Path
 import pytest
 import yaml
 from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings, sampled
-from package_index import add_wheel
 from roborio import Roborio, require_roborio
-from skips import missing_programs, require
 
 from pyfrc_cli.main import COMMANDS
-from pyfrc_core._version import __version__, requirement
 from pyfrc_core.deploy import session, starting
 from pyfrc_core.deploy.progress import DeployProgress, UserInterface
 from pyfrc_core.deploy.robot_packages import packages_by_module
@@ -116,21 +112,6 @@ def test_its_workflow_passes_as_it_stands_in_the_file(project: RobotProject, tmp
     assert "tests/pyfrc_test.py ....." in result.stdout
 
 
-@pytest.mark.slow
-def test_what_the_workflows_install_is_installed_here(project_of: Callable[[str], RobotProject]) -> None:
-    """pip reads it, and finds all of it; all lists at once, each once."""
-    lists: dict[str, Path] = {}
-    for template in TEMPLATES:
-        project = project_of(template)
-        needed = project.path / "requirements.txt"
-        lists[needed.read_text("utf-8")] = needed
-    program, install, *_, option, _ = INSTALLING
-    arguments = [word for needed in lists.values() for word in (option, str(needed))]
-    result = project.run(install, *arguments, program=program, env={"PIP_DISABLE_PIP_VERSION_CHECK": "1"})
-    assert result.code == 0, result.output
-    assert "Downloading" not in result.output
-
-
 def test_the_page_on_github_shows_the_workflow(project_of: Callable[[str], RobotProject]) -> None:
     written = yaml.safe_load((project_of("timed").path / ".github/workflows/test.yml").read_text("utf-8"))
     (block,) = re.findall(r"```yaml\n(.*?)```", GITHUB.read_text("utf-8"), re.DOTALL)
@@ -141,30 +122,6 @@ def test_the_page_on_github_shows_the_workflow(project_of: Callable[[str], Robot
     assert shown == written["jobs"]["test"]
 
 
-@pytest.mark.slow
-def test_a_clone_has_the_wheel_from_which_the_workflow_installs_pyfrc(
-    project_of: Callable[[str], RobotProject], tmp_path: Path
-) -> None:
-    """As the page says, until the index has it."""
-    require("a clone of a project", missing_programs("git"))
-    project, clone = shutil.copytree(project_of("timed").path, tmp_path / "project"), tmp_path / "clone"
-    wheel = add_wheel(tmp_path, "pyfrc", __version__)
-    pip = (sys.executable, "-m", "pip", "--disable-pip-version-check")
-    git = ("git", "-c", "user.name=a", "-c", "user.email=a@b.c")
-    for command in (
-        (*pip, "wheel", "--no-deps", "-w", "wheels", str(wheel)),
-        (*git, "init", "-q"),
-        (*git, "add", "."),
-        (*git, "commit", "-q", "-m", "Test each push"),
-        (*git, "clone", "-q", str(project), str(clone)),
-    ):
-        subprocess.run(command, cwd=project, check=True, capture_output=True)
-    links = INSTALLING[2:4]
-    found = (*pip, "download", "--no-deps", "--no-index", *links, "-d", str(tmp_path / "found"), requirement())
-    subprocess.run(found, cwd=clone, check=True, capture_output=True)
-    assert [file.name for file in (tmp_path / "found").iterdir()] == [wheel.name]
-
-
 @sampled_templates
 @pytest.mark.slow
 def test_it_goes_through_a_match_in_the_simulator(project: RobotProject, template: str) -> None:
@@ -173,15 +130,6 @@ def test_it_goes_through_a_match_in_the_simulator(project: RobotProject, templat
     driven = re.search(r"distance driven: .* \(([0-9.]+) m\)", result.stdout)
     assert driven is not None, result.output
     assert (float(driven[1]) > 1) == (template != "elevator-arm")  # which has no wheels
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("project", sampled(["timed", "command", "magic"], "command"), indirect=True)
-def test_fuzzing_finds_no_failure(project: RobotProject) -> None:
-    """For a robot of each kind; the others are fuzzed for one match by their own tests."""
-    result = project.run("fuzz", "--runs", "1", "--seed", "7", "--jobs", "1")
-    assert result.code == 0, result.output
-    assert "Nothing was found." in result.stdout
 
 
 @pytest.fixture(scope="module")

@@ -39,11 +39,6 @@ def test_units_that_robots_use() -> None:
     assert (10 * units.fps).to("m/s").magnitude == pytest.approx(3.048)
 
 
-def test_a_unit_can_be_added() -> None:
-    units.define("robot_length = 36.5 * inch")
-    assert (2 * units.robot_length).to("inch").magnitude == pytest.approx(73)
-
-
 # -- quantities of other registries, and none --------------------------------------------------------------------------
 
 

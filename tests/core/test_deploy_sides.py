@@ -135,10 +135,14 @@ def test_what_a_systemcores_driver_station_says(message: dict[str, Any], found: 
 
 
 def test_frames_of_a_console() -> None:
-    frames = ConsoleFrames()
     whole = text_frame(b"one\n", 1) + b"\0\0" + text_frame("zwei ß".encode(), 2)
-    assert [line.text for line in frames.lines(whole[:-1])] == ["one"]
-    assert [line.text for line in frames.lines(whole[-1:])] == ["zwei ß"]
+    for size in (1, 5, len(whole)):
+        frames, pieces = ConsoleFrames(), [whole[begin : begin + size] for begin in range(0, len(whole), size)]
+        assert [line.text for piece in pieces for line in frames.lines(piece)] == ["one", "zwei ß"]
+    sent = text_frame(b"x" * 70_000, 65_537)
+    ((seconds, line),) = ConsoleFrames().lines(sent)
+    assert (seconds > 0, line) == (True, "x" * 65_000)
+    assert sent[7:9] == b"\0\x01", "the number of a line is counted in two bytes"
     texts = b"".join(struct.pack(">H", len(each)) + each for each in (b"details", b"place", b"stack"))
     head = struct.pack(">BfHHiB", 11, 2.5, 1, 1, -44, 1)
     error = head + texts
