@@ -7,12 +7,11 @@ import re
 import socket
 import struct
 
-import pytest
 from at_terminal import run_at_terminal
-from driver_stations import deploy_on_field, driver_station
-from roborio import Proxy, Roborio, require_roborio
+from driver_stations import driver_station
+from roborio import Roborio
 from roborio.fixtures import roborio  # noqa: F401 - `robot`
-from skips import missing_programs, require
+from skips import require
 
 ROBOT = """\
 import wpilib
@@ -37,10 +36,8 @@ def program(number: int = 1, more: str = "") -> dict[str, str]:
     return {"robot.py": ROBOT.format(number=number) + more}
 
 
-def deploy(project, robot: Roborio | Proxy, *args: str, command: str = "deploy"):
-    where = robot.where if isinstance(robot, Roborio) else f"{robot.host}:{robot.port}"
-    skip = ["--skip-tests"] if command == "deploy" else []
-    return project.run(command, *skip, "--robot", where, *args, env={"SSH_AUTH_SOCK": ""})
+def deploy(project, robot: Roborio, *args: str):
+    return project.run("deploy", "--skip-tests", "--robot", robot.where, *args, env={"SSH_AUTH_SOCK": ""})
 
 
 def code_on(robot: Roborio) -> str:
@@ -95,20 +92,6 @@ def test_a_program_runs_and_one_that_dies_is_shown_with_its_traceback_and_the_wa
     assert result.code == 3
     assert "release 1 runs again" in result.stderr
     assert "number 1" in code_on(robot)
-
-
-# -- what can be wrong with a robot ------------------------------------------------------------------------------------
-
-
-@pytest.mark.slow
-def test_on_a_competition_field_nothing_is_deployed(make_project) -> None:
-    require_roborio()  # for its namespaces: the port of the Driver Station is one for the whole computer
-    require("deploying on a competition field", missing_programs("ip"))
-    project = make_project(program())
-    done = deploy_on_field(project, 1742, {"robotIP": 0, "FMS Connected": True})
-    assert done.returncode == 1, done.stdout + done.stderr
-    assert "competition field (FMS)" in done.stderr
-    assert "when your match is over" in done.stderr
 
 
 # -- without a robot ---------------------------------------------------------------------------------------------------

@@ -150,31 +150,6 @@ def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("phase", ["start", "send", "switch"])
-def test_power_pulled_in_the_middle(computer: Computer, tmp_path: Path, phase: str) -> None:
-    deploy(computer, program(tmp_path, "old"))
-    new = program(tmp_path, "new", **{"data.bin": random.Random(1).randbytes(300_000)})
-
-    def pull(now: str, done: int, total: int) -> None:
-        if now == phase and computer.is_on:
-            computer.power_off()
-
-    with agent(computer) as robot:
-        pull("start", 0, 0)
-        # At the switch, the agent may be done before the power is off.
-        with contextlib.suppress(ConnectionFailedError) if phase == "switch" else pytest.raises(ConnectionFailedError):
-            robot.deploy(new, DeployRequest("robot.py", {}), pull)
-    computer.power_on()
-    said = computer.said("Robot program startup complete")
-    assert "this is old" in said or "this is new" in said
-    if phase != "switch":
-        assert "this is old" in said
-    with agent(computer) as robot:
-        robot.deploy(new, DeployRequest("robot.py", {}))
-        assert "this is new" in started(robot).output
-
-
-@pytest.mark.slow
 def test_a_full_disk(kind: Kind, tmp_path: Path) -> None:
     old = program(tmp_path, "old", **{"data.bin": b"1" * 500_000})
     large = program(tmp_path, "large", **{f"{number}.bin": b"%d" % number * 500_000 for number in range(8)})

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-import socket
-import threading
 from pathlib import Path
 
 import pytest
-from roborio import PATIENCE, Roborio, require_roborio
-from roborio.local import project_of
+from roborio import Roborio, require_roborio
 from roborio.machine import LETS_PROGRAMS_SURVIVE
-from roborio.ssh import SshConnection
-
-from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 
 ROBOT = """\
 import signal
@@ -35,36 +29,6 @@ def write_and_deploy(project, name: str, robot: Roborio, *options: str):
 def programs_on(robot: Roborio) -> list[str]:
     lines = robot.run("ps", "-ww", "-u", "lvuser", "-o", "args").stdout.splitlines()
     return [line for line in lines if "/home/lvuser/py/robot.py" in line]
-
-
-def test_the_console_is_silent_without_a_driver_station(tmp_path: Path) -> None:
-    require_roborio()
-    project = project_of(tmp_path, {"robot.py": ROBOT.format(name="a robot")})
-    with Roborio(driver_station=False) as roborio, SshConnection(roborio.host, roborio.port) as connection:
-        robot = AgentClient.start(connection)
-        robot.deploy(project, DeployRequest("robot.py", {}))
-        robot.restart()
-        roborio.said("this is a robot")
-        assert robot.watch(0.5, unheard=0.1).output == ""
-        connected, done = threading.Event(), threading.Event()
-
-        def be_a_driver_station() -> None:
-            with socket.socket(type=socket.SOCK_DGRAM) as packets:
-                while not done.is_set():
-                    packets.sendto(b"packet", (roborio.host, 1110))
-                    connected.set()
-                    done.wait(0.05)
-
-        driver_station = threading.Thread(target=be_a_driver_station)
-        driver_station.start()
-        connected.wait()  # a program that printed before the first packet would not be heard
-        try:
-            robot.restart()
-            assert "this is a robot" in robot.watch(PATIENCE).output
-        finally:
-            done.set()
-            driver_station.join()
-            robot.close()
 
 
 @pytest.mark.slow

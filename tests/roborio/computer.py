@@ -207,11 +207,6 @@ class Computer:
         change = ["chroot", f"--userspec={ids}", "--groups=", str(self._root), *command]
         return subprocess.run(into + change, capture_output=True, text=True, check=False)
 
-    def make_read_only(self) -> None:
-        """Let nothing be written to its disk until it is switched off, as after an error of the disk."""
-        into = ["nsenter", f"--target={self._init}", "--mount"]
-        subprocess.run([*into, "mount", "-o", "remount,ro,bind", str(self._root)], check=True)
-
     def said(self, text: str, seconds: float = PATIENCE) -> str:
         """Wait until the robot program has printed `text` since the power was switched on; all that it has printed."""
         with self._news:

@@ -17,7 +17,6 @@ from first_process import FirstProcess
 
 from pyfrc_core.deploy.agent.console import text_frame
 
-DRIVER_STATION_LOST = 10.0  # seconds without a packet of its: more than a busy machine keeps a sender waiting
 # What the robot's own start script does: one line, run as lvuser.
 PROGRAM = """
 cd /home/lvuser
@@ -30,26 +29,16 @@ eval "exec $(head -n 1 $file)"
 class Roborio(FirstProcess):
     """Starts a program that has ended again at once, as lvrt does unless its settings say otherwise.
 
-    :param has_driver_station: whether one is connected all the time
+    Its console is heard, as with a Driver Station.
     """
 
-    def __init__(
-        self,
-        root: str,
-        ssh: socket.socket,
-        has_driver_station: bool,
-        driver_station: socket.socket,
-        *consoles: socket.socket,
-    ) -> None:
+    def __init__(self, root: str, ssh: socket.socket, *consoles: socket.socket) -> None:
         super().__init__(root, ssh, ("lvuser", 500))
         self._pid_file = self.root / "run/natinst/FRC_UserProgram.pid"
         self._pid_file.parent.mkdir(0o755)
         os.chown(self._pid_file.parent, 500, 500)  # scripts that run as lvuser remove the file
-        self._packet_at = float("inf") if has_driver_station else float("-inf")
-        self._station = driver_station
         self._clients: list[socket.socket] = []
         self._number, self._unfinished = 0, b""
-        self.listen(driver_station, self._hear)
         for each in (*consoles, *(socket.create_server(("0.0.0.0", port)) for port in (1740, 1741))):
             self.listen(each, partial(self._accept, each))
         self.pipe("run/robot-program", 0o666, self._control)
@@ -91,17 +80,11 @@ class Roborio(FirstProcess):
         if b"start" in words:
             self.start_at = time.monotonic()
 
-    def _hear(self) -> None:
-        self._station.recv(1024)
-        self._packet_at = max(self._packet_at, time.monotonic())
-
     def _accept(self, console: socket.socket) -> None:
         self._clients.append(console.accept()[0])
 
     def printed(self, piece: bytes) -> None:
         *lines, self._unfinished = (self._unfinished + piece).split(b"\n")
-        if time.monotonic() - self._packet_at > DRIVER_STATION_LOST:
-            return
         for line in lines:
             self._number += 1
             for client in list(self._clients):
@@ -111,5 +94,4 @@ class Roborio(FirstProcess):
                     self._clients.remove(client)
 
 
-ssh, *others = (socket.socket(fileno=int(number)) for number in sys.argv[3:])
-Roborio(sys.argv[1], ssh, sys.argv[2] == "driver-station", *others).serve()
+Roborio(sys.argv[1], *(socket.socket(fileno=int(number)) for number in sys.argv[2:])).serve()

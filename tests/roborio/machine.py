@@ -86,8 +86,6 @@ class Roborio(Computer):
                            is a Python for it
     :param image:          its image's version
     :param kill_script:    a file to take for ``frcKillRobot.sh``
-    :param driver_station: whether one is connected all the time; else the console is silent, except while packets such
-                           as a Driver Station's arrive (UDP 1110)
     """
 
     controller = ROBORIO
@@ -104,22 +102,17 @@ class Roborio(Computer):
         python: str | Path | None = sys.executable,
         disk_size: str = "64m",
         kill_script: Path | None = None,
-        driver_station: bool = True,
     ) -> None:
         if missing_here():
             require_roborio()  # here, so that no test can go without it
-        self._driver_station, self._blank = driver_station, blank
-        self._wpilib, self._image, self._kill_script = wpilib, image, kill_script
+        self._wpilib, self._blank, self._image, self._kill_script = wpilib, blank, image, kill_script
         super().__init__(host=host, port=port, python=python, disk_size=disk_size)
 
     def _listeners(self) -> list[socket.socket]:
-        packets = socket.socket(type=socket.SOCK_DGRAM)
-        packets.bind((self.host, 1110))
-        return [packets, *(listener(self.host, port) for port in (1740, 1741))]
+        return [listener(self.host, port) for port in (1740, 1741)]
 
     def _program(self) -> list[str]:
-        station = "driver-station" if self._driver_station else "no-driver-station"
-        return [str(HERE / "inside.py"), str(self._root), station]
+        return [str(HERE / "inside.py"), str(self._root)]
 
     def _python_mounts(self, prefix: Path, hidden: list[str]) -> list[str]:
         if prefix.is_relative_to("/usr") and not prefix.is_relative_to("/usr/local"):

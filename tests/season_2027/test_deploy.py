@@ -11,9 +11,8 @@ from pathlib import Path
 
 import pytest
 from conftest import MakeProject, Result, RobotProject
-from driver_stations import deploy_on_field, driver_station
+from driver_stations import driver_station
 from roborio import Proxy
-from skips import missing_programs, require
 from systemcore import Systemcore, require_systemcore
 
 ROBOT = """
@@ -116,15 +115,6 @@ def test_a_program_in_java_is_replaced_at_the_switch(project: RobotProject, robo
     assert info(project, robot)["running"]
 
 
-def test_a_changed_password_is_asked_for_at_a_terminal_only(project: RobotProject) -> None:
-    require_systemcore()
-    with Systemcore(password="secret") as robot:
-        result = deploy(project, robot)
-        assert result.code == 1
-        assert "refuses systemcore with the password systemcore, which is the default on robots" in result.first_error
-        assert list(robot.home.glob(".pyfrc")) == []
-
-
 @pytest.mark.slow
 def test_a_disk_that_cannot_be_written(project: RobotProject, robot: Systemcore) -> None:
     assert deploy(project, robot).code == 0
@@ -134,23 +124,6 @@ def test_a_disk_that_cannot_be_written(project: RobotProject, robot: Systemcore)
     assert result.code == 1, result.output
     assert "on the robot: sudo chown -R systemcore /home/systemcore/.pyfrc" in result.stderr
     assert info(project, robot)["running"]
-
-
-@pytest.mark.slow
-def test_a_disk_that_has_become_read_only(project: RobotProject, robot: Systemcore) -> None:
-    assert deploy(project, robot).code == 0
-    project.write({"robot.py": ROBOT.format(version=2)})
-    robot.make_read_only()
-    result = deploy(project, robot)
-    assert result.code == 1, result.output
-    assert "the robot's disk cannot be written: it is read-only, as after an error" in result.stderr
-    known = info(project, robot)
-    assert (known["current"], known["running"]) == (1, True)
-    robot.power_off()
-    robot.power_on()
-    robot.said("this is version 1")
-    assert deploy(project, robot).code == 0
-    robot.said("this is version 2")
 
 
 @pytest.mark.slow
@@ -175,14 +148,6 @@ def test_a_wrong_clock_is_no_obstacle(clock: str, project: RobotProject, robot: 
     project.write({"robot.py": ROBOT.format(version=2)})
     assert deploy(project, robot).code == 0
     robot.said("this is version 2")
-
-
-def test_a_deploy_in_a_match_is_refused(project: RobotProject) -> None:
-    require_systemcore()
-    require("deploying on a competition field", missing_programs("ip"))
-    done = deploy_on_field(project, 6770, {"robotIp": "10.12.34.2", "fmsControlled": True})
-    assert done.returncode == 1, done.stdout + done.stderr
-    assert "connected to a competition field (FMS)" in done.stderr
 
 
 def test_the_driver_stations_robot_is_found(project: RobotProject, robot: Systemcore) -> None:
