@@ -67,14 +67,6 @@ def results_of(result: Any) -> dict[str, list[dict[str, str]]]:
 # --- the computer
 
 
-def test_here_all_is_well() -> None:
-    installed = find_installed()
-    assert not problems(check_python())
-    assert not problems(check_pyfrc(installed))
-    assert not problems(check_wpilib(installed))
-    assert not problems(check_imports(installed))
-
-
 def test_the_pythons_that_are_known_are_from_the_oldest_tested_one_to_the_robots() -> None:
     tested = re.findall(r"Python :: 3[.](\d+)", "\n".join(metadata("pyfrc").get_all("Classifier") or []))
     minors = sorted(map(int, tested))
