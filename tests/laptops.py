@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import io
 import sys
 import tarfile
-from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
-from zipfile import ZipFile, ZipInfo
 
 from conftest import Result, RobotProject
-from package_index import ANY_TAGS, DOWNLOADS, ROBOT_TAGS, PackageIndex
+from package_index import ANY_TAGS, DOWNLOADS, ROBOT_TAGS, PackageIndex, add_wheel
 from roborio import Proxy, Roborio, python_package, require_roborio
 from roborio.computer import Computer
 from started_commands import StartedCommand
@@ -81,24 +78,11 @@ def fill(index: PackageIndex, python: Path, **versions: str) -> None:
         }
         if name == "wpilib":
             files["wpilib/version.py"] = f'version = __version__ = "{WPILIB}"\n'
-        _add(index.directory / ("robot" if tags == ROBOT_TAGS else "simple"), name, WPILIB, files, tags)
+        place = index.directory / ("robot" if tags == ROBOT_TAGS else "simple") / name
+        add_wheel(place, name, WPILIB, [f"wpilib=={WPILIB}"] if name == "robotpy" else [], tags, files)
     for name, number in versions.items():
-        _add(index.directory / "simple", name, number, {f"{name}/__init__.py": f'VERSION = "{number}"\n'})
-
-
-def _add(directory: Path, name: str, number: str, files: Mapping[str, str], tags: str = ANY_TAGS) -> None:
-    about = f"{name}-{number}.dist-info"
-    needs = f"Requires-Dist: wpilib=={number}\n" if name == "robotpy" else ""
-    metadata = {
-        f"{about}/METADATA": f"Metadata-Version: 2.1\nName: {name}\nVersion: {number}\n{needs}",
-        f"{about}/WHEEL": f"Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: {tags}\n",
-    }
-    content = io.BytesIO()
-    with ZipFile(content, "w") as archive:
-        for path, text in {**files, **metadata}.items():
-            archive.writestr(ZipInfo(path), text)  # always of the same time, so of the same bytes
-    (directory / name).mkdir(parents=True, exist_ok=True)
-    (directory / name / f"{name}-{number}-{tags}.whl").write_bytes(content.getvalue())
+        files = {f"{name}/__init__.py": f'VERSION = "{number}"\n'}
+        add_wheel(index.directory / "simple" / name, name, number, files=files)
 
 
 class Laptop:

@@ -7,7 +7,6 @@ import hashlib
 import os
 import re
 import threading
-import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
@@ -15,6 +14,8 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from random import Random
 from urllib.parse import unquote
+
+from written_files import zip_of
 
 from pyfrc_core.season import CURRENT
 
@@ -158,8 +159,15 @@ class _Handler(BaseHTTPRequestHandler):
         """Print nothing."""
 
 
-def add_wheel(directory: Path, name: str, version: str, requires: Iterable[str] = (), tags: str = ANY_TAGS) -> Path:
-    """Write a wheel with one module, and return its file."""
+def add_wheel(
+    directory: Path,
+    name: str,
+    version: str,
+    requires: Iterable[str] = (),
+    tags: str = ANY_TAGS,
+    files: Mapping[str, str] | None = None,
+) -> Path:
+    """Write a wheel with these files, or with one module, and return its file."""
     directory.mkdir(parents=True, exist_ok=True)
     module = name.replace("-", "_")
     file = directory / f"{module}-{version}-{tags}.whl"
@@ -173,20 +181,14 @@ def add_wheel(directory: Path, name: str, version: str, requires: Iterable[str] 
         *(f"Requires-Dist: {each}" for each in requires),
     ]
     pure = str(tags == ANY_TAGS).lower()
-    _write_zip(
-        file,
+    content = zip_of(
         {
-            f"{module}/__init__.py": f"__version__ = {version!r}\n",
+            **({f"{module}/__init__.py": f"__version__ = {version!r}\n"} if files is None else files),
             f"{module}-{version}.dist-info/METADATA": "\n".join([*about, "", ""]),
             f"{module}-{version}.dist-info/WHEEL": f"Wheel-Version: 1.0\nGenerator: tests\nRoot-Is-Purelib: {pure}\n"
             f"Tag: {tags}\n",
             f"{module}-{version}.dist-info/RECORD": "",
-        },
+        }
     )
+    file.write_bytes(content)
     return file
-
-
-def _write_zip(file: Path, content: Mapping[str, str]) -> None:
-    with zipfile.ZipFile(file, "w") as archive:
-        for name, text in content.items():
-            archive.writestr(zipfile.ZipInfo(name), text)  # always of the same time, so of the same bytes

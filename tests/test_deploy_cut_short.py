@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import io
 import socket
 import zlib
@@ -16,6 +15,7 @@ from typing import Any
 import pytest
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
+from test_deploy_lock import is_held
 
 from pyfrc_core.deploy import recovery_hints, target_connection
 from pyfrc_core.deploy.agent import serve, wire
@@ -48,15 +48,6 @@ def interrupt_after(do: Callable[[AgentClient, Manifest], object], agent: AgentC
 def refuse(agent: AgentClient, project: Manifest) -> None:
     with pytest.raises(RefusedError):
         agent.rollback(77)
-
-
-def is_held(robot: LocalRobot) -> bool:
-    with (robot.home / ".pyfrc/lock").open() as stream:
-        try:
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            return True
-    return False
 
 
 def in_switch(phase: str, done: int, total: int) -> None:
@@ -175,24 +166,24 @@ def test_the_lock_is_held_until_the_program_was_started_and_watched(
     agent = robot.start(agents)
     with contextlib.closing(agent):
         agent.deploy(project, REQUEST)
-        assert is_held(robot)
+        assert is_held(robot.home / ".pyfrc/lock")
         agent.restart()
-        assert is_held(robot)
+        assert is_held(robot.home / ".pyfrc/lock")
         agent.watch(0.0)
-        assert not is_held(robot)
+        assert not is_held(robot.home / ".pyfrc/lock")
         agent.deploy(project_of(tmp_path / "project", {"robot.py": ROBOT_PY + "# 2\n"}), REQUEST)
         agent.rollback()
-        assert is_held(robot)
+        assert is_held(robot.home / ".pyfrc/lock")
         agent.restart()
         agent.watch(0.0)
-        assert not is_held(robot)
+        assert not is_held(robot.home / ".pyfrc/lock")
         agent.deploy(project, REQUEST)
         with pytest.raises(RefusedError):
             agent.rollback(77)
-        assert not is_held(robot), "nothing is going to be started"
+        assert not is_held(robot.home / ".pyfrc/lock"), "nothing is going to be started"
         agent.deploy(project, REQUEST)
-        assert is_held(robot)
-    assert not is_held(robot), "it goes with the connection"
+        assert is_held(robot.home / ".pyfrc/lock")
+    assert not is_held(robot.home / ".pyfrc/lock"), "it goes with the connection"
 
 
 def test_a_silent_laptop_counts_as_disconnected_while_it_holds_the_lock(robot: LocalRobot) -> None:

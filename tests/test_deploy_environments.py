@@ -8,18 +8,17 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import io
 import os
 import subprocess
 import sys
 from collections.abc import Generator, Mapping
 from pathlib import Path
 from typing import Any
-from zipfile import ZipFile, ZipInfo
 
 import pytest
 from conftest import sampled
 from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_memory, project_of
+from written_files import zip_of
 
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 from pyfrc_core.deploy.errors import RefusedError
@@ -40,14 +39,9 @@ TOOL = "#!python\nimport sys\nprint(sys.prefix, sys.argv[1:])\n"
 
 def wheel(directory: Path, name: str, files: Mapping[str, str | bytes]) -> Entry:
     """A wheel of these files."""
-    content = io.BytesIO()
-    with ZipFile(content, "w") as archive:
-        for path, text in files.items():
-            archive.writestr(ZipInfo(path), text)
-    file = directory / f"{name}-py3-none-any.whl"
-    file.write_bytes(content.getvalue())
-    sha256 = hashlib.sha256(content.getvalue()).hexdigest()
-    return Entry(file.name, len(content.getvalue()), sha256, False, file)
+    content, file = zip_of(files), directory / f"{name}-py3-none-any.whl"
+    file.write_bytes(content)
+    return Entry(file.name, len(content), hashlib.sha256(content).hexdigest(), False, file)
 
 
 class Packages:

@@ -7,10 +7,10 @@ import re
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from zipfile import ZipFile
 
 import pytest
 from loops import for_each
+from written_files import zip_of
 
 from pyfrc_core.errors import PyfrcError, SettingsError
 from pyfrc_core.file_hash import hash_file
@@ -227,9 +227,7 @@ def wheels_in_cache(**wheels: dict[str, str]) -> Lock:
     for name, files in wheels.items():
         path = cache.path_of(replace(WHEEL, file=f"{name}-1-py3-none-any.whl"))
         path.parent.mkdir(parents=True, exist_ok=True)
-        with ZipFile(path, "w") as archive:
-            for member, text in files.items():
-                archive.writestr(member, text)
+        path.write_bytes(zip_of(files))
         sha256, size = hash_file(path)
         packages.append(LockedFile(name, "1", path.name, size, sha256))
     return replace(LOCK, packages=tuple(packages))

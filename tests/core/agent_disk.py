@@ -10,7 +10,8 @@ import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
-from zipfile import ZipFile, ZipInfo
+
+from written_files import zip_of
 
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.content_index import ContentIndex, parse_manifest
@@ -41,15 +42,6 @@ def manifest(files: Mapping[str, str], executable: tuple[str, ...] = ()) -> list
 def contents(*texts: str) -> bytes:
     """The frame with these contents."""
     return frame(CONTENT, zlib.compress("".join(texts).encode()))
-
-
-def wheel(files: Mapping[str, str]) -> bytes:
-    """A wheel with these files."""
-    content = io.BytesIO()
-    with ZipFile(content, "w") as archive:
-        for path, text in files.items():
-            archive.writestr(ZipInfo(path), text)
-    return content.getvalue()
 
 
 def run_quickly(files: EnvironmentFiles, command: list[str], check: bool = True) -> None:
@@ -112,7 +104,7 @@ class AgentDisk:
             interpreter = self.places.own / "pythons" / python / "bin/python3"
         interpreter.parent.mkdir(parents=True, exist_ok=True)
         interpreter.touch()
-        content = {file: wheel(files) for file, files in wheels.items()}
+        content = {file: zip_of(files) for file, files in wheels.items()}
         listed = [[file, len(each), hashlib.sha256(each).hexdigest(), 0] for file, each in content.items()]
         sent: list[str] = []
 
