@@ -42,7 +42,7 @@ Q12, Q9, KIT, HOOT = (
 CONTENT = random.Random(7).randbytes(1_300_000)
 
 
-@pytest.fixture(params=[ROBORIO, SYSTEMCORE], ids=lambda each: each.name)
+@pytest.fixture(params=[ROBORIO])
 def robot(request: pytest.FixtureRequest) -> Iterator[LocalRobot]:
     """A robot with four logs: two on its USB stick, two in its home directory."""
     with directory_in_memory() as directory:
@@ -111,6 +111,7 @@ def no_progress(done: int, total: int) -> None:
     pass
 
 
+@pytest.mark.parametrize("robot", [ROBORIO, SYSTEMCORE], ids=lambda each: each.name, indirect=True)
 def test_the_newest_come_first_with_match_and_place(command: Command, robot: LocalRobot) -> None:
     put(robot, "/u/logs", "FRC_TBD_1f.wpilog", b"", hours=90)
     (robot.root / "U").symlink_to("u")  # as on robots: they are not there twice
@@ -124,7 +125,6 @@ def test_the_newest_come_first_with_match_and_place(command: Command, robot: Loc
     assert not Path("logs").exists()
 
 
-@pytest.mark.parametrize("robot", [ROBORIO], indirect=True)
 def test_of_more_than_two_thousand_the_oldest_are_only_counted(command: Command, robot: LocalRobot) -> None:
     for number in range(2000):
         put(robot, "/u/logs", f"FRC_{number}.wpilog", b"", hours=2)
@@ -133,12 +133,12 @@ def test_of_more_than_two_thousand_the_oldest_are_only_counted(command: Command,
     assert [name in printed for name in (Q12, Q9)] == [True, False]
 
 
-@pytest.mark.parametrize("robot", [ROBORIO], indirect=True)
 def test_what_to_do_with_a_log_that_only_its_maker_can_read(command: Command) -> None:
     assert command("hoot").endswith("owlet -f wpilog FILE.hoot FILE.wpilog\n")
     assert "To look at it: pyfrc view logs" in command("hoot", "Q9")
 
 
+@pytest.mark.parametrize("robot", [ROBORIO, SYSTEMCORE], ids=lambda each: each.name, indirect=True)
 def test_a_robot_without_logs_says_where_they_would_be(command: Command, robot: LocalRobot) -> None:
     shutil.rmtree(robot.root / "u")
     shutil.rmtree(robot.home / "logs")
@@ -190,7 +190,6 @@ def test_a_cut_says_that_the_next_command_goes_on(command: Command, robot: Local
     assert names_in("logs") == [f".{Q12}.part"]
 
 
-@pytest.mark.parametrize("robot", [ROBORIO], indirect=True)
 def test_a_log_that_grows_is_fetched_as_it_was_and_later_its_rest(
     command: Command, robot: LocalRobot, agents: Agents, tmp_path: Path
 ) -> None:
@@ -221,7 +220,6 @@ def test_a_log_that_grows_is_fetched_as_it_was_and_later_its_rest(
 Change = Callable[[Path], object]
 
 
-@pytest.mark.parametrize("robot", [ROBORIO], indirect=True)
 @pytest.mark.parametrize(
     ("change", "says"),
     [
@@ -247,7 +245,6 @@ def test_a_log_that_changes_while_it_is_fetched(
         assert agent.info().current is None, "the agent goes on"
 
 
-@pytest.mark.parametrize("robot", [ROBORIO], indirect=True)
 def test_another_file_of_the_name_stays_and_another_part_does_not(command: Command) -> None:
     Path("logs").mkdir()
     Path("logs", Q9).write_bytes(b"mine")
@@ -259,7 +256,6 @@ def test_another_file_of_the_name_stays_and_another_part_does_not(command: Comma
     assert Path("logs", Q12).read_bytes() == CONTENT
 
 
-@pytest.mark.parametrize("robot", [ROBORIO], indirect=True)
 def test_a_full_disk_here(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     if Path("/dev/full").exists():
         Path("logs").mkdir()
@@ -293,7 +289,6 @@ def test_logs_are_removed_only_if_asked_and_confirmed(command: Command, robot: L
     assert (robot.root / "u/logs" / KIT).exists()
 
 
-@pytest.mark.parametrize("robot", [ROBORIO], indirect=True)
 def test_the_agent_touches_nothing_but_logs(robot: LocalRobot, agents: Agents) -> None:
     kept = put(robot, "/etc", "a.wpilog", b"", hours=1)
     with closing(robot.start(agents)) as agent:
