@@ -8,10 +8,9 @@ from contextlib import contextmanager
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
-import pytest
 from sim_robots import FILES, PATIENCE
-from skips import missing_programs, require
-from web_pages import Served, served
+from skips import missing_programs
+from web_pages import Served
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page
@@ -269,26 +268,18 @@ class Seen:
         self.page.mouse.up(**options)
 
 
-@pytest.fixture(scope="module", name="browser")
-def shared_browser() -> Iterator[Browser]:
-    """One browser for the tests of a module, which are skipped where there is none."""
-    require("the page of pyfrc sim in a browser", missing_browser())
-    with open_browser() as browser:
-        yield browser
-
-
-@pytest.fixture(scope="module", name="server")
-def shared_server(make_shared_project: Any) -> Iterator[Served]:
-    """A simulation of `ROBOT` in real time, for the tests of a module."""
-    with served(make_shared_project(ROBOT), speed=1, paused=False) as server:
-        yield server
-
-
-@pytest.fixture(name="person")
-def person_at_page(browser: Browser, server: Served) -> Iterator[Seen]:
-    """A new person at the page."""
-    with page_of(browser, server) as person:
-        yield person
+@contextmanager
+def opened_page(browser: Browser, address: str, width: int = 1180, height: int = 820) -> Iterator[Page]:
+    """Open a page that shows a log, and close it; no error may come up in it."""
+    page = browser.new_page(viewport={"width": width, "height": height})
+    wrong: list[str] = []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.set_default_timeout(PATIENCE * 1000)
+    page.add_init_script(MODULE)
+    page.goto(address)
+    yield page
+    page.close()
+    assert wrong == []
 
 
 @contextmanager

@@ -62,7 +62,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 #: Guards of tests that need what not every machine has, and of those that only one season has; which run, and how long.
-pytest_plugins = ["skips", "seasons", "runs"]
+pytest_plugins = ["skips", "seasons", "runs", "people_at_pages"]
 
 #: That code makes no progress, or is still being loaded.
 _SLOW = re.compile(r"no progress for \d+ s|^still loading WPILib")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from browser_pages import MODULE, Seen, shared_browser  # noqa: F401 - `browser`
+from browser_pages import MODULE, Seen
 from network_robots import TELEOP, WORD, link_to, network_robot
 from picture_server import camera
 from ports import lasting_port, refusing_port

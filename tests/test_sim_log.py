@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from browser_pages import shared_browser  # noqa: F401 - `browser`
+from browser_pages import opened_page
 from conftest import MakeProject, RobotProject, sampled
 from loops import for_each
 from sim_robots import PATIENCE
@@ -708,12 +708,7 @@ def test_the_page_gets_the_first_difference_and_what_moves_the_sensors(recorded:
 @pytest.mark.slow
 def test_a_person_sees_where_the_log_differs(recorded: RobotProject, browser: Browser) -> None:
     change(recorded, "robot.py", "GAIN = 0.5", "GAIN = 0.75")
-    with page_with(recorded, "match.wpilog") as server:
-        page = browser.new_page(viewport={"width": 1180, "height": 820})
-        wrong: list[str] = []
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.set_default_timeout(PATIENCE * 1000)
-        page.goto(server.address)
+    with page_with(recorded, "match.wpilog") as server, opened_page(browser, server.address) as page:
         sentence = page.get_by_role("button", name="Differs first at 0:02.50, in Elevator/setpoint")
         sentence.click()
         page.locator("time.clock", has_text="0:02.50").wait_for()
@@ -731,21 +726,15 @@ def test_a_person_sees_where_the_log_differs(recorded: RobotProject, browser: Br
         sensors = page.locator(".differences details", has_text="From the log")
         sensors.locator("summary").click()
         sensors.get_by_text("encoder[0].count").wait_for()
-        page.close()
-        assert wrong == []
 
 
 def test_a_person_sees_first_what_cannot_be_compared(make_project: MakeProject, browser: Browser) -> None:
     project = make_project({"robot.py": PUBLISHING})
     a_match().save(project.path / "match.wpilog")
-    with page_with(project, "match.wpilog") as server:
-        page = browser.new_page(viewport={"width": 1180, "height": 820})
-        page.set_default_timeout(PATIENCE * 1000)
-        page.goto(server.address)
+    with page_with(project, "match.wpilog") as server, opened_page(browser, server.address) as page:
         page.get_by_role("button", name="Nothing to compare up to 0:1").click()
         limit = "match.wpilog has no joysticks from 10 s on: what follows from that cannot be compared."
         page.locator(".differences p").first.get_by_text(limit).wait_for()
-        page.close()
 
 
 CAMERAS = """

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from browser_pages import HOSTILE, INJECTED, REFUSED, ROBOT, shared_browser  # noqa: F401 - `browser`
+from browser_pages import HOSTILE, INJECTED, REFUSED, ROBOT
 from recorded_pages import run_in
 from sim_robots import FILES
 

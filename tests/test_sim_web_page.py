@@ -3,18 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
-    CHOOSER,
-    Seen,
-    missing_browser,
-    page_of,
-    person_at_page,
-    shared_browser,
-    shared_server,
-)
-from skips import requires
-
-pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
+from browser_pages import CHOOSER, Seen, page_of
 
 PADS = """
     window.fakePads = [];

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser_pages import Seen, page_of, person_at_page, shared_browser, shared_server  # noqa: F401 - `person`
+from browser_pages import Seen, page_of
 from test_sim_web_page_dashboard import TABLE, dashboards_file, shown, widgets, with_widgets  # noqa: F401 - `file`
 from test_sim_web_page_tablet import LEAST, LOOK, Fingers
 

@@ -6,15 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from axe import barriers, missing_axe
-from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
-    CHOOSER,
-    MODULE,
-    Seen,
-    page_of,
-    person_at_page,
-    shared_browser,
-    shared_server,
-)
+from browser_pages import CHOOSER, Seen, opened_page, page_of
 from skips import requires
 from test_sim_web_page_dashboard import TABLE, dashboards_file, shown, with_widgets  # noqa: F401 - `file`
 from web_pages import served_source
@@ -236,12 +228,9 @@ def test_a_tablet(browser: Any, server: Any) -> None:
 def test_a_log(browser: Any, tmp_path: Path) -> None:
     log = open_log(a_match().save(tmp_path / "match.wpilog"), 27.0)
     with served_source(LogSource(Project(tmp_path / "robot.py"), log)) as server:
-        page = browser.new_page(viewport={"width": 1366, "height": 768})
-        page.add_init_script(MODULE)
-        page.goto(server.address)
-        page.locator(".recorded code", has_text="match.wpilog").wait_for()
-        eyes = Eyes(page)
-        eyes.look_at_tabs("log")
-        eyes.look_into("Compare with another log")
-        page.close()
+        with opened_page(browser, server.address, 1366, 768) as page:
+            page.locator(".recorded code", has_text="match.wpilog").wait_for()
+            eyes = Eyes(page)
+            eyes.look_at_tabs("log")
+            eyes.look_into("Compare with another log")
         assert eyes.found == []

@@ -6,18 +6,9 @@ import math
 from typing import Any
 
 import pytest
-from browser_pages import (  # noqa: F401 - `person`, `browser`
-    Seen,
-    missing_browser,
-    page_of,
-    person_at_page,
-    shared_browser,
-)
+from browser_pages import Seen, page_of
 from playwright.sync_api import expect
-from skips import requires
 from web_pages import served
-
-pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
 
 #: A robot with a device of each kind that the page draws in its own way, and with what has a card on the dashboard.
 ROBOT = {

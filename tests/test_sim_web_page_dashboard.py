@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from browser_pages import Seen, page_of, person_at_page, shared_browser, shared_server  # noqa: F401 - `person`
+from browser_pages import Seen, page_of
 
 from pyfrc_core.config.dashboards import DASHBOARDS
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from browser_pages import ROBOT, page_of, shared_browser  # noqa: F401 - `browser`
+from browser_pages import ROBOT, page_of
 from picture_server import camera
 from test_elastic_layouts import layout, part
 from web_pages import served

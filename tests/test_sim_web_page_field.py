@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from browser_pages import ROBOT, Seen, page_of, person_at_page, shared_browser, shared_server  # noqa: F401 - `person`
+from browser_pages import ROBOT, page_of
 from web_pages import served
 
 

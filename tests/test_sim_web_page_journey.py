@@ -10,17 +10,7 @@ import json
 from typing import Any
 
 import pytest
-from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
-    HOSTILE,
-    INJECTED,
-    REFUSED,
-    Seen,
-    missing_browser,
-    person_at_page,
-    shared_browser,
-    shared_server,
-)
-from skips import requires
+from browser_pages import HOSTILE, INJECTED, REFUSED, Seen, opened_page
 from web_pages import served_source
 from written_logs import a_match
 
@@ -29,7 +19,7 @@ from pyfrc_core.project import Project
 from pyfrc_core.sim.logs import open_log
 from pyfrc_core.sim.logs.source import LogSource
 
-pytestmark = [pytest.mark.journey, requires("the page of pyfrc sim in a browser", missing_browser())]
+pytestmark = pytest.mark.journey
 
 #: All of this is one text for a person, and no element of the page.
 ELEMENTS = "#app script, #app b:text-is('bold'), #app label img, #app .line-text > *"
@@ -166,16 +156,13 @@ def closes_the_page_while_driving(person: Seen) -> None:
 
 def opens_a_log(browser: Any, directory: Any) -> None:
     log = open_log(a_match().save(directory / "match.wpilog"), 27.0)
-    with served_source(LogSource(Project(directory / "robot.py"), log)) as server:
-        page = browser.new_page(viewport={"width": 1180, "height": 820})
-        wrong: list[str] = []
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.goto(server.address)
+    with (
+        served_source(LogSource(Project(directory / "robot.py"), log)) as server,
+        opened_page(browser, server.address) as page,
+    ):
         page.locator(".recorded code", has_text="match.wpilog").wait_for()
         assert page.get_by_role("button", name="Enable", exact=True).count() == 0
         box = page.locator(".timeline").bounding_box()
         page.mouse.click(box["x"] + box["width"] * 0.25, box["y"] + 12)
         page.locator(".state b", has_text="Autonomous enabled").wait_for()
         page.locator(".console", has_text="ValueError: it broke").wait_for()
-        page.close()
-        assert wrong == []

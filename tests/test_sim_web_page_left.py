@@ -10,19 +10,9 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
-from browser_pages import (  # noqa: F401 - `person`, `browser`
-    Seen,
-    missing_browser,
-    page_of,
-    person_at_page,
-    shared_browser,
-    shared_server,
-)
+from browser_pages import Seen
 from sim_robots import FILES, PATIENCE
-from skips import requires
 from web_pages import Served, served
-
-BROWSER = requires("the page of pyfrc sim in a browser", missing_browser())
 
 PAST = "The panels show the past. Choose “Live” to drive the robot, or “Drive on from here”."
 
@@ -53,7 +43,6 @@ def is_alone_and_off(person: Seen) -> bool:
     return not snapshot.enabled and motor(person) == 0 and not any(snapshot.values["joysticks[0].axes"])
 
 
-@BROWSER
 @pytest.mark.parametrize("way", ["close", "reload", "leave"])
 def test_a_page_that_goes_away_leaves_no_driving_robot(way: str, driving: Seen) -> None:
     act = {
@@ -67,7 +56,6 @@ def test_a_page_that_goes_away_leaves_no_driving_robot(way: str, driving: Seen) 
         driving.page.locator(".state.disabled").wait_for()
 
 
-@BROWSER
 def test_a_moment_that_was_driven_is_gone_on_from_without_its_keys(driving: Seen) -> None:
     since = driving.simulation.snapshot.time
     driving.until(lambda: driving.simulation.snapshot.time > since + 0.6)
@@ -81,7 +69,6 @@ def test_a_moment_that_was_driven_is_gone_on_from_without_its_keys(driving: Seen
     assert motor(driving) == 0
 
 
-@BROWSER
 def test_a_key_that_is_held_drives_on_in_another_run(driving: Seen) -> None:
     since, starts = driving.simulation.snapshot.time, driving.simulation.status.starts
     driving.until(lambda: driving.simulation.snapshot.time > since + 0.5)
@@ -92,7 +79,6 @@ def test_a_key_that_is_held_drives_on_in_another_run(driving: Seen) -> None:
     driving.until(lambda: motor(driving) == 0)
 
 
-@BROWSER
 @pytest.mark.parametrize("name", ["Left stick", "button"])
 def test_a_control_that_loses_the_keyboard_is_released(name: str, person: Seen) -> None:
     person.button("Enable").click()
@@ -122,7 +108,6 @@ def said(person: Seen) -> None:
     person.page.locator(".notice").wait_for(state="detached")
 
 
-@BROWSER
 def test_nothing_drives_while_the_panels_show_the_past(person: Seen) -> None:
     page = person.page
     person.button("Enable").click()
@@ -150,7 +135,6 @@ def test_nothing_drives_while_the_panels_show_the_past(person: Seen) -> None:
     page.keyboard.up("w")
 
 
-@BROWSER
 @pytest.mark.parametrize("key", ["Enter", "Space"])
 def test_a_robot_is_stopped_from_the_past_and_seen(person: Seen, key: str) -> None:
     person.button("Enable").click()
@@ -163,7 +147,6 @@ def test_a_robot_is_stopped_from_the_past_and_seen(person: Seen, key: str) -> No
     person.page.locator(".state em").wait_for(state="detached")
 
 
-@BROWSER
 def test_a_key_steps_through_the_past_and_not_the_present(person: Seen) -> None:
     person.until(lambda: person.simulation.snapshot.time > 0.5)
     person.pause()
@@ -174,7 +157,6 @@ def test_a_key_steps_through_the_past_and_not_the_present(person: Seen) -> None:
     assert person.simulation.snapshot.time == time
 
 
-@BROWSER
 def test_a_branch_that_is_longer_than_the_present_is_shown_whole(person: Seen) -> None:
     from playwright.sync_api import expect
 
@@ -204,7 +186,6 @@ def test_a_branch_that_is_longer_than_the_present_is_shown_whole(person: Seen) -
     expect(page.locator("[data-panel='plot:1'] .legend b").first).to_have_text("\N{EN DASH}")
 
 
-@BROWSER
 def test_a_key_with_another_use_cannot_drive(person: Seen) -> None:
     page = person.page
     person.tab("Keys").click()

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from browser_pages import CHOOSER, Seen, page_of, shared_browser  # noqa: F401 - a browser
+from browser_pages import CHOOSER, Seen, page_of
 from web_pages import served
 
 #: Twelve motors whose devices have as many values as REV's: more rows than anyone can look through.

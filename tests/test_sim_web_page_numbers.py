@@ -4,16 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
-    Seen,
-    missing_browser,
-    person_at_page,
-    shared_browser,
-    shared_server,
-)
-from skips import requires
-
-pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
+from browser_pages import Seen
 
 KP = "nt:/SmartDashboard/kP"
 

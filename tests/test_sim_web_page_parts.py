@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from browser_pages import Seen, person_at_page, shared_browser, shared_server  # noqa: F401 - `person` and what it needs
+from browser_pages import Seen
 
 MODULES = "nt:/SmartDashboard/Modules"
 GOAL = "nt:/SmartDashboard/Plan/goal"

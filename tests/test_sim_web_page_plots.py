@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from browser_pages import Seen, person_at_page, shared_browser, shared_server  # noqa: F401 - `person` and what it needs
+from browser_pages import Seen
 
 PLOT = "[data-panel='plot:1']"
 #: A promise of what the page keeps of this plot.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from browser_pages import Seen, person_at_page, shared_browser, shared_server  # noqa: F401 - `person`, `browser`, `server`
+from browser_pages import Seen
 
 LAYOUTS = ["Driving", "Tablet", "Tuning", "Dashboard"]
 #: Also those of 1366 by 768 at 150 %, and of 1280 by 800 at 133 %.

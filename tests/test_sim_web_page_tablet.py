@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from browser_pages import Seen, page_of, shared_browser, shared_server  # noqa: F401 - `browser`, `server`
+from browser_pages import Seen, page_of
 from playwright.sync_api import Locator, expect
 
 SIZE = {"width": 1180, "height": 820}

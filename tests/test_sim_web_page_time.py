@@ -6,21 +6,10 @@ import threading
 from functools import partial
 
 import pytest
-from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
-    ROBOT,
-    Seen,
-    missing_browser,
-    page_of,
-    person_at_page,
-    shared_browser,
-    shared_server,
-)
-from skips import requires
+from browser_pages import ROBOT, Seen, page_of
 from web_pages import served
 
 from pyfrc_core.sim.ui.web.runs import Runs
-
-pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
 
 
 def drive(person: Seen, seconds: float = 1.0) -> None:

@@ -6,17 +6,8 @@ import json
 from typing import Any
 
 import pytest
-from browser_pages import (  # noqa: F401 - `person`, `browser`
-    Seen,
-    missing_browser,
-    person_at_page,
-    shared_browser,
-    shared_server,
-)
-from skips import requires
+from browser_pages import Seen
 from web_pages import Served
-
-pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
 
 
 def saved_layout(server: Served) -> Any:

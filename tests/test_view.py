@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 import pytest
-from browser_pages import missing_browser, shared_browser  # noqa: F401 - `browser`
+from browser_pages import opened_page
 from recorded_pages import run_in
 from sim_robots import PATIENCE
-from skips import require
 from web_pages import Page, send_log, served_source
 from websockets.sync.client import connect
 from written_logs import Written, a_match
@@ -188,13 +187,7 @@ def test_only_who_may_drive_can_drop_a_log(tmp_path: Path) -> None:
 
 
 def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:
-    require("the page of pyfrc view in a browser", missing_browser())
-    with served_source(source_of(tmp_path)) as server:
-        page = browser.new_page(viewport={"width": 1180, "height": 820})
-        wrong: list[str] = []
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.set_default_timeout(PATIENCE * 1000)
-        page.goto(server.address)
+    with served_source(source_of(tmp_path)) as server, opened_page(browser, server.address) as page:
         page.locator(".recorded code", has_text="match.wpilog").wait_for()
         page.locator(".run-end", has_text="match 0:00.0").wait_for()  # where autonomous was enabled
         assert page.get_by_role("button", name="Enable", exact=True).count() == 0
@@ -231,16 +224,10 @@ def test_a_person_looks_at_a_log(tmp_path: Path, browser: Browser) -> None:
         page.keyboard.press("Escape")
         page.evaluate(drop, ["practice.wpilog", list(practice().data)])
         page.locator(".notice", has_text="practice (2).wpilog is shown beside this").wait_for()
-        page.close()
-        assert wrong == []
 
 
 def test_arrow_keys_go_on_from_where_a_person_has_clicked(tmp_path: Path, browser: Browser) -> None:
-    require("the page of pyfrc view in a browser", missing_browser())
-    with served_source(source_of(tmp_path)) as server:
-        page = browser.new_page(viewport={"width": 1180, "height": 820})
-        page.set_default_timeout(PATIENCE * 1000)
-        page.goto(server.address)
+    with served_source(source_of(tmp_path)) as server, opened_page(browser, server.address) as page:
         timeline = page.get_by_role("slider", name="Timeline")
 
         def moment() -> float:
@@ -273,23 +260,16 @@ def test_arrow_keys_go_on_from_where_a_person_has_clicked(tmp_path: Path, browse
         plot.click(position={"x": 100, "y": 20})
         page.wait_for_function(f"() => document.querySelector('.timeline').ariaValueNow !== '{before:.2f}'")
         goes("Shift+ArrowRight", 1)
-        page.close()
 
 
 def test_the_page_names_the_command_that_has_ended(tmp_path: Path, browser: Browser) -> None:
-    require("the page of pyfrc view in a browser", missing_browser())
-    with served_source(source_of(tmp_path)) as server:
-        page = browser.new_page()
-        page.set_default_timeout(PATIENCE * 1000)
-        page.goto(server.address)
+    with served_source(source_of(tmp_path)) as server, opened_page(browser, server.address) as page:
         page.locator(".recorded code", has_text="match.wpilog").wait_for()
         server.front_end.close()
         page.get_by_text("pyfrc view has ended. This is its last state. Start pyfrc view again").wait_for()
-        page.close()
 
 
 def test_curves_of_another_log_are_kept_for_it_and_not_shown(tmp_path: Path, browser: Browser) -> None:
-    require("the page of pyfrc view in a browser", missing_browser())
     first, second = a_match(), practice()
     for log, name in ((first, "BatteryVoltage"), (second, "arm")):
         log.values(f"NT:/{name}", "double", "d", *((step / 10, 12.0) for step in range(90)))
@@ -350,7 +330,6 @@ BANDS = """([share, count]) => {
 def test_a_robot_is_chosen_and_states_of_the_other_log_are_drawn_below_those_of_the_first(
     tmp_path: Path, browser: Browser
 ) -> None:
-    require("the page of pyfrc view in a browser", missing_browser())
     opened = []
     for name, (until, state) in {"a.wpilog": (4, b"IDLE"), "b.wpilog": (6, b"AIMING")}.items():
         log = Written()
@@ -361,10 +340,7 @@ def test_a_robot_is_chosen_and_states_of_the_other_log_are_drawn_below_those_of_
             log.values(f"NT:/{table}/Robot", "double[]", "", (0, struct.pack("<3d", number * 3.048, 3.048, 0)))
         opened.append(open_log(log.save(tmp_path / name), HEIGHT))
     source = LogSource(Project(tmp_path / "robot.py"), opened[0], (opened[1].run,))
-    with served_source(source) as server:
-        page = browser.new_page(viewport={"width": 1600, "height": 1000})
-        page.set_default_timeout(PATIENCE * 1000)
-        page.goto(server.address)
+    with served_source(source) as server, opened_page(browser, server.address, 1600, 1000) as page:
         page.locator(".recorded code", has_text="a.wpilog").wait_for()
         # A person says which pose is the robot; those of the same name have their table.
         for item, x in (("Robot: Other/Robot", "6.10 m"), ("Robot: Mine/Robot", "3.05 m")):
@@ -387,9 +363,9 @@ def test_a_robot_is_chosen_and_states_of_the_other_log_are_drawn_below_those_of_
         page.wait_for_function("() => document.querySelector(`[data-panel='plot:1'] .plot-bands`).clientHeight === 110")
         page.wait_for_function(  # until the curves are there, and drawn; those of the branch are fainter
             f"""() => {{
-                const [on, onThere] = ({BANDS})([0.3, 4]), [off, stillOn, idle, aiming] = ({BANDS})([0.5, 4]);
-                return on !== onThere && off !== on && stillOn === onThere && idle !== aiming;
-            }}"""
+                    const [on, onThere] = ({BANDS})([0.3, 4]), [off, stillOn, idle, aiming] = ({BANDS})([0.5, 4]);
+                    return on !== onThere && off !== on && stillOn === onThere && idle !== aiming;
+                }}"""
         )
         # Nothing covers the last state of the branch.
         page.wait_for_function(f"() => {{ const [off, , , last] = ({BANDS})([0.97, 4]); return last !== off; }}")
@@ -402,7 +378,6 @@ def test_a_robot_is_chosen_and_states_of_the_other_log_are_drawn_below_those_of_
         rows.filter(has_text="state").filter(has_text="IDLE").wait_for()
         rows.filter(has_text="in the branch").filter(has_text="AIMING").wait_for()
         assert bands.is_visible()
-        page.close()
 
 
 def test_the_code_of_a_project_can_be_run_with_a_log(tmp_path: Path) -> None:
@@ -416,19 +391,17 @@ def test_the_code_of_a_project_can_be_run_with_a_log(tmp_path: Path) -> None:
 
 
 def test_the_page_goes_to_the_simulation_that_runs_the_code(tmp_path: Path, browser: Browser) -> None:
-    require("the page of pyfrc view in a browser", missing_browser())
     log, project = open_log(a_match().save(tmp_path / "match.wpilog"), HEIGHT), Project(tmp_path / "robot.py")
     with served_source(LogSource(project, log)) as server:
         address = f"{server.address}&there"
         answers = iter(["", "", address])
-        with served_source(LogSource(project, log, what_if=lambda: next(answers))) as before:
-            page = browser.new_page()
-            page.set_default_timeout(PATIENCE * 1000)
-            page.goto(before.address)
+        with (
+            served_source(LogSource(project, log, what_if=lambda: next(answers))) as before,
+            opened_page(browser, before.address) as page,
+        ):
             page.get_by_role("button", name="What would my code have done?").click()
             page.wait_for_url(address)
             page.locator(".recorded code", has_text="match.wpilog").wait_for()
-            page.close()
 
 
 def started(what_if: WhatIf) -> str:

@@ -5,20 +5,13 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from browser_pages import (  # noqa: F401 - `browser`
-    Seen,
-    missing_browser,
-    shared_browser,
-)
+from browser_pages import Seen
 from conftest import MakeProject
 from playwright.sync_api import Browser, expect
-from skips import requires
 from web_pages import served
 
 from .test_dashboards import ROBOT as TUNABLE
 from .test_simulator import MOTOR, ROBOT
-
-pytestmark = requires("the page of pyfrc sim in a browser", missing_browser())
 
 
 def opened(browser: Browser, server: Any) -> Seen:
