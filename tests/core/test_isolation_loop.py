@@ -17,9 +17,12 @@ import pytest
 
 from pyfrc_core.project import Project
 from pyfrc_core.project.robot_files import RobotFiles
-from pyfrc_core.test_support import run_tests
+from pyfrc_core.runtime.patches.data_logs import TEST_LOGS
+from pyfrc_core.test_support import pytest_plugin, run_tests
 from pyfrc_core.test_support.isolation import loop, messages
 from pyfrc_core.test_support.isolation.loop import IsolatedTests, _made_up, _other_parameters, _report, _stop_if_asked
+from pyfrc_core.test_support.isolation.spawned import TestJob, run_in_interpreter
+from pyfrc_core.test_support.options import TestOptions
 from pyfrc_core.test_support.pytest_plugin import PyFrcPlugin
 from pyfrc_core.test_support.reporting import BUG
 
@@ -354,9 +357,49 @@ def test_hypothesis_reports_what_used_it(monkeypatch: pytest.MonkeyPatch) -> Non
     assert unregistered == ["hypothesispytest"]
 
 
-def test_the_terminal_is_known_before_pytest_redirects_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> PyFrcPlugin:
+    """The plugin in a session that has started, beside a log of an earlier one."""
     monkeypatch.setattr(os, "dup", lambda descriptor: descriptor + 100)
-    made = PyFrcPlugin.__new__(PyFrcPlugin)
-    made.project = Project(tmp_path / "robot.py")
-    made.pytest_sessionstart()
-    assert made._terminal == 102
+    started = PyFrcPlugin.__new__(PyFrcPlugin)
+    started.project = Project(tmp_path / "robot.py")
+    (tmp_path / TEST_LOGS).mkdir(parents=True)
+    (tmp_path / TEST_LOGS / "earlier.wpilog").touch()
+    started.pytest_sessionstart()
+    return started
+
+
+def test_the_terminal_is_known_before_pytest_redirects_it(started: PyFrcPlugin) -> None:
+    assert started._terminal == 102
+
+
+def test_the_directory_of_data_logs_is_named_if_this_run_has_written_some(started: PyFrcPlugin) -> None:
+    lines: list[str] = []
+    reporter: Any = SimpleNamespace(write_line=lines.append)
+    started.pytest_terminal_summary(reporter)
+    assert lines == []
+    (started.project.root / TEST_LOGS / "new.wpilog").touch()
+    started.pytest_terminal_summary(reporter)
+    assert [line.partition(": ")[0] for line in lines] == ["data logs"]
+
+
+def test_a_new_interpreter_reads_the_settings_before_pytest_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """pytest reads the same pyproject.toml, and would stop at its byte-order mark."""
+    (tmp_path / "pyproject.toml").write_text("[tool.pyfrc]\n", encoding="utf-8-sig")
+    project = Project(tmp_path / "robot.py")
+    read: list[bool] = []
+
+    def main(args: list[str], plugins: list[object]) -> int:
+        read.append("settings" in vars(project))
+        return 3
+
+    plugin = SimpleNamespace(forget_robot=lambda: None)
+    monkeypatch.setattr(pytest_plugin, "PyFrcPlugin", lambda *args, **options: plugin)
+    monkeypatch.setattr(pytest, "main", main)
+    monkeypatch.chdir(tmp_path.parent)
+    job = TestJob([], str(tmp_path), "test_a.py::test_b", project, TestOptions(), None, ())
+    nothing: Any = None
+    assert run_in_interpreter(job, nothing, nothing) == 3
+    assert (read, Path.cwd()) == ([True], tmp_path)
