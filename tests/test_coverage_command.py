@@ -150,14 +150,6 @@ def test_the_figures_equal_those_of_coverage_by_hand(project: RobotProject) -> N
     assert 0 < report["totals"]["percent_covered"] < 100
 
 
-def test_a_command_that_fails_keeps_its_exit_code_and_is_reported(make_project: MakeProject) -> None:
-    project = make_project({**FILES, "tests/test_a.py": TESTS + "\n        assert False\n"})
-    result = project.run("test", "--coverage")
-    assert result.code == 1
-    assert re.search(r"^robot\.py +\d+ ", result.stdout, re.MULTILINE)
-    assert [path.name for path in project.temporary.iterdir() if not path.name.startswith("pytest-of-")] == []
-
-
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [

@@ -160,9 +160,8 @@ def test_a_lost_driver_station_in_tests_and_in_their_replay(make_project: MakePr
     project = make_project({"robot.py": ROBOT, "tests/test_lost.py": TESTS})
     result = project.run("test", "--no-isolation", "--record", "recordings")
     assert result.code == 0, result.output
-    scripts = sorted(file for file in (project.path / "recordings").iterdir() if ".trace." not in file.name)
-    for script in scripts:
-        replayed = project.run("replay", script)
+    for test in ("test_lost_and_back", "test_no_packet_comes_while_it_is_lost"):
+        replayed = project.run("replay", f"recordings/tests_test_lost.py.{test}.jsonl")
         assert replayed.code == 0, replayed.output
         assert "The trace equals the recorded one." in replayed.stdout
 

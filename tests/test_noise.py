@@ -109,14 +109,6 @@ def test_a_robot_whose_mechanism_has_noise_is_marked(make_project: MakeProject) 
     assert words(project, "fuzz", "--runs", "1").count(MECHANISM) == 1
 
 
-def test_a_robot_whose_mechanism_has_no_noise_repeats(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": FLYWHEEL_ROBOT.format(noise=""), **TESTS})
-    assert "repeat" not in words(project, "test", "--record", "recorded")
-    output = words(project, "replay", f"recorded/{SCRIPT}")
-    assert "The trace equals the recorded one." in output
-    assert "repeat" not in output
-
-
 # -- REV's SPARKs ------------------------------------------------------------------------------------------------------
 
 

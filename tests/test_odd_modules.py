@@ -37,7 +37,6 @@ SHORT = "[tool.pyfrc.fuzz]\nmatch_seconds = 1\n"
             "makes = {'__getattr__': lambda self, name: wpilib.PWMSparkMax(3)};"
             " odd.__class__ = type('Lazy', (types.ModuleType,), makes)",
         ],
-        "odd.__file__ = Path(__file__)",
         "odd.__getattr__ = lambda name: wpilib.PWMSparkMax(3)",
     ),
 )

@@ -110,33 +110,11 @@ def test_a_slow_function_is_named_with_its_mode_and_time(make_project: MakeProje
     assert [path.name for path in project.temporary.iterdir() if not path.name.startswith("pytest-of-")] == []
 
 
-def test_what_waits_takes_as_long_as_on_a_robot(make_project: MakeProject) -> None:
-    robot = """
-        import time
-
-        import wpilib
-
-
-        class MyRobot(wpilib.TimedRobot):
-            def teleopPeriodic(self):
-                if round(wpilib.Timer.getFPGATimestamp(), 3) == 0.1:
-                    self.rest()
-
-            def rest(self):
-                time.sleep(0.5)
-    """
-    project = make_project({"robot.py": robot, "tests/test_a.py": TELEOP.replace("0.2", "2")})
-    _, report = profile(project, "test")
-    function = by_name(report)["MyRobot.teleopPeriodic"]
-    assert function["max_ms"] == pytest.approx(500, rel=0.2)
-    assert function["p50_ms"] < 100
-    (overrun,) = [each for each in report["overruns"] if each["function_ms"] > 400]
-    assert (overrun["function"], overrun["robot_time_s"]) == ("MyRobot.teleopPeriodic", 0.1)
-
-
 # -- which functions ------------------------------------------------------------------------------------------------
 
 COMMAND_ROBOT = """
+    import time
+
     import commands2
     import commands2.button
     import wpilib
@@ -190,19 +168,27 @@ COMMAND_ROBOT = """
         def teleopInit(self):
             commands2.RunCommand(self.running, self.arm).schedule()
 
+        def teleopPeriodic(self):
+            if round(wpilib.Timer.getFPGATimestamp(), 3) == 0.1:
+                self.rest()
+
+        def rest(self):
+            time.sleep(0.5)
+
         def running(self):
             pass
 """
 
 
 def test_commands_subsystems_and_callbacks_are_timed(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": COMMAND_ROBOT, "tests/test_a.py": TELEOP})
+    project = make_project({"robot.py": COMMAND_ROBOT, "tests/test_a.py": TELEOP.replace("0.2", "1")})
     _, report = profile(project, "test")
     functions = by_name(report)
     kinds = {name: function["kind"] for name, function in functions.items() if function["place"]}
     assert kinds == {
         "MyRobot.robotInit": "robot",
         "MyRobot.teleopInit": "robot",
+        "MyRobot.teleopPeriodic": "robot",
         "MyRobot.fast": "periodic",
         "MyRobot.beat": "callback",
         "MyRobot.running": "callback",
@@ -213,6 +199,11 @@ def test_commands_subsystems_and_callbacks_are_timed(make_project: MakeProject) 
         "Lift.isFinished": "command",
         "Lift.end": "command",
     }
+    waited = functions["MyRobot.teleopPeriodic"]
+    assert waited["max_ms"] == pytest.approx(500, rel=0.2), "a wait takes as long as on a robot"
+    assert waited["p50_ms"] < 100
+    (overrun,) = [each for each in report["overruns"] if each["function_ms"] > 400]
+    assert (overrun["function"], overrun["robot_time_s"]) == ("MyRobot.teleopPeriodic", 0.1)
     assert functions["MyRobot.fast"]["place"] == project.place("robot.py", "def fast")
     assert {name: functions[name]["count"] for name in ("Lift.initialize", "Lift.execute", "Lift.end")} == {
         "Lift.initialize": 1,
@@ -296,15 +287,6 @@ def test_pstats_have_each_call_of_all_processes(make_project: MakeProject) -> No
     count = by_name(report)["MyRobot.teleopPeriodic"]["count"]
     assert calls == {"teleopPeriodic": count, "helper": count}
     assert count > 10  # both tests'
-
-
-def test_a_failing_command_is_reported_with_its_exit_code(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": SMALL_ROBOT.replace("range(1000)", "None"), "tests/test_a.py": TELEOP})
-    result = project.run("profile", "test")
-    assert result.code == 1
-    line = project.place("robot.py", "sum(None)")
-    assert f"{line}: TypeError" in result.stdout
-    assert "MyRobot.teleopPeriodic" in result.stdout.partition("How long each call took")[2]
 
 
 @pytest.mark.slow

@@ -86,7 +86,7 @@ READY_MADE = """
     ("robot", "function", "line", "now"),
     [
         (TIMED, "teleopPeriodic", "time.sleep(0.02)", "2 s"),
-        (MAGIC, "execute", "time.sleep(0.02)", "2 s"),
+        pytest.param(MAGIC, "execute", "time.sleep(0.02)", "2 s", marks=pytest.mark.slow),
         pytest.param(CALLBACK, "look", "self.pressed.wait()", "2 s", marks=pytest.mark.slow),
     ],
     ids=["timed", "magic", "callback"],
