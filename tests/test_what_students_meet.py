@@ -284,10 +284,8 @@ MEANT = {
     [
         "test",
         pytest.param("--pytest", marks=pytest.mark.slow),
-        *(
-            pytest.param(each, marks=pytest.mark.slow)
-            for each in ("sim --ui none --seconds 0.1", "doctor --no-robot", "test --late")
-        ),
+        "sim --ui none --seconds 0.1",
+        *(pytest.param(each, marks=pytest.mark.slow) for each in ("doctor --no-robot", "test --late")),
     ],
 )
 def test_a_method_that_wpilib_never_calls_is_named_once_with_what_was_meant(

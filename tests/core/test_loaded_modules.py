@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
@@ -43,6 +44,8 @@ def test_python_its_packages_and_pyfrc_are_left_out(modules: dict[str, ModuleTyp
         ("pyfrc_core.project", module_under_test.__file__),
     ]:
         modules[name] = module(name, file)
+    for odd in (Path("/home/team/odd.py"), "", "a\0b"):
+        modules[f"odd {odd}"] = module("odd", odd)  # type: ignore[arg-type]
     loaded = LoadedModules()
     assert names(loaded) == ["robot", "teamlib"]
     assert loaded.files_of_pyfrc() == [module_under_test.__file__]
