@@ -1,6 +1,6 @@
 """Devices that a vendor simulates in real time do not repeat: commands say it once, and no finding is lost.
 
-A stand-in plays phoenix6, so that these tests need no vendor's package; the last one runs a robot on the real one.
+A stand-in plays phoenix6, so that these tests need no vendor's package: `test_competition_robots` has the real one.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ import hashlib
 import json
 import sys
 from collections.abc import Iterator
-from importlib.util import find_spec
 from pathlib import Path
 from textwrap import dedent
 
@@ -300,19 +299,3 @@ def test_a_failure_that_does_not_repeat_is_kept(with_phoenix: PhoenixProject) ->
     (with_phoenix.path / "failed").unlink()
     with_phoenix.output("fuzz", "--runs", "8", code=1)
     assert [file] == list((with_phoenix.path / "tests" / "fuzz").rglob("*.jsonl"))
-
-
-# -- the real library --------------------------------------------------------------------------------------------------
-
-if find_spec("phoenix6") is not None:
-
-    @pytest.mark.slow
-    def test_a_competition_robot_on_phoenix(make_project: MakeProject) -> None:
-        """It drives, and all of its 20 CTRE devices are known."""
-        robot = Path(__file__).parent / "robots" / "competition" / "ctre_swerve"
-        project = make_project({})
-        project.copy(robot)
-        result = project.run("test", "--record", "recorded", "--", "-k", "stick")
-        assert result.code == 0, result.output
-        words = " ".join(result.output.split())
-        assert words.count("CANcoder 13, CANcoder 23 and 18 more devices do not repeat exactly") == 1

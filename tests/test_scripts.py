@@ -308,7 +308,6 @@ def test_whatever_it_is_it_is_a_script_or_says_what_is_wrong(lines: list[str]) -
 # -- robots that end their process ----------------------------------------------------------------------------------
 
 EXITING = """
-    import sys
     import wpilib
 
     class MyRobot(wpilib.TimedRobot):
@@ -321,8 +320,6 @@ EXITING = """
     ("code", "message"),
     [
         ("exit()", "exit() was called"),
-        pytest.param("sys.exit(5)", "exit(5) was called", marks=pytest.mark.slow),
-        pytest.param("sys.exit('enough')", "SystemExit: enough", marks=pytest.mark.slow),
         ("raise KeyboardInterrupt", "KeyboardInterrupt"),
     ],
 )

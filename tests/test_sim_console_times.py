@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
 from conftest import MakeProject
 from recorded_pages import run_in
 from sim_robots import run
@@ -69,14 +68,10 @@ def of_python(console: list[dict[str, Any]]) -> list[tuple[str, float]]:
     return [(line["text"], line["t"]) for line in own]
 
 
-@pytest.mark.parametrize(
-    "logged", [pytest.param((), marks=pytest.mark.slow), ("--wpilog", "run.wpilog")], ids=["", "logged"]
-)
-def test_the_file_of_a_run_at_full_speed(logged: tuple[str, ...], make_project: MakeProject) -> None:
+def test_the_file_of_a_run_at_full_speed(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT.replace("{end}", "900")})
-    result = project.run(
-        "sim", "--ui", "none", "--mode", "teleop", "--seconds", "30", "--speed", "0", *logged, "--page", "run.html"
-    )
+    files = ("--wpilog", "run.wpilog", "--page", "run.html")
+    result = project.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "30", "--speed", "0", *files)
     assert result.code == 1
     hello = run_in(project.path / "run.html")["hello"]
     console = [line for line in hello["console"] if line["level"] != "pyfrc"]

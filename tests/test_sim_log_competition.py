@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from conftest import MakeProject, RobotProject
 from skips import missing_python, requires
+from test_sim_log import SIM, change, log_of
 
 pytestmark = [
     pytest.mark.slow,
@@ -18,7 +19,6 @@ pytestmark = [
 ]
 
 ROBOTS = Path(__file__).parent / "robots" / "competition"
-SIM = ("sim", "--ui", "none")
 #: The driver drives from 2 s on; the operator raises the elevator, or lets the shooter idle, at 3 s.
 DRIVE = """{"format": "pyfrc-input 1", "end": 5.0}
 {"t": 0.5, "set": {"mode": "autonomous", "match_time": 1.0}}
@@ -82,19 +82,6 @@ def whole_match() -> str:
         time += chance.choice((0.3, 0.6, 1.0))
     lines = ({"t": time, "set": values} for time, values in sorted(steps.items()))
     return "\n".join(map(json.dumps, ({"format": "pyfrc-input 1", "end": end + 1}, *lines)))
-
-
-def log_of(project: RobotProject, log: str) -> str:
-    result = project.run(*SIM, "--log", log)
-    assert result.code == 0, result.output
-    return result.stdout
-
-
-def change(project: RobotProject, file: str, old: str, new: str) -> None:
-    place = project.path / file
-    text = place.read_text(encoding="utf-8")
-    assert text.count(old) == 1
-    place.write_text(text.replace(old, new), encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", CHANGES)

@@ -156,22 +156,21 @@ def test_a_robot_that_ends_leaves_the_page_alive(make_project) -> None:
         page.until(lambda: page.status["state"] == "paused" and page.status["starts"] == 2)
 
 
-@pytest.mark.slow
 def test_its_options_belong_to_it(make_project) -> None:
     made = make_project(FILES)
     for option in (["--share"], ["--port", "7777"], ["--allow-host", "cart.example"]):
-        result = made.run("sim", "--ui", "none", "--seconds", "1", *option)
+        result = made.run_here("sim", "--ui", "none", "--seconds", "1", *option)
         assert result.code == 2
         assert "Add --ui web" in result.output
-    unshared = made.run("sim", "--ui", "none", "--seconds", "1", "--share", "drive")
+    unshared = made.run_here("sim", "--ui", "none", "--seconds", "1", "--share", "drive")
     assert unshared.code == 2
     assert "Add --nt-port 5810" in unshared.output
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
-        result = made.run("sim", "--ui", "web", "--port", str(taken.getsockname()[1]))
+        result = made.run_here("sim", "--ui", "web", "--port", str(taken.getsockname()[1]))
         assert result.code == 2
         assert "Choose another --port" in result.output
-    assert made.run("sim", "--ui", "web", "--mode", "auto").code == 2
-    result = made.run("sim", "--allow-host", "*.example")
+    assert made.run_here("sim", "--ui", "web", "--mode", "auto").code == 2
+    result = made.run_here("sim", "--allow-host", "*.example")
     assert (result.code, result.first_error) == (2, "--allow-host *.example: this is no host")
