@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 from conftest import SHORT_MATCH, MakeProject, RobotProject, sampled
+from loops import for_each
 
 from pyfrc_core.measure.coverage import never_run
 
@@ -150,8 +151,8 @@ def test_the_figures_equal_those_of_coverage_by_hand(project: RobotProject) -> N
     assert 0 < report["totals"]["percent_covered"] < 100
 
 
-@pytest.mark.parametrize(
-    ("words", "complaint"),
+@for_each(
+    "words, complaint",
     [
         ((), "Missing argument 'COMMAND"),
         (("tets",), "'tets' is not a command that can be measured. These can: test, "),

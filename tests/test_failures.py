@@ -7,6 +7,7 @@ import sys
 
 import pytest
 from conftest import MakeProject, Result, RobotProject
+from loops import for_each
 from spelling import spelled
 
 ROBOT = """
@@ -260,8 +261,8 @@ def test_an_exception_names_the_robots_line_first(
     assert line in block.partition("\n")[2]  # the code, too
 
 
-@pytest.mark.parametrize(
-    ("test", "line", "text"),
+@for_each(
+    "test, line, text",
     [
         ("test_assertion", "== 0.25", "AssertionError: assert 0.0 == 0.25"),
         ("test_assertion_in_on_step", "# asserted in a step", "AssertionError: assert 0.5 < 0.5"),
@@ -288,8 +289,8 @@ def test_a_wrong_key_of_hal_data_is_told_with_the_nearest_and_all_there_are(repo
     assert "raw_value" in block
 
 
-@pytest.mark.parametrize(
-    ("trouble", "begin", "end", "who"),
+@for_each(
+    "trouble, begin, end, who",
     [
         ("loops_forever", "# forever", "# and ever", "the robot code"),
         ("loops_forever_whatever_happens", "# whatever happens", "# it goes on", "the robot code"),
@@ -306,8 +307,8 @@ def test_an_endless_loop_is_ended_and_named(
     assert "Is it an endless loop?" in block
 
 
-@pytest.mark.parametrize(
-    ("trouble", "line", "what", "said"),
+@for_each(
+    "trouble, line, what, said",
     [
         ("leaves", "os._exit(3)", "ended itself with exit code 3", "said before leaving"),
         ("segfaults", "ctypes.string_at(0)", FAULT, "said before the fault"),

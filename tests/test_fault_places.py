@@ -10,6 +10,7 @@ from types import ModuleType
 
 import pytest
 from conftest import MakeProject
+from loops import for_each
 
 from pyfrc_core.fuzz.oracle.failure import failure_of
 from pyfrc_core.fuzz.oracle.hal_reports import hal_reports
@@ -94,8 +95,8 @@ def module(tmp_path: Path) -> ModuleType:
     return made
 
 
-@pytest.mark.parametrize(
-    ("stands_at", "place", "function"),
+@for_each(
+    "stands_at, place, function",
     [
         ("robot.py:3", "robot.py:1", "outer"),
         ("robot.py:7", "robot.py:6", "inner"),
@@ -126,8 +127,8 @@ Error at Motor: too hot
 """
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
+@for_each(
+    "text, expected",
     [
         (REPORT, ("Motor: too hot", "/robot/arm.py", 31, "go")),
         ("Error at Motor: too hot\nanother line\n", ("Motor: too hot", "", 0, "")),

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 from conftest import sampled
+from loops import for_each
 
 from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.runtime.scripts.script import load_script
@@ -155,8 +156,8 @@ def test_interpreters_that_are_used_again_find_the_same(make_project) -> None:
 # -- the command -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
+@for_each(
+    "arguments, message",
     [
         (("--time", "5", "--runs", "5"), "mutually exclusive"),
         (("--runs", "0"), "0 is not in the range"),
@@ -164,8 +165,8 @@ def test_interpreters_that_are_used_again_find_the_same(make_project) -> None:
         (("--project", "nowhere"), "there is no directory nowhere"),
     ],
 )
-def test_wrong_usage(arguments: tuple[str, ...], message: str, make_project) -> None:
-    result = make_project({"robot.py": FAULTY.format("pass")}).run("fuzz", *arguments)
+def test_wrong_usage(arguments: tuple[str, ...], message: str, make_shared_project) -> None:
+    result = make_shared_project({"robot.py": FAULTY.format("pass")}).run_here("fuzz", *arguments)
     assert result.code == 2
     assert message in result.stderr
     assert "Traceback" not in result.output

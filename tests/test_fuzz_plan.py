@@ -6,7 +6,7 @@ import random
 from collections.abc import Callable
 from itertools import pairwise
 
-import pytest
+from loops import for_each
 
 from pyfrc_core.config.settings import MatchSettings
 from pyfrc_core.fuzz.inputs.match_plan import SHORT, MatchEvent, length_of, plan_match
@@ -47,7 +47,7 @@ SEASON: dict[str, Callable[[Moments], bool]] = {
 }
 
 
-@pytest.mark.parametrize("what", SEASON)
+@for_each("what", SEASON)
 def test_what_a_season_has_comes_every_fifty_matches(what: str) -> None:
     plans = [modes_of(plan_match(random.Random(seed), SECONDS, SETTINGS)) for seed in range(200)]
     assert sum(map(SEASON[what], plans)) >= 4

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
+from loops import for_each
 
 from pyfrc_cli.fuzz import command
 from pyfrc_core.fuzz.campaign.corpus import Corpus
@@ -86,7 +87,7 @@ def test_of_one_failure_the_script_of_the_earliest_match_is_taken(tmp_path: Path
     assert corpus.merge(shards) == []
 
 
-@pytest.mark.parametrize("text", ["0/4", "5/4", "1", "a/b", "/", "1/2/3"])
+@for_each("text", ["0/4", "5/4", "1", "a/b", "/", "1/2/3"])
 def test_a_shard_that_does_not_exist(text: str, make_shared_project) -> None:
     result = copy(make_shared_project).run("fuzz", "--shard", text)
     assert result.code == 2

@@ -6,6 +6,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
+from loops import for_each
 
 pytest.importorskip("libcst")
 
@@ -917,7 +918,7 @@ OWN = {
 }
 
 
-@pytest.mark.parametrize("name", OWN)
+@for_each("name", OWN)
 def test_what_is_the_teams_own_stays(tmp_path: Path, name: str) -> None:
     code = dedent(OWN[name]).lstrip("\n")
     assert migrated(tmp_path, own=code)["own"] == code
@@ -1105,7 +1106,7 @@ BY_HAND = {
 }
 
 
-@pytest.mark.parametrize("name", BY_HAND)
+@for_each("name", BY_HAND)
 def test_what_is_to_do_by_hand_is_said_at_its_line(tmp_path: Path, name: str) -> None:
     code, said = BY_HAND[name]
     here = next(number for number, line in enumerate(code.splitlines(), 1) if line.endswith("# here"))
@@ -1140,7 +1141,7 @@ TO_CHECK = {
 }
 
 
-@pytest.mark.parametrize("name", TO_CHECK)
+@for_each("name", TO_CHECK)
 def test_another_meaning_is_said_at_its_line(tmp_path: Path, name: str) -> None:
     code, said = TO_CHECK[name]
     here = next(number for number, line in enumerate(code.splitlines(), 1) if line.endswith("# here"))
@@ -1200,7 +1201,7 @@ HINTS = {
 }
 
 
-@pytest.mark.parametrize("name", HINTS)
+@for_each("name", HINTS)
 def test_a_type_hint_where_the_report_asks_for_it_makes_its_lines_go(tmp_path: Path, name: str) -> None:
     frame, uses, hint = HINTS[name]
     code = "import wpilib\nfrom typing import TYPE_CHECKING\n" + frame.replace("HERE", uses.replace("; ", "\n    "))

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from conftest import MakeProject, RobotProject
+from loops import for_each
 from skips import missing_python, require
 from wpilib.simulation import (
     DCMotorSim,
@@ -61,7 +62,7 @@ MAKE: dict[str, tuple[int, Callable[[list[float]], object]]] = {
 }
 
 
-@pytest.mark.parametrize("kind", MAKE)
+@for_each("kind", MAKE)
 def test_mechanisms_are_named_if_they_have_noise(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(unrepeatable, "_noisy_mechanisms", set())
     count, make = MAKE[kind]

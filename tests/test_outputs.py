@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 import pytest
 from conftest import MakeProject, RobotProject, sampled
+from loops import for_each
 from test_command_line import EVERY
 
 from pyfrc_cli.file_options import ReadPath, WrittenDirectory, WrittenFile
@@ -110,7 +111,7 @@ def refused(project: RobotProject, name: str, arguments: tuple[str, ...], path: 
 
 
 @pytest.mark.parametrize("how_many", sampled(["a third of them", "all"], "a third of them"))
-@pytest.mark.parametrize("name", FILES)
+@for_each("name", FILES)
 def test_a_file_that_is_read_is_not_overwritten(name: str, how_many: str, project: RobotProject) -> None:
     """By day, each file in one spelling and two of the project's files, which are others for the next option."""
     arguments, read = FILES[name]
@@ -126,13 +127,13 @@ def test_a_file_that_is_read_is_not_overwritten(name: str, how_many: str, projec
     refused(project, name, arguments, "robot.py/out", "robot.py is a file")
 
 
-@pytest.mark.parametrize("name", [each for each in DIRECTORIES if not each.startswith("virtual-robot")])
+@for_each("name", [each for each in DIRECTORIES if not each.startswith("virtual-robot")])
 def test_a_directory_of_the_project_is_not_written_into(name: str, project: RobotProject) -> None:
     for directory in (".", "components", str(project.path)):
         refused(project, name, DIRECTORIES[name], directory, "your robot's code is in it")
 
 
-@pytest.mark.parametrize("name", list(DIRECTORIES))
+@for_each("name", list(DIRECTORIES))
 def test_a_file_is_no_directory_to_write_into(name: str, project: RobotProject) -> None:
     before = contents(project)
     words = [

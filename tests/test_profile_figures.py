@@ -9,6 +9,7 @@ import pytest
 import wpilib
 from hypothesis import given
 from hypothesis import strategies as st
+from loops import for_each
 
 from pyfrc_core.measure.figures import Figures, Measurand, Overrun, added_up, distribution
 from pyfrc_core.measure.profile_report import as_json, as_text
@@ -92,7 +93,7 @@ def test_the_report_says_how_much_of_the_period_each_periodic_function_takes() -
     ]
 
 
-@pytest.mark.parametrize(("took", "factor"), [(12, "1.6"), (10, "2"), (2, "10"), (0.93, "21")])
+@for_each("took, factor", [(12, "1.6"), (10, "2"), (2, "10"), (0.93, "21")])
 def test_how_much_slower_a_computer_may_be_is_not_overstated(took: float, factor: str) -> None:
     figures = Figures(period_ns=20_000_000)
     figures.times_of(LOOP).append(int(took * 1e6))

@@ -15,6 +15,7 @@ import pytest
 import wpilib
 from conftest import MakeProject, Result, RobotProject
 from hal import simulation as hs
+from loops import for_each
 from sim_robots import run
 
 from pyfrc.physics import drivetrains, motion, motor_cfgs, tankmodel
@@ -141,9 +142,7 @@ def test_code_that_reads_a_dicts_own_storage_finds_a_remedy(tree: HalData) -> No
 # -- hal_data is written ---------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "path", ["pwm[19].value", "analog_out[0].voltage", "analog_out[7].voltage", "d0_pwm[0].duty_cycle"]
-)
+@for_each("path", ["pwm[19].value", "analog_out[0].voltage", "analog_out[7].voltage", "d0_pwm[0].duty_cycle"])
 def test_none_is_a_value_of_outputs(tree: HalData, path: str) -> None:
     tree.write(path, None)
     assert tree.read(path) is None
@@ -151,9 +150,7 @@ def test_none_is_a_value_of_outputs(tree: HalData, path: str) -> None:
     assert tree.read(path) == 0.0
 
 
-@pytest.mark.parametrize(
-    "path", ["relay[3].fwd", "relay[3].rev", "solenoid[7].value", "dio[25].value", "pwm[19].raw_value"]
-)
+@for_each("path", ["relay[3].fwd", "relay[3].rev", "solenoid[7].value", "dio[25].value", "pwm[19].raw_value"])
 def test_none_turns_off_an_output_that_is_on_or_off(tree: HalData, path: str) -> None:
     tree.write(path, 1)
     assert tree.read(path)
@@ -752,7 +749,7 @@ def outcomes(project: RobotProject) -> Result:
     return project.run("test", "--", "-v", "-p", "no:cacheprovider", "-W", "ignore")
 
 
-@pytest.mark.parametrize("name", TESTS_NAMES)
+@for_each("name", TESTS_NAMES)
 def test_in_a_project(name: str, outcomes: Result) -> None:
     of_name = [each for test, each in outcomes.outcomes().items() if test.rpartition("::")[2].partition("[")[0] == name]
     assert set(of_name) == {"PASSED"}, outcomes.blocks().get(name, outcomes.output)

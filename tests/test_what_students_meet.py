@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from conftest import MakeProject, Result, sampled
+from loops import for_each
 from test_failures import ANY_TEST, ROBOT
 
 from pyfrc_core.config.toml_file import TomlFile
@@ -369,8 +370,8 @@ def test_tests_that_do_not_test_the_robot_that_runs(make_project: MakeProject) -
     assert "unittest/case.py" not in result.stdout
 
 
-@pytest.mark.parametrize(
-    ("line", "quoted"),
+@for_each(
+    "line, quoted",
     [
         ("main = robot.py", 'main = "robot.py"'),
         ("robotpy_version = 2026.2.2", 'robotpy_version = "2026.2.2"'),

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from conftest import MakeProject
+from loops import for_each
 from test_failures import ANY_TEST, ROBOT
 
 from pyfrc_cli.main import COMMANDS, OTHER_NAMES
@@ -121,8 +122,8 @@ def test_outside_of_a_project_there_is_a_remedy(make_project: MakeProject) -> No
         assert remedy in result.stderr
 
 
-@pytest.mark.parametrize(
-    ("args", "message"),
+@for_each(
+    "args, message",
     [
         (["--jobs", "none"], "'none' is neither a number of processes, 1 or more, nor 'auto'"),
         (["--jobs", "0"], "'0' is neither a number of processes, 1 or more, nor 'auto'"),
@@ -131,15 +132,15 @@ def test_outside_of_a_project_there_is_a_remedy(make_project: MakeProject) -> No
         (["--main", "nothing.py"], "there is no file nothing.py"),
     ],
 )
-def test_a_wrong_option_is_told(make_project: MakeProject, args: list[str], message: str) -> None:
-    result = make_project({"robot.py": ROBOT}).run_here("test", *args)
+def test_a_wrong_option_is_told(make_shared_project: MakeProject, args: list[str], message: str) -> None:
+    result = make_shared_project({"robot.py": ROBOT}).run_here("test", *args)
     assert result.code == 2
     assert message in result.stderr
     assert "Traceback" not in result.stderr
 
 
-@pytest.mark.parametrize(
-    ("words", "remedy"),
+@for_each(
+    "words, remedy",
     [
         ("deploy 10.12.34.2", "Write: pyfrc deploy --robot 10.12.34.2"),
         ("deploy roborio-1234-frc.local", "Write: pyfrc deploy --robot roborio-1234-frc.local"),
@@ -159,9 +160,9 @@ def test_a_wrong_option_is_told(make_project: MakeProject, args: list[str], mess
     ],
 )
 def test_what_other_tools_call_otherwise_leads_to_what_exists(
-    make_project: MakeProject, words: str, remedy: str
+    make_shared_project: MakeProject, words: str, remedy: str
 ) -> None:
-    result = make_project({"robot.py": ROBOT, "tests/a.wpilog": ""}).run_here(*words.split())
+    result = make_shared_project({"robot.py": ROBOT, "tests/a.wpilog": ""}).run_here(*words.split())
     assert (result.code, result.stdout) == (2, "")
     assert "Did you mean" not in result.stderr
     assert remedy in result.stderr.splitlines()[-1]

@@ -12,6 +12,7 @@ from typing import Any
 import click
 import pytest
 from click.testing import CliRunner, Result
+from loops import for_each
 
 from pyfrc_cli import create_physics, fuzz, migrate, project_options, robot_options, shared_options, start, wrapping
 from pyfrc_cli.file_options import ReadPath, WrittenDirectory, WrittenFile, check_outputs
@@ -144,8 +145,8 @@ def test_findings_of_a_campaign(campaign: SimpleNamespace, monkeypatch: pytest.M
     assert fuzz._escaped("50 %: a,b\r\n", in_property=True) == "50 %25%3A a%2Cb%0D%0A"
 
 
-@pytest.mark.parametrize(
-    ("words", "complaint"),
+@for_each(
+    "words, complaint",
     [
         ("--time 1 --runs 1", "--time and --runs are mutually exclusive."),
         ("--scheduler tcp://a -j 1", "--scheduler and -j are mutually exclusive."),
@@ -286,8 +287,8 @@ def test_changes_of_a_lock_one_line_each() -> None:
 # -- replay, and commands about robots ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("result", "code", "lines"),
+@for_each(
+    "result, code, lines",
     [
         ({}, 0, []),
         (
@@ -419,8 +420,8 @@ def writing(**files: Path | None) -> None:
     check_outputs(click.get_current_context(), Project(here.absolute()) if here.exists() else None)
 
 
-@pytest.mark.parametrize(
-    ("words", "problem"),
+@for_each(
+    "words, problem",
     [
         ("--file a.txt --other b.txt --record c.jsonl --read d.txt --into e", ""),
         ("--file new/a.txt", ""),
@@ -520,8 +521,8 @@ def test_the_current_directory_is_not_searched_for_modules(tmp_path: Path, monke
     assert start._current_directory() == here
 
 
-@pytest.mark.parametrize(
-    ("raised", "code"),
+@for_each(
+    "raised, code",
     [(SystemExit(3), 3), (SystemExit("x"), 1), (SystemExit(None), 0), (click.exceptions.Exit(4), 4), (None, 0)],
 )
 def test_a_measured_command_keeps_its_exit_code(raised: BaseException | None, code: int) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from click.testing import CliRunner
+from loops import for_each
 
 from pyfrc_cli.deploy import command
 
@@ -11,8 +12,8 @@ _ROLLBACK = "--rollback excludes --dry-run and --auto-rollback: it deploys nothi
 _REINSTALL = "--reinstall excludes --dry-run and --rollback."
 
 
-@pytest.mark.parametrize(
-    ("options", "sentence"),
+@for_each(
+    "options, sentence",
     [
         ("--netconsole --json", "--netconsole and --json are mutually exclusive."),
         ("--netconsole-ds --json", "--netconsole and --json are mutually exclusive."),

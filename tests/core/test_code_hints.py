@@ -254,8 +254,8 @@ def test_a_command_that_is_not_returned(line: str, written: str) -> None:
         assert hints(robot.format(right)) == []
 
 
-@pytest.mark.parametrize(
-    ("line", "found"),
+@for_each(
+    "line, found",
     [
         (
             "take = self.go()\n        take.withTimeout(2)",
@@ -299,8 +299,8 @@ def test_commands_of_a_robot_that_does_not_run_them() -> None:
     assert hints(robot.replace("wpilib.TimedRobot", "commands2.TimedCommandRobot")) == []
 
 
-@pytest.mark.parametrize(
-    ("line", "found"),
+@for_each(
+    "line, found",
     [
         (
             "self.go().schedule()",
@@ -333,8 +333,8 @@ def test_what_is_done_in_each_loop(line: str, found: str) -> None:
     assert [found in each for each in got] == [True] * bool(found), got
 
 
-@pytest.mark.parametrize(
-    ("line", "right"),
+@for_each(
+    "line, right",
     [
         ("Rotation2d(90)", "Rotation2d.fromDegrees(90)"),
         ("Rotation2d(1)", ""),
@@ -418,8 +418,8 @@ def test_the_alliance_is_read_before_it_is_known() -> None:
     assert hints(early.replace("robotInit", "teleopInit")) == []
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
+@for_each(
+    "text, message",
     [
         ("[tool.pyfcr.match]\n", "pyproject.toml:1: [tool.pyfcr] has no effect: nothing reads this name"),
         ("[tool.robopty]\nrequires = []\n", "pyproject.toml:1: [tool.robopty] has no effect: nothing reads this name"),

@@ -14,6 +14,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from loops import for_each
 
 from pyfrc_core.project import Project
 from pyfrc_core.project.robot_files import RobotFiles
@@ -93,8 +94,8 @@ def test_what_was_sent_is_reported_and_no_more() -> None:
     assert reported(*PASSED)[0] == ["a setup passed", "a call passed", "a teardown passed"]
 
 
-@pytest.mark.parametrize(
-    ("messages", "log"),
+@for_each(
+    "messages, log",
     [
         ([], ["setup passed", "call failed", "teardown passed"]),
         ([phase("setup")], ["setup passed", "call failed", "teardown passed"]),
@@ -169,8 +170,8 @@ def test_tests_are_reported_in_their_order_however_they_end(plugin: Any, monkeyp
     assert [each.closed for each in processes] == [1, 1, 1]
 
 
-@pytest.mark.parametrize(
-    ("fixtures", "names", "robotic"),
+@for_each(
+    "fixtures, names, robotic",
     [
         (("control",), {}, True),
         (("tmp_path",), {}, False),

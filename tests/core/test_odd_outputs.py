@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from loops import for_each
 
 from pyfrc_core.test_support.isolation.reruns import reruns_notice
 
@@ -35,8 +36,8 @@ def robot_test(*marks: str) -> Any:
     return SimpleNamespace(get_closest_marker=lambda name: name if name in marks else None)
 
 
-@pytest.mark.parametrize(
-    ("given", "tests", "expected"),
+@for_each(
+    "given, tests, expected",
     [
         ({"reruns": 2}, [robot_test()], "--reruns has no effect"),
         ({"retries": 1}, [robot_test()], "--retries has no effect"),

@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from loops import for_each
 from skips import missing_programs, require
 
 from pyfrc_core.passes import memory
@@ -143,7 +144,7 @@ def test_a_link_to_nothing_counts_when_it_leads_somewhere(tmp_path: Path) -> Non
     assert not stands(project)
 
 
-@pytest.mark.parametrize("name", ["conftest.py", "pytest.ini", "tox.ini", "setup.cfg", "pyproject.toml"])
+@for_each("name", ["conftest.py", "pytest.ini", "tox.ini", "setup.cfg", "pyproject.toml"])
 def test_what_pytest_reads_above_the_project_counts(tmp_path: Path, name: str) -> None:
     project = make(tmp_path / "repository" / "project")
     all_passed(project)

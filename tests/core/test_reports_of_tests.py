@@ -9,14 +9,15 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from loops import for_each
 
 from pyfrc_core.test_support import hangs
 from pyfrc_core.test_support.hangs import WatchedTests
 from pyfrc_core.test_support.reporting import bug_of
 
 
-@pytest.mark.parametrize(
-    ("headline", "bug"),
+@for_each(
+    "headline, bug",
     [
         ("robot.py:12: ZeroDivisionError: division by zero", "robot.py:12: ZeroDivisionError: division by zero"),
         ("src/arm.py:7: ValueError: at 12.34 s: 0x7f00ab is 1e-05", "src/arm.py:7: ValueError: at # s: # is #"),

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from loops import for_each
 
 from pyfrc_core.project import Project, robot_files
 from pyfrc_core.project.robot_files import RobotFiles
@@ -62,7 +63,7 @@ def test_what_cannot_be_read_is_named(tmp_path: Path, kind: str) -> None:
 
 @posix
 @pytest.mark.parametrize("kind", UNREADABLE)
-@pytest.mark.parametrize("name", ["drive.py", "test_drive.py"])
+@for_each("name", ["drive.py", "test_drive.py"])
 def test_it_stops_no_search_for_tests(tmp_path: Path, kind: str, name: str) -> None:
     make(tmp_path, "robot.py", "tests/test_a.py")
     make(tmp_path, "tests/arm_tests.py", content=b"def test_arm(): pass\n")
