@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 from pyfrc_core.season import CURRENT
 from pyfrc_core.sim import Simulation
@@ -121,14 +121,3 @@ def run(simulation: Simulation, seconds: float) -> None:
             )
         ),
     )
-
-
-def lines_until(stdout: Iterable[str] | None, *texts: str) -> list[str]:
-    """Read what a command prints, up to a line that has one of these texts."""
-    assert stdout is not None
-    shown = []
-    for line in stdout:
-        shown.append(line)
-        if any(text in line for text in texts):
-            break
-    return shown

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -19,12 +20,14 @@ class StartedCommand:
 
     :ivar stdout: what it prints
     :ivar stderr: its errors; None where they are among what it prints
+    :ivar read: what `until` and `rest` have read of it
     """
 
     def __init__(self, process: StartedProcess, stdout: IO[str], stderr: IO[str] | None) -> None:
         self._process = process
         self.stdout = stdout
         self.stderr = stderr
+        self.read = ""
 
     def __enter__(self) -> StartedCommand:
         return self
@@ -59,6 +62,14 @@ class StartedCommand:
             with suppress(ProcessLookupError):
                 os.kill(self.pid, number)
 
+    def until(self, pattern: str) -> str:
+        """Read what it prints until a line has this regular expression, and return that line."""
+        for line in self.stdout:
+            self.read += line
+            if re.search(pattern, line):
+                return line
+        raise AssertionError(f"{pattern!r} was not printed:\n{self.read}")
+
     def rest(self, seconds: float | None = None) -> tuple[str, str]:
         """Return all that it prints until its end: output and errors.
 
@@ -77,6 +88,7 @@ class StartedCommand:
                 at_end.callback(guard.cancel)
             at_end.callback(self.wait)
             printed = self.stdout.read()
+        self.read += printed
         self._close()
         return printed, "".join(errors)
 

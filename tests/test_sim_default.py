@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 from browsers import NO_BROWSER
-from sim_robots import FILES, lines_until
+from sim_robots import FILES
 
 from pyfrc_core import browser
 from pyfrc_core.browser import open_in_browser, why_no_browser
@@ -113,10 +113,8 @@ def test_a_person_without_a_browser_gets_the_address(make_project) -> None:
     own, terminal = pty.openpty()
     with made.start("sim", "--nt-port", "0", env={**NO_BROWSER, **SSH}, stdin=terminal) as running:
         try:
-            lines = lines_until(running.stdout, "No browser is opened")
-            assert lines[0].startswith("The simulator is at http://127.0.0.1:"), lines
-            assert lines[-1].startswith("No browser is opened")
-            assert "this is an SSH session" in lines[-1]
+            assert "this is an SSH session" in running.until("^No browser is opened")
+            assert running.read.startswith("The simulator is at http://127.0.0.1:"), running.read
             assert running.poll() is None
         finally:
             os.close(own)

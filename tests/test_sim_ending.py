@@ -8,8 +8,6 @@ import signal
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from textwrap import dedent
 
@@ -44,32 +42,15 @@ ROBOT = """
 """
 
 
-class Running:
-    """A `pyfrc sim` that goes on."""
-
-    def __init__(self, command: StartedCommand) -> None:
-        self.command = command
-        self.read = ""
-
-    def until(self, text: str) -> str:
-        """Read what it prints until there is a line with this text; answers that line."""
-        for line in self.command.stdout:
-            self.read += line
-            if text in line:
-                return line
-        raise AssertionError(f"{text!r} was not printed:\n{self.read}")
-
-    def end(self, name: str) -> int:
-        """Send a signal; answers the exit code."""
-        self.command.send_signal(getattr(signal, name))
-        self.read += self.command.rest(PATIENCE)[0]
-        return self.command.wait()
+def end(command: StartedCommand, name: str) -> int:
+    """Send a signal, and return the exit code."""
+    command.send_signal(getattr(signal, name))
+    command.rest(PATIENCE)
+    return command.wait()
 
 
-@contextmanager
-def running(project: RobotProject, *arguments: str) -> Iterator[Running]:
-    with project.start("sim", "--ui", "none", *arguments) as command:
-        yield Running(command)
+def running(project: RobotProject, *arguments: str) -> StartedCommand:
+    return project.start("sim", "--ui", "none", *arguments)
 
 
 @pytest.mark.parametrize("classes", sampled([0, 2], 2))
@@ -110,7 +91,7 @@ def test_what_was_driven_is_written_however_it_ends(name: str, make_project) -> 
     made = make_project({"robot.py": ROBOT})
     with running(made, "--nt-port", "0", "--record", "run.jsonl", "--wpilog", "run.wpilog") as sim:
         sim.until("ten packets")
-        assert sim.end(name) == 128 + getattr(signal, name), sim.read
+        assert end(sim, name) == 128 + getattr(signal, name), sim.read
     assert "wrote run.jsonl" in sim.read
     assert "wrote run.wpilog" in sim.read
     assert (made.path / "run.jsonl").is_file()
@@ -144,7 +125,7 @@ def test_nothing_is_left_by_one_that_is_killed(make_project) -> None:
         host = os.pidfd_open(int(sim.until("ten packets").split()[-1]))
         try:
             assert list(made.temporary.glob("pyfrc-sim-*"))
-            sim.end("SIGKILL")
+            end(sim, "SIGKILL")
             assert select.select([host], [], [], PATIENCE)[0], "the robot's processes go on"
         finally:
             os.close(host)
@@ -173,7 +154,7 @@ def test_a_mistake_that_is_saved_is_waited_out(make_project) -> None:
         save(robot, good.replace("ten packets", "corrected") + "\n# corrected\n")
         sim.until("was saved")
         sim.until("corrected of")
-        assert sim.end("SIGINT") == 130, sim.read
+        assert end(sim, "SIGINT") == 130, sim.read
     assert "failed" not in sim.read.partition("corrected of")[2]
 
 

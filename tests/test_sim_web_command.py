@@ -29,16 +29,9 @@ class Running:
 
     def __init__(self, command: StartedCommand) -> None:
         self.command = command
-        self.read = ""
-        self.address = self.until(ADDRESS)[1]
-
-    def until(self, pattern: re.Pattern[str]) -> re.Match[str]:
-        """Read what it prints until a line has this."""
-        for line in self.command.stdout:
-            self.read += line
-            if (match := pattern.search(line)) is not None:
-                return match
-        raise AssertionError(f"{pattern.pattern!r} was not printed:\n{self.read}")
+        found = ADDRESS.search(command.until(ADDRESS.pattern))
+        assert found is not None
+        self.address = found[1]
 
     @contextmanager
     def page(self) -> Iterator[Page]:
@@ -48,7 +41,7 @@ class Running:
 
     def ended(self) -> int:
         """Wait for the end, and return the exit code."""
-        self.read += self.command.rest(PATIENCE)[0]
+        self.command.rest(PATIENCE)
         return self.command.wait()
 
 
@@ -62,15 +55,15 @@ def simulating(made: RobotProject, *arguments: str, environment: Mapping[str, st
 @pytest.mark.parametrize("name", sampled(["SIGINT", "SIGTERM"], "SIGTERM"))
 def test_it_prints_its_address_and_ends_by_a_signal(make_project, name: str) -> None:
     with simulating(make_project(FILES), "--ui", "web") as running:
-        running.until(re.compile("No browser is opened: there is no display."))
+        running.command.until("No browser is opened: there is no display.")
         with running.page() as page:
             page.until(lambda: page.status["state"] == "running")
             page.command("enable")
             page.until(lambda: page.station.get("enabled"))
             running.command.send_signal(getattr(signal, name))
             assert running.ended() == 128 + getattr(signal, name)
-        assert "the robot is there" in running.read
-        assert "Traceback" not in running.read
+        assert "the robot is there" in running.command.read
+        assert "Traceback" not in running.command.read
         with pytest.raises(OSError), socket.create_connection(("127.0.0.1", urlsplit(running.address).port), 2):  # noqa: PT011
             pass
 
@@ -82,7 +75,7 @@ def test_it_ends_by_the_page_and_writes_its_files(make_project) -> None:
             page.until(lambda: page.time > 0.1)
             page.quit()
             assert running.ended() == 0
-        assert "wrote drive.jsonl" in running.read
+        assert "wrote drive.jsonl" in running.command.read
     assert (made.path / "drive.jsonl").is_file()
 
 
