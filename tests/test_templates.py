@@ -3,30 +3,21 @@
 from __future__ import annotations
 
 import functools
-import importlib.util
-import io
 import json
 import re
 import shlex
 import shutil
 import sys
 from collections import defaultdict
-from collections.abc import Callable, Iterator
-from importlib.metadata import distribution, version
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 import yaml
 from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings, sampled
-from roborio import Roborio, require_roborio
+from test_virtual_robot import deploy, started
 
 from pyfrc_cli.main import COMMANDS
-from pyfrc_core.deploy import session, starting
-from pyfrc_core.deploy.progress import DeployProgress, UserInterface
-from pyfrc_core.deploy.robot_packages import packages_by_module
-from pyfrc_core.deploy.session import DeployOptions
-from pyfrc_core.deploy.team import RobotChoice
-from pyfrc_core.project import find_project
 from pyfrc_core.scaffold import TEMPLATES
 from pyfrc_core.season import CURRENT
 
@@ -38,11 +29,6 @@ else:
 SOURCES = Path(__file__).parents[1] / "templates"
 GITHUB = SOURCES.with_name("docs") / "how_to" / "test_on_github.md"
 
-#: What the templates import on a robot, and what that imports.
-ON_THE_ROBOT = (
-    *("wpilib", "hal", "wpimath", "wpiutil", "wpinet", "ntcore", "native", "numpy"),
-    *("commands2", "typing_extensions", "magicbot", "robotpy_ext", "toposort"),
-)
 
 #: The first command of the workflows.
 INSTALLING = ["pip", "install", "--find-links", "wheels", "-r", "requirements.txt"]
@@ -132,54 +118,13 @@ def test_it_goes_through_a_match_in_the_simulator(project: RobotProject, templat
     assert (float(driven[1]) > 1) == (template != "elevator-arm")  # which has no wheels
 
 
-@pytest.fixture(scope="module")
-def robot() -> Iterator[Roborio]:
-    """A look-alike with the real WPILib; the templates are releases of this one robot."""
-    require_roborio()
-    with Roborio(wpilib=version("wpilib"), disk_size="1g") as robot:
-        _install_real_packages(robot.disk / "usr/local/lib/python3.14/site-packages")
-        yield robot
-
-
 @sampled_templates
 @pytest.mark.slow
-def test_it_starts_on_a_robot(
-    project: RobotProject, template: str, robot: Roborio, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # A MagicRobot does not report its start, which takes less than two seconds here, on a roboRIO many more.
-    monkeypatch.setattr(starting, "UNHEARD_SECONDS", 5.0)
-    shown = io.StringIO()
-    options = DeployOptions(choice=RobotChoice(robot=robot.where), skip_tests=True)
-    session.deploy(find_project(project.path), options, UserInterface(DeployProgress(shown)))
-    runs = "does not report the end of its start" if template == "magic" else "the program runs"
-    assert runs in shown.getvalue()
-
-
-def _install_real_packages(there: Path) -> None:
-    """Put what the templates import into the look-alike, instead of its own stand-in for wpilib."""
-    for name in ("wpilib", "wpimath"):
-        shutil.rmtree(there / name)
-    (there / "sitecustomize.py").unlink()  # the packages look at Python's version
-    for name in ON_THE_ROBOT:
-        spec = importlib.util.find_spec(name)
-        assert spec is not None, name
-        for directory in spec.submodule_search_locations or ():
-            shutil.copytree(directory, there / name, ignore=shutil.ignore_patterns("tests"))
-        if not spec.submodule_search_locations:
-            assert spec.origin is not None
-            shutil.copy(spec.origin, there)
-    for name in {each for package in ON_THE_ROBOT for each in packages_by_module().get(package, ())}:
-        for file in distribution(name).files or ():
-            if file.name == "METADATA":
-                about = there / file.parent.name
-                about.mkdir(exist_ok=True)
-                shutil.copy(file.locate(), about)
-    numpy = importlib.util.find_spec("numpy")
-    assert numpy is not None
-    assert numpy.origin is not None
-    libraries = Path(numpy.origin).parents[1] / "numpy.libs"
-    if libraries.is_dir():
-        shutil.copytree(libraries, there / libraries.name)
+def test_it_starts_on_a_virtual_robot(project: RobotProject, template: str, tmp_path: Path) -> None:
+    with started(project, tmp_path / "robot") as robot:
+        printed = deploy(robot, project)
+    # A MagicRobot does not report its start.
+    assert ("does not report the end of its start" if template == "magic" else "the program runs") in printed
 
 
 @pytest.mark.slow
