@@ -156,6 +156,8 @@ def test_frames_of_a_console() -> None:
     ):
         with pytest.raises(ConsoleProtocolError, match=f"^{why}$"):
             list(ConsoleFrames().lines(struct.pack(">H", len(wrong)) + wrong))
+    with pytest.raises(ConsoleProtocolError, match="empty"):
+        list(ConsoleFrames().lines(bytes(1 << 16)))
 
 
 class Channel:
