@@ -11,6 +11,7 @@ from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
 
 from pyfrc_core.deploy.agent.activity import Activity
+from pyfrc_core.deploy.agent.release_record import LONG
 from pyfrc_core.deploy.agent.releases import Releases
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent_client import DeployRequest
@@ -91,3 +92,15 @@ def test_it_makes_no_room_on_a_small_disk(robot: LocalRobot, agents: Agents, dep
     releases = Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None))
     releases.prune(kept=1)
     assert releases.numbers() == [2, 4]
+
+
+def test_the_release_that_ran_for_long_is_kept_when_others_ran_for_seconds(
+    robot: LocalRobot, agents: Agents, deploy: DeployAndWatch
+) -> None:
+    releases = Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None))
+    for number in range(1, 6):
+        deployed = deploy(number, True)
+        seen = {"lasted": LONG if number == 1 else 20.0, "ended": number < 5}
+        releases.update_record(number, lambda record, seen=seen: {**record, **seen})
+    assert deployed.fallback == 1
+    assert numbers(facts_of(robot, agents)) == [1, 4, 5]

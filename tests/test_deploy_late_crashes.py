@@ -28,7 +28,6 @@ from pyfrc_core.deploy.agent.release_record import (
 )
 from pyfrc_core.deploy.agent.releases import Releases
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
-from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 
@@ -89,23 +88,6 @@ def test_a_withdrawn_mark_returns_only_with_a_program_that_lasts() -> None:
     assert seen(THIS, 8, 60.0, withdrawn) == (True, LONG)
     again = after_watch(withdrawn, True, False, 9, 2.0, THIS)
     assert standing(again).good
-
-
-def test_the_release_that_ran_for_long_is_kept_when_others_ran_for_seconds(
-    robot: LocalRobot, agents: Agents, tmp_path: Path
-) -> None:
-    for number in range(1, 6):
-        project = project_of(tmp_path / "project", {"robot.py": f"{ROBOT_PY}# {number}\n"})
-        with closing(robot.start(agents, runs=True)) as client:
-            deployed = client.deploy(project, DeployRequest("robot.py", {}))
-            client.restart()
-            client.watch(1.0)
-        file = robot.home / f".pyfrc/releases/{number}.json"
-        record = parse_record(file.read_text())
-        file.write_text(record_text({**record, "lasted": LONG if number == 1 else 20.0, "ended": number < 5}))
-    assert deployed.fallback == 1
-    with closing(robot.start(agents)) as client:
-        assert [each.number for each in client.facts.releases] == [1, 4, 5]
 
 
 @given(st.binary(max_size=40), st.integers(0, 100))

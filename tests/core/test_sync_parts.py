@@ -129,11 +129,8 @@ def test_a_full_disk_is_one_sentence_and_other_errors_stay() -> None:
 @for_each("name", ["six-1.17.0-py3-none-any.whl", "_a", "cpython+2.tar.gz", "1!2.whl"])
 def test_names_of_files_that_a_lock_can_have(name: str) -> None:
     assert is_file_name(name) is True
-
-
-@for_each("name", ["", ".hidden", "-r", "a/b", "..", "a b", "a\n", "ä.whl", "C:x", "a\\b", "a~1"])
-def test_names_of_files_that_would_lead_elsewhere(name: str) -> None:
-    assert is_file_name(name) is False
+    for other in ("", ".hidden", "-r", "a/b", "..", "a b", "a\n", "ä.whl", "C:x", "a\\b", "a~1"):
+        assert is_file_name(other) is False, f"{other} would lead elsewhere"
 
 
 # -- getting files -----------------------------------------------------------------------------------------------------
