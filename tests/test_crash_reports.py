@@ -58,22 +58,6 @@ EACH_ISOLATION = [pytest.param("reuse", marks=pytest.mark.slow), pytest.param("f
 
 
 @pytest.mark.parametrize("isolation", EACH_ISOLATION)
-def test_what_was_printed_before_the_end_is_shown(isolation: str, make_project: MakeProject) -> None:
-    tests = """
-        import os
-
-
-        def test_it(control):
-            print("the last words")
-            os._exit(3)
-    """
-    project = make_project({"robot.py": ROBOT, "tests/test_robot.py": tests})
-    result = project.run("test", "--isolation", isolation)
-    assert "the last words" in result.blocks()["test_it"].splitlines(), result.output
-    assert list(project.temporary.iterdir()) == []
-
-
-@pytest.mark.parametrize("isolation", EACH_ISOLATION)
 def test_failures_after_a_test_has_been_called(isolation: str, make_project: MakeProject) -> None:
     """In a fixture's teardown: the test's own report of its call has been sent by then."""
     project = make_project({"robot.py": ROBOT, "tests/test_robot.py": TESTS})

@@ -107,12 +107,6 @@ def test_an_option_that_is_given_twice_is_refused(words: str, make_project: Make
     assert f"Error: {option} is given twice: give it once." in result.stderr
 
 
-def test_a_mistyped_command_is_told_the_nearest(make_project: MakeProject) -> None:
-    result = make_project({"robot.py": ROBOT}).run_here("tset")
-    assert result.code == 2
-    assert "There is no command 'tset'. Did you mean 'test'?" in result.stderr
-
-
 def test_outside_of_a_project_there_is_a_remedy(make_project: MakeProject) -> None:
     project = make_project({"notes.txt": "No robot here."})
     result = project.run_here("test")
