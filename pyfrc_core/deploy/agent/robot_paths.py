@@ -102,13 +102,13 @@ def in_environment(layout: Layout, commands: dict[str, str | None], environment:
 class Lock:
     """The exclusive right to change the robot's programs. The system releases it when the process ends.
 
-    :param wait: seconds to wait for another process to release it
+    :param wait: seconds to wait for another process to release it; by default, two
     """
 
-    def __init__(self, paths: RobotPaths, who: str, wait: float = _GRACE) -> None:
+    def __init__(self, paths: RobotPaths, who: str, wait: float | None = None) -> None:
         self._file = paths.lock
         self._who = who
-        self._wait = wait
+        self._wait = _GRACE if wait is None else wait
         self._stream: FileIO | None = None
 
     def __enter__(self) -> None:
