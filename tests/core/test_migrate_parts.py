@@ -180,10 +180,14 @@ def test_a_type_of_2027_is_understood_and_asked_for(tmp_path: Path) -> None:
 
 
 def test_names_in_an_annotation_that_is_a_text_are_renamed(tmp_path: Path) -> None:
-    code = "from wpilib import PS4Controller\ndef go(a: {0}PS4Controller{0}, b: {0}list[PS4Controller]{0}): pass\n"
-    for quote in ("", "'"):
-        text, _ = migrated(tmp_path, code.format(quote))
-        assert text == code.format(quote).replace("PS4Controller", "DualShock4Controller")
+    for start, name in (
+        ("from wpilib import PS4Controller", "PS4Controller"),
+        ("import wpilib", "wpilib.PS4Controller"),
+    ):
+        for quote in ("", "'"):
+            code = f"{start}\ndef go(a: {quote}{name}{quote}, b: {quote}list[{name}]{quote}): pass\n"
+            text, _ = migrated(tmp_path, code)
+            assert text == code.replace("PS4Controller", "DualShock4Controller")
 
 
 def test_a_statement_that_is_left_out_after_a_colon_becomes_pass(tmp_path: Path) -> None:

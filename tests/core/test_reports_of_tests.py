@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,6 +15,7 @@ from loops import for_each
 from pyfrc_core.test_support import hangs
 from pyfrc_core.test_support.hangs import WatchedTests
 from pyfrc_core.test_support.reporting import bug_of
+from pyfrc_core.test_support.run_tests import _start_directory
 
 
 @for_each(
@@ -110,3 +112,14 @@ def test_only_threads_that_a_robots_test_starts_are_waited_for(monkeypatch: pyte
     finally:
         done.set()
     assert waited == ["work"]
+
+
+@for_each("name, from_the_project", [("robot", False), ("our [robot]", True), ("at::home", True), ("50% $", True)])
+def test_a_path_that_pytest_would_read_otherwise_is_not_used(
+    name: str, from_the_project: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    root = tmp_path / name
+    root.mkdir()
+    monkeypatch.chdir(tmp_path)
+    project: Any = SimpleNamespace(root=root, pyproject=root / "pyproject.toml")
+    assert _start_directory(project) == (root if from_the_project else tmp_path)
