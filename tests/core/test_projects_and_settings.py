@@ -55,6 +55,22 @@ def project(tmp_path: Path) -> Project:
     return Project(tmp_path / "robot.py")
 
 
+def test_robots_run_where_the_command_line_says_or_else_the_settings(project: Project) -> None:
+    (project.root / "pyproject.toml").write_text('[tool.pyfrc.test]\nisolation = "reuse"\n')
+    chosen = {each: Project(project.main_file, None, project.root / "pyproject.toml", each) for each in ("fork", None)}
+    assert {given: each.isolation for given, each in chosen.items()} == {"fork": "fork", None: "reuse"}
+
+
+def test_a_byte_that_is_not_utf_8_is_named_with_its_line(project: Project) -> None:
+    (project.root / "sim").mkdir()
+    for byte, written in ((b"\xf6", "'ö'"), (b"\x96", r"'\x96'")):
+        (project.root / "sim/config.json").write_bytes(b'{\n  "field": "h' + byte + b'chstens"\n}\n')
+        with pytest.raises(SettingsError) as raised:
+            load_sim_config(project.root)
+        text = f"the byte 0x{byte.hex()} is not UTF-8 text (in Latin-1 it would be {written})"
+        assert (raised.value.message, raised.value.where) == (text, "sim/config.json:2")
+
+
 def test_files_that_hide_libraries(project: Project) -> None:
     refuse_hidden_libraries(project.root, project.main_file)
     write_files(
