@@ -63,6 +63,10 @@ class NetworkRobot:
         """Return a value, which others may have set."""
         return self._ask("get", name)
 
+    def until(self, name: str, value: Any) -> None:
+        """Wait until another program has set a value."""
+        self._ask("until", name, value)
+
     def remove(self, name: str) -> None:
         """Publish a value no longer."""
         self._ask("remove", name)
@@ -197,6 +201,9 @@ def _main() -> None:
                 entries[name].write(bytes.fromhex(digits))
             case "get":
                 reply = network.value_of(arguments[0])
+            case "until":
+                while network.value_of(arguments[0]) != arguments[1]:
+                    sleep(0.005)
             case "remove":
                 entries.pop(arguments[0]).unpublish()
             case "flood":

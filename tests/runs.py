@@ -115,7 +115,8 @@ def _import_test_files(config: pytest.Config) -> None:
     worker = getattr(config, "workerinput", None)
     if worker is None or CURRENT.year != 2026 or {Path(each).resolve() for each in config.args} != {TESTS}:
         return
-    names = sorted(file.stem for file in TESTS.glob("test_*.py"))
+    files = (*TESTS.glob("test_*.py"), *TESTS.glob("core/test_*.py"))
+    names = sorted(".".join(file.relative_to(TESTS).with_suffix("").parts) for file in files)
     first = len(names) * int(worker["workerid"].removeprefix("gw")) // worker["workercount"]
     for name in (*names[first:], *names[:first]):
         with suppress(Exception, pytest.skip.Exception):  # collecting it reports that

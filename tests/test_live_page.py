@@ -38,8 +38,7 @@ def test_a_person_looks_at_a_robot(browser: Any, tmp_path: Path) -> None:
         page.get_by_role("switch", name="Tune").check(force=True)
         person.set_number(box, "0.25")
         page.wait_for_function("() => !document.querySelector('.notice')")
-        while robot.get("/SmartDashboard/kP") != 0.25:
-            pass
+        robot.until("/SmartDashboard/kP", 0.25)
         page.get_by_role("switch", name="Tune").uncheck(force=True)
         page.locator("[data-path='nt:/SmartDashboard/kP'] input:disabled").wait_for()
         # A connection that is lost is said, and what is known stays.

@@ -138,11 +138,9 @@ def test_values_are_set_only_after_the_switch(robot: NetworkRobot, tmp_path: Pat
         page.command("write", values=kP)
         page.until(lambda: page.values["nt:/SmartDashboard/kP"] == 0.25)
         other.until(lambda: other.values["nt:/SmartDashboard/kP"] == 0.25)
-        while robot.get("/SmartDashboard/kP") != 0.25:
-            pass
+        robot.until("/SmartDashboard/kP", 0.25)
         page.command("choose", chooser="/SmartDashboard/Auto", option="Right")
-        while robot.get(f"/SmartDashboard/Auto/{CURRENT.dashboards.choice}") != "Right":
-            pass
+        robot.until(f"/SmartDashboard/Auto/{CURRENT.dashboards.choice}", "Right")
         for target, value, why in (
             ("nt:/SmartDashboard/kP", "much", "a number is needed"),
             ("nt:/SmartDashboard/kI", 1.0, "publishes no value"),
