@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 from conftest import sampled
-from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_memory, project_of
+from roborio.local import ROBOT_PY, LocalRobot, Processes, directory_in_memory, project_of
 from written_files import zip_of
 
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
@@ -75,24 +75,24 @@ def send_python(robot: LocalRobot) -> None:
 
 
 @contextlib.contextmanager
-def agent(robot: LocalRobot, agents: Agents, **options: Any) -> Generator[AgentClient]:
-    session = robot.start(agents, **options)
+def agent(robot: LocalRobot, **options: Any) -> Generator[AgentClient]:
+    session = robot.start(**options)
     try:
         yield session
     finally:
         session.close()
 
 
-def install(robot: LocalRobot, agents: Agents, packages: Packages, name: str, **cut: Any) -> int:
+def install(robot: LocalRobot, packages: Packages, name: str, **cut: Any) -> int:
     send_python(robot)  # if a deploy that does not need it has removed it
-    with agent(robot, agents, **cut) as session:
+    with agent(robot, **cut) as session:
         wheels = packages.wheels[name]
         python = None if robot.controller.install_python.is_system else PYTHON
         return session.install(name, python, wheels, [5_000] * len(wheels.entries))
 
 
-def deploy(robot: LocalRobot, agents: Agents, project: Manifest, environment: str | None, **cut: Any) -> None:
-    with agent(robot, agents, **cut) as session:
+def deploy(robot: LocalRobot, project: Manifest, environment: str | None, **cut: Any) -> None:
+    with agent(robot, **cut) as session:
         session.deploy(project, DeployRequest("robot.py", {}, environment=environment))
 
 
@@ -127,18 +127,18 @@ def controller(request: pytest.FixtureRequest) -> ControllerKind:
 
 
 def test_a_change_sends_only_what_is_new_and_a_rollback_undoes_it(
-    controller: ControllerKind, directory: Path, packages: Packages, agents: Agents
+    controller: ControllerKind, directory: Path, packages: Packages
 ) -> None:
     robot = new_robot(directory / "robot", controller)
     old, new = project_of(directory / "old", OLD), project_of(directory / "new", NEW)
-    assert install(robot, agents, packages, FIRST) == 2
+    assert install(robot, packages, FIRST) == 2
     assert started(robot) is None
-    deploy(robot, agents, old, FIRST)
+    deploy(robot, old, FIRST)
     assert started(robot) == (OLD, packages.content[FIRST])
-    assert install(robot, agents, packages, SECOND) == 2
-    assert install(robot, agents, packages, SECOND) == 0
+    assert install(robot, packages, SECOND) == 2
+    assert install(robot, packages, SECOND) == 0
     assert started(robot) == (OLD, packages.content[FIRST])
-    deploy(robot, agents, new, SECOND)
+    deploy(robot, new, SECOND)
     assert started(robot) == (NEW, packages.content[SECOND])
     check_scripts(robot, SECOND)
     places = [robot.home / ".pyfrc/environments" / name for name in (FIRST, SECOND)]
@@ -147,7 +147,7 @@ def test_a_change_sends_only_what_is_new_and_a_rollback_undoes_it(
     assert len(shared) == 2
     assert all(Path.samefile(*(place / each for place in places)) for each in shared), "what is the same is one file"
     assert not Path.samefile(*(place / spinner for place in places))
-    with agent(robot, agents) as session:
+    with agent(robot) as session:
         assert session.rollback().release.number == 1
     assert started(robot) == (OLD, packages.content[FIRST])
 
@@ -159,11 +159,9 @@ def check_scripts(robot: LocalRobot, environment: str) -> None:
     assert printed == f"{place} ['a b']\n", "it runs in its own environment"
 
 
-def test_too_little_disk_space_is_said_before_anything_is_sent(
-    directory: Path, packages: Packages, agents: Agents
-) -> None:
+def test_too_little_disk_space_is_said_before_anything_is_sent(directory: Path, packages: Packages) -> None:
     robot = new_robot(directory / "robot")
-    with agent(robot, agents) as session, pytest.raises(RefusedError, match="too full to install packages") as caught:
+    with agent(robot) as session, pytest.raises(RefusedError, match="too full to install packages") as caught:
         session.install(FIRST, PYTHON, packages.wheels[FIRST], [1 << 50, 1])
     assert "Nothing was changed" in str(caught.value.remedy)
     assert not (robot.home / ".pyfrc/wheels").exists()
@@ -175,7 +173,8 @@ def test_memory(directory: Path, packages: Packages) -> None:
     robot, table = new_robot(directory / "robot", ROBORIO), "TABLE = [\n" + '    ["a", 1.5, "b"],\n' * 100_000 + "]\n"
     big = wheel(directory, "big-1.0", {"big.bin": os.urandom(20_000_000), "small.py": "A = 1\n", "table.py": table})
     packages.wheels[FIRST] = Manifest((big,))
-    session = robot.start(Processes())
+    robot.agents = Processes()
+    session = robot.start()
     assert session.install(FIRST, None, packages.wheels[FIRST], [1]) == 1
     peak = robot.channel.peak_memory()
     session.close()
