@@ -400,6 +400,15 @@ def hangup_ends_programs() -> Generator[None]:
 
 
 @pytest.fixture
+def in_memory() -> Generator[Path]:
+    """A directory in memory, where there is such a thing."""
+    from roborio.local import directory_in_memory
+
+    with directory_in_memory() as directory:
+        yield directory
+
+
+@pytest.fixture
 def patient_doctor(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have `pyfrc doctor` wait for a robot that is there, however busy this machine is."""
     for name in ("SEARCH_SECONDS", "CHECK_SECONDS"):

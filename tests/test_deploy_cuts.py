@@ -6,14 +6,12 @@ Cuts of power are in `core/test_agent_power_cuts`, at each step of the agent on 
 from __future__ import annotations
 
 import contextlib
-import itertools
 from collections import defaultdict
-from collections.abc import Generator
 from pathlib import Path
 
 import pytest
 from conftest import sampled
-from roborio.local import ROBOT_PY, Disk, LocalRobot, directory_in_memory, project_of
+from roborio.local import ROBOT_PY, Disk, LocalRobot, project_of
 
 from pyfrc_core.deploy.errors import DeployError
 from pyfrc_core.deploy.manifest import Manifest
@@ -41,11 +39,6 @@ WRITTEN: Files = {"log.txt": b"1\n2\n", "state/odometer": b"17"}
 
 #: By controller and scenario, the disks on which a deploy after a cut was seen to work.
 _DEPLOYED_AGAIN: dict[tuple[str, str], set[Disk]] = defaultdict(set)
-
-
-@pytest.fixture(params=sampled(CONTROLLERS, CONTROLLERS[0]), ids=lambda each: each.name)
-def controller(request: pytest.FixtureRequest) -> ControllerKind:
-    return request.param
 
 
 class Scenario:
@@ -94,18 +87,18 @@ class Scenario:
         return started == self.new
 
 
-@pytest.fixture
-def directory() -> Generator[Path]:
-    with directory_in_memory() as directory:
-        yield directory
+#: Each scenario on one of the controllers, with the connection cut on the way to the robot, and back.
+CASES = [(*case, way) for case in (("update", CONTROLLERS[0]), ("first", CONTROLLERS[1])) for way in ("from", "to")]
 
 
 @pytest.mark.parametrize(
-    ("name", "way"), sampled(itertools.product(["first", "update"], ["to", "from"]), ("update", "from"))
+    ("name", "controller", "way"),
+    sampled(CASES, CASES[0]),
+    ids=lambda each: getattr(each, "name", each),
 )
-def test_cut_after_every_kth_byte(name: str, way: str, directory: Path, controller: ControllerKind) -> None:
+def test_cut_after_every_kth_byte(name: str, controller: ControllerKind, way: str, in_memory: Path) -> None:
     """More than 300 places in all, the last of them within the last bytes."""
-    scenario = Scenario(name, directory, controller)
+    scenario = Scenario(name, in_memory, controller)
     total = scenario.channel.bytes_to_robot if way == "to" else scenario.channel.bytes_from_robot
     places = [total * number // 80 for number in range(80)] + [total - 1]
     assert len(set(places)) == 81

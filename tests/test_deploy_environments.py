@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 from conftest import sampled
-from roborio.local import ROBOT_PY, LocalRobot, Processes, directory_in_memory, project_of
+from roborio.local import ROBOT_PY, LocalRobot, Processes, project_of
 from written_files import zip_of
 
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
@@ -111,14 +111,8 @@ def started(robot: LocalRobot) -> tuple[Files, Files] | None:
 
 
 @pytest.fixture
-def directory() -> Generator[Path]:
-    with directory_in_memory() as directory:
-        yield directory
-
-
-@pytest.fixture
-def packages(directory: Path) -> Packages:
-    return Packages(directory / "wheels")
+def packages(in_memory: Path) -> Packages:
+    return Packages(in_memory / "wheels")
 
 
 @pytest.fixture(params=sampled([ROBORIO, SYSTEMCORE], SYSTEMCORE), ids=lambda each: each.name)
@@ -127,10 +121,10 @@ def controller(request: pytest.FixtureRequest) -> ControllerKind:
 
 
 def test_a_change_sends_only_what_is_new_and_a_rollback_undoes_it(
-    controller: ControllerKind, directory: Path, packages: Packages
+    controller: ControllerKind, in_memory: Path, packages: Packages
 ) -> None:
-    robot = new_robot(directory / "robot", controller)
-    old, new = project_of(directory / "old", OLD), project_of(directory / "new", NEW)
+    robot = new_robot(in_memory / "robot", controller)
+    old, new = project_of(in_memory / "old", OLD), project_of(in_memory / "new", NEW)
     assert install(robot, packages, FIRST) == 2
     assert started(robot) is None
     deploy(robot, old, FIRST)
@@ -159,8 +153,8 @@ def check_scripts(robot: LocalRobot, environment: str) -> None:
     assert printed == f"{place} ['a b']\n", "it runs in its own environment"
 
 
-def test_too_little_disk_space_is_said_before_anything_is_sent(directory: Path, packages: Packages) -> None:
-    robot = new_robot(directory / "robot")
+def test_too_little_disk_space_is_said_before_anything_is_sent(in_memory: Path, packages: Packages) -> None:
+    robot = new_robot(in_memory / "robot")
     with agent(robot) as session, pytest.raises(RefusedError, match="too full to install packages") as caught:
         session.install(FIRST, PYTHON, packages.wheels[FIRST], [1 << 50, 1])
     assert "Nothing was changed" in str(caught.value.remedy)
@@ -168,10 +162,10 @@ def test_too_little_disk_space_is_said_before_anything_is_sent(directory: Path, 
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="it reads the memory of a process as Linux shows it")
-def test_memory(directory: Path, packages: Packages) -> None:
+def test_memory(in_memory: Path, packages: Packages) -> None:
     """A wheel of 20 MB: under 40 MB at the highest. What needs more to be compiled is left to the program."""
-    robot, table = new_robot(directory / "robot", ROBORIO), "TABLE = [\n" + '    ["a", 1.5, "b"],\n' * 100_000 + "]\n"
-    big = wheel(directory, "big-1.0", {"big.bin": os.urandom(20_000_000), "small.py": "A = 1\n", "table.py": table})
+    robot, table = new_robot(in_memory / "robot", ROBORIO), "TABLE = [\n" + '    ["a", 1.5, "b"],\n' * 100_000 + "]\n"
+    big = wheel(in_memory, "big-1.0", {"big.bin": os.urandom(20_000_000), "small.py": "A = 1\n", "table.py": table})
     packages.wheels[FIRST] = Manifest((big,))
     robot.agents = Processes()
     session = robot.start()

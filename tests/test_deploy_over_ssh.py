@@ -128,10 +128,12 @@ def test_the_administrator_deploys_for_the_program_s_user(roborio: Roborio, tmp_
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("kind", [Systemcore], indirect=True, ids=["SystemCore"])
 @pytest.mark.parametrize("debug", [False, True])
 def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
     computer: Computer, tmp_path: Path, debug: bool
 ) -> None:
+    """On a roboRIO, the command shows it (`test_deploy_command`)."""
     with agent(computer) as robot:
         robot.deploy(program(tmp_path, "good"), DeployRequest("robot.py", {}))
         assert started(robot).alive
@@ -150,10 +152,11 @@ def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
 
 
 @pytest.mark.slow
-def test_a_full_disk(kind: Kind, tmp_path: Path) -> None:
+def test_a_full_disk(tmp_path: Path) -> None:
+    require_roborio()
     old = program(tmp_path, "old", **{"data.bin": b"1" * 500_000})
     large = program(tmp_path, "large", **{f"{number}.bin": b"%d" % number * 500_000 for number in range(8)})
-    with kind(disk_size="3m") as computer:
+    with Roborio(disk_size="3m") as computer:
         disk = LocalRobot(computer.disk, computer.controller)
         deploy(computer, old)
         before = disk.startable()

@@ -18,7 +18,7 @@ from loops import for_each
 from projects_of_before import OF_2019, OF_TODAY
 from test_virtual_robot import started
 
-from pyfrc_cli.main import COMMANDS, cli
+from pyfrc_cli.main import COMMANDS, cli, loaded
 from pyfrc_core.config.settings import FuzzSettings
 
 ROOT = Path(__file__).parents[1]
@@ -368,31 +368,40 @@ def test_the_examples_of_a_slow_and_a_fast_robot_work(make_project) -> None:
     assert medians["fast"] < medians["slow"]
 
 
-GUIDES_COMMANDS = [
-    command
-    for page in (
-        *TESTING,
-        *PHYSICS_PAGES,
-        "explanation/isolation.md",
-        "how_to/create_physics.md",
-        "how_to/find_what_is_wrong.md",
-        "how_to/measure_coverage.md",
-        "how_to/tests_are_slow.md",
-        "reference/sim_config.md",
-    )
-    for command in commands(f"docs/{page}")
-    if not command.startswith("pyfrc coverage")  # they are in the test of measuring
-]
+def test_each_command_in_the_pages_has_these_options(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those that are not run by a test of their page, too."""
+    for directory in ("slow", "leaving"):
+        (tmp_path / directory).mkdir()
+    monkeypatch.chdir(tmp_path)
+    text = "".join(page.read_text("utf-8") for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md")))
+    found = re.findall(r"^\$ pyfrc (.+)$", text, re.MULTILINE)
+    assert len(found) > 50
+    for words in found:
+        name, *arguments = shlex.split(words, comments=True)
+        parse(name, arguments)
+
+
+def parse(name: str, arguments: list[str]) -> None:
+    """Parse a command's arguments, those of a command within it, too."""
+    command = loaded(name)
+    if isinstance(command, click.Group):
+        name, *arguments = arguments
+        command = command.commands[name]
+    inner = command.make_context(name, arguments).params.get("command_line")
+    if inner:
+        parse(inner[0], list(inner[1:]))
+
+
+SELECTING = [command for page in TESTING for command in commands(f"docs/{page}") if " -k " in command]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", GUIDES_COMMANDS)
-def test_the_commands_in_the_guides_work(command: str, project) -> None:
-    program, *arguments = shlex.split(command)
-    assert program == "pyfrc"
+def test_the_guides_commands_select_tests(project) -> None:
     project.write(files("docs/how_to/a_motor_does_nothing.md"))
-    result = project.run(*arguments)
-    assert result.code == 0, result.output
+    assert len(SELECTING) >= 2
+    for command in SELECTING:
+        result = project.run(*shlex.split(command)[1:])
+        assert result.code == 0, result.output
 
 
 def shows(expected: str, printed: str) -> bool:

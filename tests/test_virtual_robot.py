@@ -300,7 +300,7 @@ class MyRobot(wpilib.TimedRobot):
 """
 
 
-@pytest.mark.parametrize("stop", sampled(["interrupt", "kill", "undeploy"], "interrupt"))
+@pytest.mark.parametrize("stop", sampled(["interrupt", "kill"], "interrupt"))
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux finds processes that have left their group")
 def test_a_stopped_robot_leaves_no_child_processes(project: RobotProject, directory: Path, stop: str) -> None:
     project.write({"robot.py": LEAVES_PROCESSES})
@@ -308,9 +308,7 @@ def test_a_stopped_robot_leaves_no_child_processes(project: RobotProject, direct
         deploy(robot, project)
         children = [int(word) for word in robot.said("children").split()[1:]]
         assert len(children) == 2
-        if stop == "undeploy":
-            on(robot, project, "undeploy", "--yes")
-        elif stop == "kill":
+        if stop == "kill":
             robot.command.kill()
         else:
             robot.command.send_signal(signal.SIGINT)
