@@ -128,22 +128,20 @@ def test_the_administrator_deploys_for_the_program_s_user(roborio: Roborio, tmp_
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", [Systemcore], indirect=True, ids=["SystemCore"])
-@pytest.mark.parametrize("debug", [False, True])
 def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
-    computer: Computer, tmp_path: Path, debug: bool
+    systemcore: Systemcore, tmp_path: Path
 ) -> None:
     """On a roboRIO, the command shows it (`test_deploy_command`)."""
-    with agent(computer) as robot:
+    with agent(systemcore) as robot:
         robot.deploy(program(tmp_path, "good"), DeployRequest("robot.py", {}))
         assert started(robot).alive
-        robot.deploy(program(tmp_path, "bad", CRASHING), DeployRequest("robot.py", {}, debug=debug))
+        robot.deploy(program(tmp_path, "bad", CRASHING), DeployRequest("robot.py", {}, debug=True))
         watched = started(robot)
         assert not watched.alive
         assert not watched.started
         assert watched.traceback is not None
         assert watched.traceback.splitlines()[0] == "Traceback (most recent call last):"
-        assert f'File "{computer.controller.layout.code}/robot.py", line 7, in __init__' in watched.traceback
+        assert f'File "{systemcore.controller.layout.code}/robot.py", line 7, in __init__' in watched.traceback
         assert watched.traceback.endswith("\nRuntimeError: no such motor")
         assert robot.rollback().release.number == 1
         watched = started(robot)

@@ -373,9 +373,10 @@ def test_each_command_in_the_pages_has_these_options(tmp_path: Path, monkeypatch
     for directory in ("slow", "leaving"):
         (tmp_path / directory).mkdir()
     monkeypatch.chdir(tmp_path)
-    text = "".join(page.read_text("utf-8") for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md")))
-    found = re.findall(r"^\$ pyfrc (.+)$", text, re.MULTILINE)
-    assert len(found) > 50
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    text = "".join(block for page in pages for kind in ("console", "sh") for block in blocks(str(page), kind))
+    found = re.findall(r"^(?:\$ )?pyfrc (?:-v )?(.+)$", text, re.MULTILINE)
+    assert len(found) > 60
     for words in found:
         name, *arguments = shlex.split(words, comments=True)
         parse(name, arguments)

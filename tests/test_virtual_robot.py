@@ -6,7 +6,6 @@ import json
 import os
 import re
 import select
-import shlex
 import signal
 import socket
 import sys
@@ -251,16 +250,6 @@ def test_a_command_gets_the_address_and_the_robot_ends_with_it(project: RobotPro
     check = "import socket, sys; print(socket.create_connection(sys.argv[1].split(':')).recv(4)); sys.exit(7)"
     result = project.run("virtual-robot", "--directory", directory, "--", sys.executable, "-c", check)
     assert (result.code, result.stdout) == (7, "b'SSH-'\n")
-
-
-@pytest.mark.slow
-def test_the_guides_example_deploys(project: RobotProject) -> None:
-    guide = (Path(__file__).parents[1] / "docs/how_to/deploy_without_a_robot.md").read_text("utf-8")
-    (example,) = re.findall(r"^```sh\npyfrc (virtual-robot .*)\n```$", guide, re.MULTILINE)
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    result = project.run(*shlex.split(example), env={"PATH": path})
-    assert result.code == 0, result.output
-    assert "the program runs" in result.output
 
 
 def test_other_users_of_the_computer_are_not_let_in(project: RobotProject, directory: Path) -> None:
