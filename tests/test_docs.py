@@ -330,42 +330,15 @@ def test_the_commands_in_the_measuring_guide_work(project) -> None:
         assert (project.path / file).is_file(), file
 
 
-FAST = """
-import math
-
-import wpilib
-
-
-class MyRobot(wpilib.TimedRobot):
-    def robotInit(self):
-        self.motor = wpilib.PWMSparkMax(0)
-        self.stick = wpilib.Joystick(0)
-        self.curve = [math.copysign(abs(each / 1000) ** 1.5, each) for each in range(-1000, 1001)]
-
-    def robotPeriodic(self):
-        wpilib.SmartDashboard.putNumber("battery", wpilib.RobotController.getBatteryVoltage())
-
-    def teleopPeriodic(self):
-        self.motor.set(self.curve[round(1000 * self.stick.getRawAxis(1)) + 1000])
-"""
-
-
 @pytest.mark.slow
-def test_the_examples_of_a_slow_and_a_fast_robot_work(make_project) -> None:
+def test_the_example_of_a_slow_robot_is_measured(make_project) -> None:
     document = "docs/how_to/loop_overruns.md"
-    project = make_project(files(document) | {"fast/robot.py": FAST})
-    medians = {}
-    (slow,) = commands(document)
-    for command in (slow, slow.replace("slow", "fast")):
-        program, *arguments = shlex.split(command)
-        assert program == "pyfrc"
-        directory = arguments[arguments.index("--project") + 1]
-        (project.path / directory / "pyproject.toml").write_text(SHORT_MATCHES, "utf-8")
-        result = project.run(*arguments)
-        assert result.code == 0, result.output
-        (median,) = re.findall(r"^  MyRobot.teleopPeriodic +([0-9.]+) ms", result.stdout, re.MULTILINE)
-        medians[directory] = float(median)
-    assert medians["fast"] < medians["slow"]
+    project = make_project(files(document))
+    (project.path / "slow/pyproject.toml").write_text(SHORT_MATCHES, "utf-8")
+    (command,) = commands(document)
+    result = project.run(*shlex.split(command)[1:])
+    assert result.code == 0, result.output
+    assert re.search(r"^  MyRobot.teleopPeriodic +[0-9.]+ ms", result.stdout, re.MULTILINE), result.output
 
 
 def test_each_command_in_the_pages_has_these_options(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
