@@ -321,13 +321,17 @@ def test_the_commands_that_take_the_place_of_others_exist(document: str) -> None
 
 
 @pytest.mark.slow
-def test_the_commands_in_the_measuring_guide_work(project) -> None:
-    for command in [*commands("docs/how_to/measure_coverage.md")[2:], *commands("docs/reference/profile.md")]:
-        result = project.run(*shlex.split(command)[1:])
-        assert result.code == 0, result.output
-    coverage, profile = ("htmlcov/index.html", "coverage.xml", "coverage.json"), ("json", "pstats")
-    for file in (*coverage, *(f"profile.{each}" for each in profile)):
-        assert (project.path / file).is_file(), file
+def test_the_measuring_guides_reports_are_written(project) -> None:
+    for command in commands("docs/how_to/measure_coverage.md"):
+        if "html" in command:
+            result = project.run(*shlex.split(command)[1:])
+            assert result.code == 0, result.output
+            for file in ("htmlcov/index.html", "coverage.xml"):
+                (project.path / file).unlink()
+    assert (project.path / "coverage.json").is_file()
+    (command,) = (each for each in commands("docs/reference/profile.md") if " fuzz " in each)
+    result = project.run(*shlex.split(command)[1:])
+    assert result.code == 0, result.output
 
 
 @pytest.mark.slow
