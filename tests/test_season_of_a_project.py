@@ -130,7 +130,7 @@ def test_so_do_the_doctor_and_plain_pytest(make_project: MakeProject) -> None:
     settings = load_season_settings(project.path / "pyproject.toml")
     first, *others = check_project(find_project(project.path), find_installed(), settings)
     assert first.text == f"pyproject.toml:2: robotpy_version is {THERE}, but wpilib {HERE} is installed here"
-    assert {each.topic for each in others}.isdisjoint({"program", "physics"}), "they would fail by this"
+    assert "program" not in {each.topic for each in others}, "its import would fail by this"
     with pytest.raises(pytest.UsageError, match=f"^pyproject.toml:2: robotpy_version is {THERE}, but wpilib"):
         autoload._register(None, project.path)  # type: ignore[arg-type]
 
