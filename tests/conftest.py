@@ -26,8 +26,6 @@ from spelling import IN_ANOTHER_FORM, motors_of, spell_copy, spelled
 from started_commands import StartedCommand, start_command
 
 if TYPE_CHECKING:
-    from roborio.local import Agents
-
     from pyfrc_core.config.sim_file import LoadedSimConfig
     from pyfrc_core.processes.spawn import StartedProcess
 
@@ -402,19 +400,19 @@ def hangup_ends_programs() -> Generator[None]:
 
 
 @pytest.fixture
+def in_memory() -> Generator[Path]:
+    """A directory in memory, where there is such a thing."""
+    from roborio.local import directory_in_memory
+
+    with directory_in_memory() as directory:
+        yield directory
+
+
+@pytest.fixture
 def patient_doctor(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have `pyfrc doctor` wait for a robot that is there, however busy this machine is."""
     for name in ("SEARCH_SECONDS", "CHECK_SECONDS"):
         monkeypatch.setattr(f"pyfrc_core.doctor.robot.{name}", 100.0)
-
-
-@pytest.fixture(scope="session")
-def agents() -> Generator[Agents]:
-    """Starts what runs on a robot, here."""
-    from roborio.local import Agents
-
-    with Agents() as agents:
-        yield agents
 
 
 LoadConfig = Callable[[str], "LoadedSimConfig"]

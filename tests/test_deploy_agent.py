@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from loops import for_each
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
-from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_memory, project_of
+from roborio.local import ROBOT_PY, LocalRobot, Processes, directory_in_memory, project_of
 
 from pyfrc_core import wheel_files
 from pyfrc_core.deploy import agent
@@ -51,14 +51,14 @@ def test_python_39_and_its_standard_library_are_enough(source: Path) -> None:
 
 @pytest.mark.parametrize("python", pythons().values(), ids=pythons())
 def test_it_runs_as_it_is_sent(robot: LocalRobot, tmp_path: Path, python: str) -> None:
-    agents = Processes(python)
+    robot.agents = Processes(python)
     project = project_of(tmp_path / "project", {"robot.py": ROBOT_PY, "Ü b/it's.txt": "x"})
-    robot.deploy(agents, project)
+    robot.deploy(project)
     (robot.home / "py/log.txt").write_text("written")
-    deployed = robot.deploy(agents, project_of(tmp_path / "project", {"robot.py": "# 2\n"}))
+    deployed = robot.deploy(project_of(tmp_path / "project", {"robot.py": "# 2\n"}))
     assert (deployed.release, deployed.files_sent) == (2, 1)
     assert robot.startable() == {"robot.py": b"# 2\n", "Ü b/it's.txt": b"x", "log.txt": b"written"}
-    session = robot.start(agents)
+    session = robot.start()
     assert session.rollback().release.number == 1
     session.close()
 
@@ -81,7 +81,8 @@ def test_memory(robot: LocalRobot, tmp_path: Path) -> None:
     for files_sent in (len(project.entries), 0, 1):
         if files_sent == 1:
             project = project_of(tmp_path / "project", {"path.json": b"[1.234567, 2.345679]\n" * 100_000})
-        session = robot.start(Processes())
+        robot.agents = Processes()
+        session = robot.start()
         assert session.deploy(project, DeployRequest("robot.py", {})).files_sent == files_sent
         peak = robot.channel.peak_memory()
         session.close()
@@ -118,17 +119,17 @@ def test_a_frame_that_unpacks_to_too_much() -> None:
 
 @settings(max_examples=10)
 @given(noise=st.binary(min_size=1, max_size=200))
-def test_noise_changes_nothing_on_the_robot(noise: bytes, agents: Agents) -> None:
+def test_noise_changes_nothing_on_the_robot(noise: bytes) -> None:
     with directory_in_memory() as directory:
         robot = LocalRobot.new(directory / "robot")
-        session = robot.start(agents)
+        session = robot.start()
         robot.channel.sendall(noise)
         session.close()
         assert list(robot.home.iterdir()) == []
 
 
-def test_an_invalid_request_is_reported(robot: LocalRobot, agents: Agents) -> None:
-    session = robot.start(agents)
+def test_an_invalid_request_is_reported(robot: LocalRobot) -> None:
+    session = robot.start()
     robot.channel.sendall(wire.message_frame({"op": "watch"}))
     with pytest.raises(DeployError, match=r"the agent on the robot has failed: .*seconds.*\n.*is complete"):
         session._stream.read_response(lambda fields: None)
@@ -137,28 +138,32 @@ def test_an_invalid_request_is_reported(robot: LocalRobot, agents: Agents) -> No
 
 
 def test_a_python_that_cannot_run_it(robot: LocalRobot) -> None:
+    robot.agents = Processes(shell="echo 'old python' >&2; exit 1")
     with pytest.raises(DeployError, match="the agent on the robot has ended: old python") as caught:
-        robot.start(Processes(shell="echo 'old python' >&2; exit 1"))
+        robot.start()
     assert not isinstance(caught.value, ConnectionFailedError)
 
 
 def test_a_python_that_is_too_old(robot: LocalRobot) -> None:
     program = agent_command("python3").partition(" -c '")[2].removesuffix("'")
     old = f"{sys.executable} -c 'import sys\nsys.version_info = (3, 8, 10)\n{program}'"
+    robot.agents = Processes(shell=old)
     with pytest.raises(DeployError, match=r"the robot's Python 3\.8 is too old: pyfrc needs 3\.9 or newer\n  Prep"):
-        robot.start(Processes(shell=old))
+        robot.start()
 
 
 def test_something_else_that_prints_before(robot: LocalRobot) -> None:
     """A login script's greeting, say."""
+    robot.agents = Processes(shell="echo 'Welcome to the robot'; exec cat >/dev/null")
     with pytest.raises(DeployError, match=r"the robot sent data that is not from pyfrc's agent: .*Welco"):
-        robot.start(Processes(shell="echo 'Welcome to the robot'; exec cat >/dev/null"))
+        robot.start()
 
 
 def test_the_link_is_cut_while_the_agent_is_sent(robot: LocalRobot) -> None:
+    robot.agents = Processes()
     for place in (1, 9, len(agent_package())):
         with pytest.raises(ConnectionFailedError, match=r"the connection to the robot was lost"):
-            robot.start(Processes(), cut_to_robot=place)
+            robot.start(cut_to_robot=place)
         assert list(robot.home.iterdir()) == []
 
 

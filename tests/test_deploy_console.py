@@ -12,7 +12,6 @@ import threading
 from collections.abc import Callable, Iterator
 
 import pytest
-from conftest import sampled
 from loops import for_each
 from ports import address_without_servers, refusing_port
 from roborio import PATIENCE, Roborio
@@ -55,10 +54,9 @@ def wait_for(command: StartedCommand, text: str) -> None:
     raise AssertionError(f"{text!r} was not printed, but:\n{''.join(shown)}")
 
 
-@pytest.mark.parametrize("option", sampled([[], ["--nc-ds"]], []), ids=["", "nc-ds"])
-def test_the_console_shows_what_the_program_prints_and_connects_again(option, robot: Roborio, make_project) -> None:
+def test_the_console_shows_what_the_program_prints_and_connects_again(robot: Roborio, make_project) -> None:
     project = make_project({"robot.py": ROBOT})
-    with running(project, "console", "--robot", robot.where, *option) as console:
+    with running(project, "console", "--robot", robot.where) as console:
         wait_for(console, "connected to")
         assert project.run("deploy", "--skip-tests", "--robot", robot.where).code == 0
         wait_for(console, "the words of our robot")
@@ -215,10 +213,9 @@ def test_the_imitated_driver_station_stays_disabled_and_survives_a_closed_connec
     assert packets == [bytes([number, 0, 1, 0, 0, 0]) for number in range(1, 6)]
 
 
-@pytest.mark.parametrize("option", sampled(["--netconsole", "--nc-ds"], "--nc-ds"))
-def test_a_deploy_may_end_in_the_console(option: str, robot: Roborio, make_project) -> None:
+def test_a_deploy_may_end_in_the_console(robot: Roborio, make_project) -> None:
     project = make_project({"robot.py": ROBOT})
-    with running(project, "deploy", "--skip-tests", "--robot", robot.where, option) as deploying:
+    with running(project, "deploy", "--skip-tests", "--robot", robot.where, "--nc-ds") as deploying:
         wait_for(deploying, "Deployed.")
         wait_for(deploying, "connected to")
         robot.run("/usr/local/frc/bin/frcKillRobot.sh", "-t", "-r")

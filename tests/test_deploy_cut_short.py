@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
-from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
+from roborio.local import ROBOT_PY, LocalRobot, project_of
 from test_deploy_lock import is_held
 
 from pyfrc_core.deploy import recovery_hints, target_connection
@@ -81,12 +81,10 @@ CUT_SHORT: dict[str, tuple[Callable[[AgentClient, Manifest], object], str, str]]
 
 
 @pytest.mark.parametrize("moment", CUT_SHORT)
-def test_ctrl_c_explains_the_robots_state(
-    moment: str, robot: LocalRobot, agents: Agents, project: Manifest, tmp_path: Path
-) -> None:
-    robot.deploy(agents, project)
+def test_ctrl_c_explains_the_robots_state(moment: str, robot: LocalRobot, project: Manifest, tmp_path: Path) -> None:
+    robot.deploy(project)
     do, what, remedy = CUT_SHORT[moment]
-    agent = robot.start(agents)
+    agent = robot.start()
     second = project_of(tmp_path / "project", {"robot.py": ROBOT_PY + "# 2\n"})
     with contextlib.closing(agent), pytest.raises(StoppedError) as caught:
         interrupt_after(do, agent, second)
@@ -120,11 +118,11 @@ def test_a_command_about_a_robot_explains_its_interruption(monkeypatch: pytest.M
     ids=["connection", "Ctrl-C"],
 )
 def test_an_end_before_the_robots_list_arrives_may_come_after_the_switch(
-    error: BaseException, code: int, robot: LocalRobot, agents: Agents, project: Manifest
+    error: BaseException, code: int, robot: LocalRobot, project: Manifest
 ) -> None:
     """The robot needs no contents of an unchanged project: it switches and restarts without waiting."""
-    robot.deploy(agents, project)
-    with contextlib.closing(robot.start(agents)) as session:
+    robot.deploy(project)
+    with contextlib.closing(robot.start()) as session:
 
         def read_message(parse: object) -> None:
             session._stream.read_response(lambda fields: None, lambda fields: None)  # until the robot has switched
@@ -149,10 +147,10 @@ def test_an_end_before_the_robots_list_arrives_may_come_after_the_switch(
     ids=["plan", "watched", "undeployed", "refused"],
 )
 def test_where_nothing_is_half_done_ctrl_c_is_just_that(
-    do: Callable[[AgentClient, Manifest], object], robot: LocalRobot, agents: Agents, project: Manifest
+    do: Callable[[AgentClient, Manifest], object], robot: LocalRobot, project: Manifest
 ) -> None:
-    robot.deploy(agents, project)
-    agent = robot.start(agents)
+    robot.deploy(project)
+    agent = robot.start()
     with contextlib.closing(agent), pytest.raises(KeyboardInterrupt):
         interrupt_after(do, agent, project)
 
@@ -161,9 +159,9 @@ def test_where_nothing_is_half_done_ctrl_c_is_just_that(
 
 
 def test_the_lock_is_held_until_the_program_was_started_and_watched(
-    robot: LocalRobot, agents: Agents, project: Manifest, tmp_path: Path
+    robot: LocalRobot, project: Manifest, tmp_path: Path
 ) -> None:
-    agent = robot.start(agents)
+    agent = robot.start()
     with contextlib.closing(agent):
         agent.deploy(project, REQUEST)
         assert is_held(robot.home / ".pyfrc/lock")

@@ -6,14 +6,12 @@ Cuts of power are in `core/test_agent_power_cuts`, at each step of the agent on 
 from __future__ import annotations
 
 import contextlib
-import itertools
 from collections import defaultdict
-from collections.abc import Generator
 from pathlib import Path
 
 import pytest
 from conftest import sampled
-from roborio.local import ROBOT_PY, Agents, Disk, LocalRobot, directory_in_memory, project_of
+from roborio.local import ROBOT_PY, Disk, LocalRobot, project_of
 
 from pyfrc_core.deploy.errors import DeployError
 from pyfrc_core.deploy.manifest import Manifest
@@ -43,29 +41,23 @@ WRITTEN: Files = {"log.txt": b"1\n2\n", "state/odometer": b"17"}
 _DEPLOYED_AGAIN: dict[tuple[str, str], set[Disk]] = defaultdict(set)
 
 
-@pytest.fixture(params=sampled(CONTROLLERS, CONTROLLERS[0]), ids=lambda each: each.name)
-def controller(request: pytest.FixtureRequest) -> ControllerKind:
-    return request.param
-
-
 class Scenario:
     """A robot as it is before a deploy, the deploy, and the programs that may be there after it."""
 
-    def __init__(self, name: str, directory: Path, agents: Agents, controller: ControllerKind) -> None:
+    def __init__(self, name: str, directory: Path, controller: ControllerKind) -> None:
         self._directory = directory
-        self._agents = agents
         self._before = LocalRobot.new(directory / "before", controller)
         self.project: Manifest = project_of(directory / "new", NEW)
         self.old, self.new = None, NEW
         if name != "first":
-            self._before.deploy(agents, project_of(directory / "old", OLD))
+            self._before.deploy(project_of(directory / "old", OLD))
             for path, content in WRITTEN.items():
                 file = self._before.home / "py" / path
                 file.parent.mkdir(parents=True, exist_ok=True)
                 file.write_bytes(content)
             self.old, self.new = {**OLD, **WRITTEN}, {**NEW, **WRITTEN}
         whole = self.robot()
-        whole.deploy(agents, self.project)
+        whole.deploy(self.project)
         assert whole.startable() == self.new
         self.channel = whole.channel
         self._deployed_again = _DEPLOYED_AGAIN[controller.name, name]
@@ -81,34 +73,32 @@ class Scenario:
         """
         robot = self.robot()
         with contextlib.suppress(DeployError):
-            robot.deploy(self._agents, self.project, **cut)
+            robot.deploy(self.project, **cut)
         started = robot.startable()
         assert started in (self.old, self.new), f"after {cut}, neither the old nor the new program would be started"
         disk = robot.disk()
         if disk in self._deployed_again:
             return started == self.new
         self._deployed_again.add(disk)
-        robot.deploy(self._agents, self.project)
+        robot.deploy(self.project)
         assert robot.startable() == self.new, f"after {cut}, and another deploy"
         assert {each.name for each in (robot.home / ".pyfrc").iterdir()} == {"lock", "releases"}
         assert not list(robot.home.glob(".*.new"))
         return started == self.new
 
 
-@pytest.fixture
-def directory() -> Generator[Path]:
-    with directory_in_memory() as directory:
-        yield directory
+#: Each scenario on one of the controllers, with the connection cut on the way to the robot, and back.
+CASES = [(*case, way) for case in (("update", CONTROLLERS[0]), ("first", CONTROLLERS[1])) for way in ("from", "to")]
 
 
 @pytest.mark.parametrize(
-    ("name", "way"), sampled(itertools.product(["first", "update"], ["to", "from"]), ("update", "from"))
+    ("name", "controller", "way"),
+    sampled(CASES, CASES[0]),
+    ids=lambda each: getattr(each, "name", each),
 )
-def test_cut_after_every_kth_byte(
-    name: str, way: str, directory: Path, agents: Agents, controller: ControllerKind
-) -> None:
+def test_cut_after_every_kth_byte(name: str, controller: ControllerKind, way: str, in_memory: Path) -> None:
     """More than 300 places in all, the last of them within the last bytes."""
-    scenario = Scenario(name, directory, agents, controller)
+    scenario = Scenario(name, in_memory, controller)
     total = scenario.channel.bytes_to_robot if way == "to" else scenario.channel.bytes_from_robot
     places = [total * number // 80 for number in range(80)] + [total - 1]
     assert len(set(places)) == 81

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from loops import for_each
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
-from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
+from roborio.local import ROBOT_PY, LocalRobot, project_of
 
 from pyfrc_core.deploy.agent.imports import is_there
 from pyfrc_core.deploy.errors import RefusedError
@@ -123,11 +123,11 @@ def test_the_current_directory_is_not_the_robots(tmp_path: Path, monkeypatch: py
 INVALID = "import wpilib\n\nprint 'hello'\n"
 
 
-def test_it_is_refused_before_anything_changes(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
-    robot.deploy(agents, project_of(tmp_path / "old", {"robot.py": ROBOT_PY}))
+def test_it_is_refused_before_anything_changes(robot: LocalRobot, tmp_path: Path) -> None:
+    robot.deploy(project_of(tmp_path / "old", {"robot.py": ROBOT_PY}))
     project = project_of(tmp_path / "new", {"robot.py": "import arm\n", "arm.py": INVALID})
     before = robot.startable()
-    session = robot.start(agents)
+    session = robot.start()
     with pytest.raises(RefusedError, match=r"arm\.py:3: the robot's Python 3\.\d+ cannot compile this: ."):
         session.deploy(project, DeployRequest("robot.py", {}, program=["robot.py", "arm.py"]))
     assert session.info().current == 1
@@ -136,22 +136,16 @@ def test_it_is_refused_before_anything_changes(robot: LocalRobot, agents: Agents
     assert not (robot.home / ".pyfrc/incoming").exists()
 
 
-def test_a_file_that_the_program_does_not_use_may_be_anything(
-    robot: LocalRobot, agents: Agents, tmp_path: Path
-) -> None:
+def test_a_file_that_the_program_does_not_use_may_be_anything(robot: LocalRobot, tmp_path: Path) -> None:
     project = project_of(tmp_path, {"robot.py": ROBOT_PY, "old/robot.py": INVALID})
-    session = robot.start(agents)
+    session = robot.start()
     assert session.deploy(project, DeployRequest("robot.py", {}, program=["robot.py"])).release == 1
     session.close()
 
 
-def test_the_robots_own_python_decides(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
+def test_the_robots_own_python_decides(robot: LocalRobot, tmp_path: Path) -> None:
     """The first message has the modules; the response has those that the robot cannot find."""
-    from pyfrc_core.deploy.agent_client import AgentClient
-
-    robot._agents, robot._options = agents, {}
-    hello = {"root": str(robot.root), "modules": ["wpilib", "no_such", "json"]}
-    session = AgentClient.start(robot, hello=hello)
+    session = robot.start(modules=["wpilib", "no_such", "json"])
     assert session.facts.missing_modules == ("no_such",)
     assert session.facts.packages["wpilib"] == session.facts.wpilib
     session.close()

@@ -1,4 +1,4 @@
-"""Projects of thousands of files: keep-alive messages, linear work, limited memory."""
+"""Projects of thousands of files: keep-alive messages, limited memory. Linear work is in `core/test_agent_deploy`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
-from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
+from roborio.local import ROBOT_PY, LocalRobot, project_of
 
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.compiling import Compiler
@@ -113,15 +113,15 @@ WORK: dict[str, tuple[Callable[[AgentClient, Manifest, Callable[[str, int, int],
 }
 
 
-def test_keep_alive_messages_during_all_work(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
+def test_keep_alive_messages_during_all_work(robot: LocalRobot, tmp_path: Path) -> None:
     for content in ("1", "22", "333"):
-        robot.deploy(agents, large_project(tmp_path / "project", 10, **{"a.txt": content}))
+        robot.deploy(large_project(tmp_path / "project", 10, **{"a.txt": content}))
     copies = {"a.txt": os.urandom(300_000), "b.txt": b"333", "new.py": "x = 17\n"}
     project = large_project(tmp_path / "project", 10, **copies)
     seen: list[tuple[str, int, int]] = []
     for what, (do, expected) in WORK.items():
         seen.clear()
-        agent = robot.start(agents, all_signs=True)
+        agent = robot.start(all_signs=True)
         do(agent, project, lambda *sign: seen.append(sign))
         agent.close()
         assert {phase for phase, _, _ in seen} >= expected, what
@@ -139,58 +139,11 @@ def test_work_as_the_terminal_shows_it() -> None:
     assert describe_work("a word of a newer agent", 1, 2) == "working"
 
 
-# -- linear work -------------------------------------------------------------------------------------------------------
-
-
-def calls_of(robot: LocalRobot, agents: Agents, do: Callable[[AgentClient], object]) -> int:
-    agent = robot.start(agents, calls=True)
-    do(agent)
-    agent.close()
-    assert robot.channel.steps is not None
-    return robot.channel.steps
-
-
-def test_the_work_is_linear_in_the_files_of_a_directory(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
-    """The calls that the agent makes: for 80 files more they grow as for 40 before."""
-    counts = []
-    for files in (40, 80, 160):
-        there = robot.copy(robot.root.with_name(str(files)))
-        first = large_project(tmp_path / f"first {files}", files)
-        changed = large_project(tmp_path / f"changed {files}", files, **{"generated/m7.py": "x = 'changed'\n"})
-        steps: list[Callable[[AgentClient], object]] = [
-            lambda agent, project=first: agent.deploy(project, REQUEST),  # type: ignore[misc]
-            lambda agent, project=first: agent.deploy(project, REQUEST),  # type: ignore[misc]
-            lambda agent, project=changed: agent.deploy(project, REQUEST),  # type: ignore[misc]
-            lambda agent, project=first: agent.plan(project),  # type: ignore[misc]
-            lambda agent: agent.rollback(),
-            lambda agent: agent.info(),
-            lambda agent: agent.undeploy(),
-        ]
-        counts.append([calls_of(there, agents, step) for step in steps])
-    for few, some, many in zip(*counts, strict=True):
-        assert many - some <= 2.2 * (some - few) + 200, counts
-
-
-def test_an_unchanged_file_is_read_once(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
-    """Only the program in place is looked through, where it has all: earlier releases cost nothing."""
-    project = large_project(tmp_path / "project", 100)
-
-    def calls() -> int:
-        return calls_of(robot, agents, lambda agent: agent.plan(project))
-
-    robot.deploy(agents, project)
-    one_release = calls()
-    for content in ("1", "2"):
-        robot.deploy(agents, large_project(tmp_path / "other", 100, **{"a.txt": content}))
-    robot.deploy(agents, project)
-    assert calls() < 1.2 * one_release
-
-
-def test_sources_are_asked_for_first(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
+def test_sources_are_asked_for_first(robot: LocalRobot, tmp_path: Path) -> None:
     """They are compiled while the rest is received."""
     files = {"a.onnx": "1", "z/b.py": "2", "robot.py": ROBOT_PY, "c.json": "3"}
     project = project_of(tmp_path / "project", files)
-    agent = robot.start(agents)
+    agent = robot.start()
     asked: list[str] = []
     send = agent._send_contents
 

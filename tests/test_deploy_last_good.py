@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
-from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
+from roborio.local import ROBOT_PY, LocalRobot, project_of
 
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.release_record import LONG
@@ -23,10 +23,10 @@ DeployAndWatch = Callable[[int, "bool | None"], Deployed]
 
 
 @pytest.fixture
-def deploy(robot: LocalRobot, agents: Agents, tmp_path: Path) -> DeployAndWatch:
+def deploy(robot: LocalRobot, tmp_path: Path) -> DeployAndWatch:
     def deploy(number: int, runs: bool | None) -> Deployed:
         project = project_of(tmp_path / "project", {"robot.py": f"{ROBOT_PY}# {number}\n"})
-        with contextlib.closing(robot.start(agents, runs=runs)) as session:
+        with contextlib.closing(robot.start(runs=runs)) as session:
             deployed = session.deploy(project, DeployRequest("robot.py", {}))
             if runs is not None:
                 session.restart()
@@ -36,8 +36,8 @@ def deploy(robot: LocalRobot, agents: Agents, tmp_path: Path) -> DeployAndWatch:
     return deploy
 
 
-def facts_of(robot: LocalRobot, agents: Agents) -> RobotFacts:
-    with contextlib.closing(robot.start(agents)) as session:
+def facts_of(robot: LocalRobot) -> RobotFacts:
+    with contextlib.closing(robot.start()) as session:
         return session.facts
 
 
@@ -45,26 +45,24 @@ def numbers(facts: RobotFacts) -> list[int]:
     return [each.number for each in facts.releases]
 
 
-def test_crashes_do_not_push_out_the_last_release_that_ran(
-    robot: LocalRobot, agents: Agents, deploy: DeployAndWatch
-) -> None:
+def test_crashes_do_not_push_out_the_last_release_that_ran(robot: LocalRobot, deploy: DeployAndWatch) -> None:
     deploy(1, True)
     good = robot.startable()
     assert [deploy(number, False).fallback for number in (2, 3, 4, 5)] == [1, 1, 1, 1]
-    facts = facts_of(robot, agents)
+    facts = facts_of(robot)
     assert numbers(facts) == [1, 4, 5], "it is one of the three"
     assert [(each.ran, each.ended) for each in facts.releases] == [(True, False), (False, True), (False, True)]
-    with contextlib.closing(robot.start(agents)) as session:
+    with contextlib.closing(robot.start()) as session:
         assert session.rollback().release.number == 1
     assert robot.startable() == good
 
 
 def test_back_to_the_one_before_if_it_ran_and_else_to_the_newest_that_did(
-    robot: LocalRobot, agents: Agents, deploy: DeployAndWatch
+    robot: LocalRobot, deploy: DeployAndWatch
 ) -> None:
     assert deploy(1, True).fallback is None
     assert deploy(2, True).fallback == 1
-    with contextlib.closing(robot.start(agents)) as session:
+    with contextlib.closing(robot.start()) as session:
         assert session.rollback().release.number == 1
     assert deploy(3, False).fallback == 1, "release 2 ran as well, and was given up"
     assert deploy(3, False).fallback == 1, "the same again"
@@ -72,7 +70,7 @@ def test_back_to_the_one_before_if_it_ran_and_else_to_the_newest_that_did(
 
 
 def test_the_newest_that_ran_although_an_older_one_was_watched_for_longer(
-    robot: LocalRobot, agents: Agents, deploy: DeployAndWatch
+    robot: LocalRobot, deploy: DeployAndWatch
 ) -> None:
     """Deploys that were interrupted during the watch have no verdict."""
     releases = Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None))
@@ -81,12 +79,12 @@ def test_the_newest_that_ran_although_an_older_one_was_watched_for_longer(
         releases.update_record(number, lambda record, lasted=lasted: {**record, "lasted": lasted})
     deploy(3, None)
     deploy(4, None)
-    with contextlib.closing(robot.start(agents)) as session:
+    with contextlib.closing(robot.start()) as session:
         assert [each.ran for each in session.facts.releases] == [True, True, False, False]
         assert session.rollback().release.number == 2
 
 
-def test_it_makes_no_room_on_a_small_disk(robot: LocalRobot, agents: Agents, deploy: DeployAndWatch) -> None:
+def test_it_makes_no_room_on_a_small_disk(robot: LocalRobot, deploy: DeployAndWatch) -> None:
     for number, runs in ((1, True), (2, True), (3, False), (4, False)):
         deploy(number, runs)
     releases = Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None))
@@ -95,7 +93,7 @@ def test_it_makes_no_room_on_a_small_disk(robot: LocalRobot, agents: Agents, dep
 
 
 def test_the_release_that_ran_for_long_is_kept_when_others_ran_for_seconds(
-    robot: LocalRobot, agents: Agents, deploy: DeployAndWatch
+    robot: LocalRobot, deploy: DeployAndWatch
 ) -> None:
     releases = Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None))
     for number in range(1, 6):
@@ -103,4 +101,4 @@ def test_the_release_that_ran_for_long_is_kept_when_others_ran_for_seconds(
         seen = {"lasted": LONG if number == 1 else 20.0, "ended": number < 5}
         releases.update_record(number, lambda record, seen=seen: {**record, **seen})
     assert deployed.fallback == 1
-    assert numbers(facts_of(robot, agents)) == [1, 4, 5]
+    assert numbers(facts_of(robot)) == [1, 4, 5]

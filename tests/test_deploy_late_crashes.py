@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from loops import for_each
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
-from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
+from roborio.local import ROBOT_PY, LocalRobot, project_of
 
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.program import _reports_start
@@ -101,18 +101,16 @@ def test_a_damaged_record_is_no_record(garbage: bytes, place: int) -> None:
 
 
 @pytest.mark.parametrize("number", [2, 3])
-def test_a_damaged_record_prevents_no_deploy_and_no_rollback(
-    robot: LocalRobot, agents: Agents, tmp_path: Path, number: int
-) -> None:
+def test_a_damaged_record_prevents_no_deploy_and_no_rollback(robot: LocalRobot, tmp_path: Path, number: int) -> None:
     for each in (1, 2, 3):
-        robot.deploy(agents, project_of(tmp_path / "project", {"robot.py": f"{ROBOT_PY}# {each}\n"}))
+        robot.deploy(project_of(tmp_path / "project", {"robot.py": f"{ROBOT_PY}# {each}\n"}))
     (robot.home / f".pyfrc/releases/{number}.json").write_bytes(b'{"commands": {}, "files": [1]}')
-    with closing(robot.start(agents)) as client:
+    with closing(robot.start()) as client:
         assert {each.number: each.damaged for each in client.facts.releases} == {
             each: each == number for each in (1, 2, 3)
         }
         assert client.rollback().release.number == (1 if number == 2 else 2)
-    robot.deploy(agents, project_of(tmp_path / "project", {"robot.py": f"{ROBOT_PY}# 4\n"}))
+    robot.deploy(project_of(tmp_path / "project", {"robot.py": f"{ROBOT_PY}# 4\n"}))
     assert robot.startable() == {"robot.py": f"{ROBOT_PY}# 4\n".encode()}
 
 

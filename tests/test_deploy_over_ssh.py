@@ -128,20 +128,20 @@ def test_the_administrator_deploys_for_the_program_s_user(roborio: Roborio, tmp_
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("debug", [False, True])
 def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
-    computer: Computer, tmp_path: Path, debug: bool
+    systemcore: Systemcore, tmp_path: Path
 ) -> None:
-    with agent(computer) as robot:
+    """On a roboRIO, the command shows it (`test_deploy_command`)."""
+    with agent(systemcore) as robot:
         robot.deploy(program(tmp_path, "good"), DeployRequest("robot.py", {}))
         assert started(robot).alive
-        robot.deploy(program(tmp_path, "bad", CRASHING), DeployRequest("robot.py", {}, debug=debug))
+        robot.deploy(program(tmp_path, "bad", CRASHING), DeployRequest("robot.py", {}, debug=True))
         watched = started(robot)
         assert not watched.alive
         assert not watched.started
         assert watched.traceback is not None
         assert watched.traceback.splitlines()[0] == "Traceback (most recent call last):"
-        assert f'File "{computer.controller.layout.code}/robot.py", line 7, in __init__' in watched.traceback
+        assert f'File "{systemcore.controller.layout.code}/robot.py", line 7, in __init__' in watched.traceback
         assert watched.traceback.endswith("\nRuntimeError: no such motor")
         assert robot.rollback().release.number == 1
         watched = started(robot)
@@ -150,10 +150,11 @@ def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
 
 
 @pytest.mark.slow
-def test_a_full_disk(kind: Kind, tmp_path: Path) -> None:
+def test_a_full_disk(tmp_path: Path) -> None:
+    require_roborio()
     old = program(tmp_path, "old", **{"data.bin": b"1" * 500_000})
     large = program(tmp_path, "large", **{f"{number}.bin": b"%d" % number * 500_000 for number in range(8)})
-    with kind(disk_size="3m") as computer:
+    with Roborio(disk_size="3m") as computer:
         disk = LocalRobot(computer.disk, computer.controller)
         deploy(computer, old)
         before = disk.startable()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
-from roborio.local import Agents, LocalRobot, project_of
+from roborio.local import LocalRobot, project_of
 
 from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.errors import RefusedError
@@ -20,11 +20,11 @@ def counting(robot: LocalRobot) -> Path:
     return restarts
 
 
-def test_one_request_for_both(agents: Agents, robot: LocalRobot, tmp_path: Path) -> None:
+def test_one_request_for_both(robot: LocalRobot, tmp_path: Path) -> None:
     restarts = counting(robot)
     for number in range(1, 6):
         project = project_of(tmp_path / "project", {"robot.py": f"# {number}\n"})
-        session = robot.start(agents)
+        session = robot.start()
         deployed = session.deploy(project, DeployRequest("robot.py", {}, restart=True))
         assert deployed.release == number
         assert session.restart() is False
@@ -33,9 +33,9 @@ def test_one_request_for_both(agents: Agents, robot: LocalRobot, tmp_path: Path)
         session.close()
 
 
-def test_again_by_a_request(agents: Agents, robot: LocalRobot, tmp_path: Path) -> None:
+def test_again_by_a_request(robot: LocalRobot, tmp_path: Path) -> None:
     restarts = counting(robot)
-    session = robot.start(agents)
+    session = robot.start()
     session.deploy(project_of(tmp_path / "project", {"robot.py": ""}), DeployRequest("robot.py", {}, restart=True))
     session.restart()
     session.restart()
@@ -43,10 +43,10 @@ def test_again_by_a_request(agents: Agents, robot: LocalRobot, tmp_path: Path) -
     assert restarts.read_text() == "-t -r\n" * 2
 
 
-def test_a_deploy_that_is_refused_restarts_nothing(agents: Agents, robot: LocalRobot, tmp_path: Path) -> None:
+def test_a_deploy_that_is_refused_restarts_nothing(robot: LocalRobot, tmp_path: Path) -> None:
     restarts = counting(robot)
     project = project_of(tmp_path / "project", {"robot.py": "1 +\n"})
-    session = robot.start(agents)
+    session = robot.start()
     with pytest.raises(RefusedError):
         session.deploy(project, DeployRequest("robot.py", {}, program=["robot.py"], restart=True))
     assert session.info().current is None

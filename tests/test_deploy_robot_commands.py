@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 
 import click
+import pytest
 from click.testing import CliRunner
 from conftest import MakeProject
 from loops import for_each
 
 from pyfrc_cli.robot_options import errors_shown, json_option, robot_options, user_interface
-from pyfrc_core.deploy import recovery_hints, starting
+from pyfrc_core.deploy import recovery_hints, session, starting
 from pyfrc_core.deploy.facts import StartState
 from pyfrc_core.deploy.progress import with_robot_option
 from pyfrc_core.deploy.team import RobotChoice
@@ -78,6 +79,17 @@ def test_a_command_that_names_a_robot_already_stays_as_it_is() -> None:
 
 def test_an_address_is_quoted_for_the_shell() -> None:
     assert with_robot_option("pyfrc console", "a;b", None) == "pyfrc console --robot 'a;b'"
+
+
+def test_a_deploy_may_end_in_the_console(make_project: MakeProject, monkeypatch: pytest.MonkeyPatch) -> None:
+    project = make_project({"robot.py": ""})
+    shown: list[bool] = []
+    monkeypatch.setattr(session, "deploy", lambda *asked: None)
+    monkeypatch.setattr(session, "show_console", lambda project, choice, talk, nc_ds, address: shown.append(nc_ds))
+    for options, expected in (([], []), (["--nc"], [False]), (["--netconsole"], [False]), (["--nc-ds"], [True])):
+        shown.clear()
+        assert project.run_here("deploy", *options).code == 0
+        assert shown == expected, options
 
 
 #: An address is enough for these outside of a project.

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
-from roborio.local import ROBOT_PY, Agents, Cut, LocalRobot, project_of
+from roborio.local import ROBOT_PY, Cut, LocalRobot, project_of
 
 from pyfrc_core.deploy import recovery_hints
 from pyfrc_core.deploy.agent.host import age_of
@@ -253,10 +253,10 @@ def changed(project: Manifest) -> Manifest:
     return project_of(project.entries[0].file.parent, {"robot.py": ROBOT_PY + "# 2\n"})
 
 
-def test_a_restart_that_fails_after_the_change(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
-    robot.deploy(agents, project)
+def test_a_restart_that_fails_after_the_change(robot: LocalRobot, project: Manifest) -> None:
+    robot.deploy(project)
     (robot.root / "usr/local/frc/bin/frcKillRobot.sh").chmod(0o644)
-    with contextlib.closing(robot.start(agents)) as agent:
+    with contextlib.closing(robot.start()) as agent:
         agent.deploy(changed(project), REQUEST)
         with failing(agent, 4, "; release 2 is on the robot"):
             agent.restart()
@@ -267,42 +267,42 @@ def test_a_restart_that_fails_after_the_change(robot: LocalRobot, agents: Agents
             agent.undeploy()
 
 
-def test_a_failure_right_after_the_change(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
+def test_a_failure_right_after_the_change(robot: LocalRobot, project: Manifest) -> None:
     (robot.root / "tmp").rmdir()
     (robot.root / "tmp").write_text("no directory, so that debugging cannot be switched on")
-    with contextlib.closing(robot.start(agents)) as agent, failing(agent, 4, "; release 1 is on the robot"):
+    with contextlib.closing(robot.start()) as agent, failing(agent, 4, "; release 1 is on the robot"):
         agent.deploy(project, DeployRequest("robot.py", {}, debug=True))
 
 
-def test_a_link_that_is_lost_from_the_change_on(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
+def test_a_link_that_is_lost_from_the_change_on(robot: LocalRobot, project: Manifest) -> None:
     def lose(phase: str, done: int, total: int) -> None:
         if phase == "switch":
             raise ConnectionFailedError("the connection to the robot was lost")
 
     with pytest.raises(ConnectionFailedError) as caught:
-        robot.deploy(agents, project, cut_to_robot=100)
+        robot.deploy(project, cut_to_robot=100)
     assert caught.value.exit_code == 1
     with (
-        contextlib.closing(robot.start(agents)) as agent,
+        contextlib.closing(robot.start()) as agent,
         failing(agent, 4, "; the robot was switching"),
     ):
         agent.deploy(project, REQUEST, lose)
 
 
 def test_whatever_is_lost_with_a_link_a_changed_robot_is_not_called_unchanged(
-    robot: LocalRobot, agents: Agents, project: Manifest, tmp_path: Path
+    robot: LocalRobot, project: Manifest, tmp_path: Path
 ) -> None:
     """The report that the switch begins may be lost, too; until the last contents are sent, there is no switch."""
     project = project_of(tmp_path / "project", {"robot.py": ROBOT_PY, "noise.bin": os.urandom(200_000)})
     whole = robot.copy(tmp_path / "whole")
-    with contextlib.closing(whole.start(agents)) as agent:
+    with contextlib.closing(whole.start()) as agent:
         before = whole.channel.bytes_from_robot
         agent.deploy(project, REQUEST)
     codes = set()
 
     def cut(**cut: int) -> None:
         tried = robot.copy(tmp_path / "tried")
-        with contextlib.suppress(DeployError), contextlib.closing(tried.start(agents, **cut)) as agent:
+        with contextlib.suppress(DeployError), contextlib.closing(tried.start(**cut)) as agent:
             try:
                 with explain_interruption(agent):
                     agent.deploy(project, REQUEST)
@@ -320,27 +320,27 @@ def test_whatever_is_lost_with_a_link_a_changed_robot_is_not_called_unchanged(
 # -- the agent ---------------------------------------------------------------------------------------------------------
 
 
-def test_going_back_on_a_robot_without_releases(robot: LocalRobot, agents: Agents) -> None:
-    with contextlib.closing(robot.start(agents)) as agent, pytest.raises(RefusedError) as caught:
+def test_going_back_on_a_robot_without_releases(robot: LocalRobot) -> None:
+    with contextlib.closing(robot.start()) as agent, pytest.raises(RefusedError) as caught:
         agent.rollback()
     assert caught.value.message == "there is no earlier release on the robot to go back to"
     assert caught.value.remedy == "It has no releases yet: each pyfrc deploy adds one."
 
 
 def test_going_back_leaves_what_another_computer_has_deployed_meanwhile(
-    robot: LocalRobot, agents: Agents, project: Manifest, talk: UserInterface
+    robot: LocalRobot, project: Manifest, talk: UserInterface
 ) -> None:
     """While the user is asked about the rollback, the lock is free."""
-    robot.deploy(agents, project)
+    robot.deploy(project)
 
     def yes(question: str) -> bool:
         assert question.endswith("Go back to release 1?")
         theirs = project_of(project.entries[0].file.parent, {"robot.py": ROBOT_PY + "# theirs\n"})
-        assert robot.deploy(agents, theirs).release == 3
+        assert robot.deploy(theirs).release == 3
         return True
 
     asking = UserInterface(talk.progress, Questions(text=str, yes=yes))
-    with contextlib.closing(robot.start(agents, runs=False)) as agent:
+    with contextlib.closing(robot.start(runs=False)) as agent:
         agent.deploy(changed(project), REQUEST)
         with failing(agent, 3, "the robot has release 3, no longer release 2") as caught:
             start(agent, asking, 1)
@@ -350,11 +350,11 @@ def test_going_back_leaves_what_another_computer_has_deployed_meanwhile(
 
 
 def test_a_link_that_is_lost_while_going_back_does_not_suggest_to_deploy_again(
-    robot: LocalRobot, agents: Agents, project: Manifest, talk: UserInterface
+    robot: LocalRobot, project: Manifest, talk: UserInterface
 ) -> None:
     """That would deploy the crashing program."""
-    robot.deploy(agents, project)
-    with contextlib.closing(robot.start(agents, runs=False)) as agent:
+    robot.deploy(project)
+    with contextlib.closing(robot.start(runs=False)) as agent:
         agent.deploy(changed(project), REQUEST)
 
         def sendall(data: bytes) -> None:
@@ -371,13 +371,13 @@ def test_a_link_that_is_lost_while_going_back_does_not_suggest_to_deploy_again(
 
 
 def test_a_process_that_the_kill_script_leaves_in_the_background_is_not_waited_for(
-    robot: LocalRobot, agents: Agents, project: Manifest, tmp_path: Path
+    robot: LocalRobot, project: Manifest, tmp_path: Path
 ) -> None:
     """It keeps the script's output open."""
     left = tmp_path / "left"
     script = robot.root / "usr/local/frc/bin/frcKillRobot.sh"
     script.write_text(f"#!/bin/sh\nsleep 600 &\necho $! > {left}\n")
-    with contextlib.closing(robot.start(agents)) as agent:
+    with contextlib.closing(robot.start()) as agent:
         agent.deploy(project, REQUEST)
         agent.restart()
     process = int(left.read_text())

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
-from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
+from roborio.local import ROBOT_PY, LocalRobot, directory_in_memory, project_of
 
 from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.errors import RefusedError
@@ -55,10 +55,8 @@ def contents(directory: Path) -> dict[str, bytes | str]:
     }
 
 
-def test_first_deploy_makes_what_other_tools_and_the_robot_expect(
-    robot: LocalRobot, project: Project, agents: Agents
-) -> None:
-    deployed = robot.deploy(agents, project.manifest)
+def test_first_deploy_makes_what_other_tools_and_the_robot_expect(robot: LocalRobot, project: Project) -> None:
+    deployed = robot.deploy(project.manifest)
     assert (deployed.release, deployed.previous, deployed.taken, deployed.unchanged) == (1, None, None, False)
     assert deployed.files_sent == 3
     py = robot.home / "py"
@@ -70,56 +68,54 @@ def test_first_deploy_makes_what_other_tools_and_the_robot_expect(
     assert [each.name.endswith(".opt-1.pyc") for each in (py / "__pycache__").iterdir()] == [True, True]
 
 
-def test_debugging(robot: LocalRobot, project: Project, agents: Agents) -> None:
+def test_debugging(robot: LocalRobot, project: Project) -> None:
     """The robot forgets /tmp when it is switched off: robotCommand has to start the program then."""
-    robot.deploy(agents, project.manifest, debug=True)
+    robot.deploy(project.manifest, debug=True)
     command = (robot.home / "robotDebugCommand").read_text()
     assert command == f"{START} -m robotpy --main /home/lvuser/py/robot.py -v run\n"
     assert (robot.root / "tmp/frcdebug").exists()
     (robot.root / "tmp/frcdebug").unlink()
     assert robot.startable() is not None
-    robot.deploy(agents, project.manifest, debug=True)
-    robot.deploy(agents, project.manifest)
+    robot.deploy(project.manifest, debug=True)
+    robot.deploy(project.manifest)
     assert not (robot.root / "tmp/frcdebug").exists()
 
 
-def test_only_what_changed_is_sent_and_the_rest_is_linked(
-    robot: LocalRobot, project: Project, agents: Agents, tmp_path: Path
-) -> None:
+def test_only_what_changed_is_sent_and_the_rest_is_linked(robot: LocalRobot, project: Project, tmp_path: Path) -> None:
     py = robot.home / "py"
-    robot.deploy(agents, project.manifest)
+    robot.deploy(project.manifest)
     inode = (py / "arm.py").stat().st_ino
     project.write("robot.py", ROBOT_PY + "# changed\n").remove("deploy/path.json")
-    deployed = robot.deploy(agents, project.manifest)
+    deployed = robot.deploy(project.manifest)
     assert (deployed.release, deployed.previous, deployed.files_sent) == (2, 1, 1)
     assert (py / "arm.py").stat().st_ino == inode
     assert robot.startable() == {"robot.py": (ROBOT_PY + "# changed\n").encode(), "arm.py": b"LENGTH = 1\n"}
     assert len(list((py / "__pycache__").iterdir())) == 2
     assert not (py / "deploy").exists()
     # The same again is no new release: three of them would push out the last program that worked.
-    deployed = robot.deploy(agents, project.manifest)
+    deployed = robot.deploy(project.manifest)
     assert (deployed.release, deployed.unchanged, deployed.bytes_sent) == (2, True, 0)
     # A file that was moved, and one that can be run now.
     project.remove("arm.py").write("lib/lever.py", "LENGTH = 1\n")
     (tmp_path / "project/robot.py").chmod(0o755)
-    assert robot.deploy(agents, project.manifest).files_sent == 0
+    assert robot.deploy(project.manifest).files_sent == 0
     assert (py / "lib/lever.py").read_text() == "LENGTH = 1\n"
     assert (py / "robot.py").stat().st_mode & 0o777 == 0o755
     # A file that was changed on the robot.
-    robot.deploy(agents, project.write("path.json", "[1]").manifest)
+    robot.deploy(project.write("path.json", "[1]").manifest)
     (py / "path.json").write_text("[9]")
-    deployed = robot.deploy(agents, project.manifest)
+    deployed = robot.deploy(project.manifest)
     assert (deployed.unchanged, deployed.files_sent) == (False, 1)
     assert (py / "path.json").read_text() == "[1]"
 
 
-def test_rollback(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    robot.deploy(agents, project.manifest)
+def test_rollback(robot: LocalRobot, project: Project) -> None:
+    robot.deploy(project.manifest)
     first = robot.startable()
-    robot.deploy(agents, project.remove("arm.py").write("robot.py", "# 2\n").manifest)
+    robot.deploy(project.remove("arm.py").write("robot.py", "# 2\n").manifest)
     (robot.home / "py/robot.py").write_text("# 9\n")
-    robot.deploy(agents, project.write("robot.py", "# 3\n").manifest, debug=True)
-    session = robot.start(agents)
+    robot.deploy(project.write("robot.py", "# 3\n").manifest, debug=True)
+    session = robot.start()
     gone_back = session.rollback()
     assert (gone_back.release.number, gone_back.previous, gone_back.changed) == (2, 3, ("robot.py",))
     assert not (robot.root / "tmp/frcdebug").exists()
@@ -146,14 +142,14 @@ def other_tools_program(robot: LocalRobot, command: str = OTHER_COMMAND) -> None
     (robot.home / "robotCommand").write_text(command)
 
 
-def test_another_tools_program_becomes_a_release(robot: LocalRobot, project: Project, agents: Agents) -> None:
+def test_another_tools_program_becomes_a_release(robot: LocalRobot, project: Project) -> None:
     other_tools_program(robot)
-    deployed = robot.deploy(agents, project.manifest)
+    deployed = robot.deploy(project.manifest)
     assert (deployed.release, deployed.taken) == (2, 1)
     py = robot.home / "py"
     assert not (py / "sub/helper.py").exists()
     assert (py / "match.log").read_text() == "written by the program\n"
-    session = robot.start(agents)
+    session = robot.start()
     taken = session.rollback().release
     assert (taken.number, taken.taken, taken.deploy_json) == (1, True, {"deploy-host": "theirs"})
     assert (robot.home / "robotCommand").read_text() == OTHER_COMMAND
@@ -162,14 +158,14 @@ def test_another_tools_program_becomes_a_release(robot: LocalRobot, project: Pro
     session.close()
 
 
-def test_what_the_program_writes_survives(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    robot.deploy(agents, project.manifest)
+def test_what_the_program_writes_survives(robot: LocalRobot, project: Project) -> None:
+    robot.deploy(project.manifest)
     py = robot.home / "py"
     (py / "logs/empty").mkdir(parents=True)
     (py / "logs/1.csv").write_text("1\n")
     (py / "latest").symlink_to("logs/1.csv")
     open_log = (py / "open.log").open("a")
-    session = robot.start(agents)
+    session = robot.start()
     session.deploy(project.write("robot.py", "# 2\n").manifest, DeployRequest("robot.py", {}))
     # Until it is restarted, the old program goes on, with the files and directories that it has open.
     old = robot.home / ".pyfrc/releases/1"
@@ -186,19 +182,17 @@ def test_what_the_program_writes_survives(robot: LocalRobot, project: Project, a
     assert (py / "logs/empty").is_dir()
 
 
-def test_rollback_keeps_what_the_program_wrote_in_either_release(
-    robot: LocalRobot, project: Project, agents: Agents
-) -> None:
-    robot.deploy(agents, project.manifest)
+def test_rollback_keeps_what_the_program_wrote_in_either_release(robot: LocalRobot, project: Project) -> None:
+    robot.deploy(project.manifest)
     py, first = robot.home / "py", robot.home / ".pyfrc/releases/1"
     for name in ("log.txt", "same.txt", "one.txt"):
         (py / name).write_text(f"1: {name}" if name != "same.txt" else "same")
-    robot.deploy(agents, project.write("robot.py", "# 2\n").manifest)
+    robot.deploy(project.write("robot.py", "# 2\n").manifest)
     for name in ("log.txt", "same.txt"):  # as programs write that log to a new file each time
         (py / name).unlink()
         (py / name).write_text(f"2: {name}" if name != "same.txt" else "same")
     for times in (1, 2):
-        session = robot.start(agents)
+        session = robot.start()
         assert session.rollback(1).release.number == 1
         session.close()
         written = {name: text for name, text in contents(py).items() if name.split(".")[0] in ("log", "same", "one")}
@@ -210,7 +204,7 @@ def test_rollback_keeps_what_the_program_wrote_in_either_release(
         }, times
     (first / "log.txt").unlink()
     (first / "log.txt").write_text("3")
-    session = robot.start(agents)
+    session = robot.start()
     session.rollback(2)
     session.close()
     assert (py / "log.txt").read_text() == "3"
@@ -218,14 +212,14 @@ def test_rollback_keeps_what_the_program_wrote_in_either_release(
     assert (py / "log.txt.release-1").read_text() == "1: log.txt"
     (py / "log.txt").unlink()
     (py / "log.txt").write_text("4")
-    session = robot.start(agents)
+    session = robot.start()
     session.rollback(1)
     session.close()
     assert (py / "log.txt").read_text() == "4"
     assert (py / "log.txt.release-1-2").read_text() == "3"
 
 
-def test_the_kill_script_finds_the_robots_commands(robot: LocalRobot, agents: Agents) -> None:
+def test_the_kill_script_finds_the_robots_commands(robot: LocalRobot) -> None:
     """Both files of the image that set the path are read, and each may be missing."""
     bin_directory, profile = robot.root / "usr/local/frc/bin", robot.root / "etc/profile.d"
     for name in ("FRC_ConsoleTee", "natinst_command"):
@@ -238,18 +232,18 @@ def test_the_kill_script_finds_the_robots_commands(robot: LocalRobot, agents: Ag
     for missing in (None, "natinst-path.sh", "frc-path.sh"):
         if missing is not None:
             (profile / missing).unlink()
-        session = robot.start(agents)
+        session = robot.start()
         session.restart()
         session.close()
     assert (robot.root / "found").read_text().split() == ["FRC_ConsoleTee", "natinst_command", "FRC_ConsoleTee"]
 
 
-def test_files_of_the_same_content_do_not_become_one(robot: LocalRobot, project: Project, agents: Agents) -> None:
+def test_files_of_the_same_content_do_not_become_one(robot: LocalRobot, project: Project) -> None:
     """Or what the program writes into the one would be in the other."""
-    robot.deploy(agents, project.write("package/__init__.py").write("data.csv").manifest)
+    robot.deploy(project.write("package/__init__.py").write("data.csv").manifest)
     py = robot.home / "py"
     (py / "log.txt").touch()
-    robot.deploy(agents, project.write("lib/__init__.py").write("robot.py", "# 2\n").manifest)
+    robot.deploy(project.write("lib/__init__.py").write("robot.py", "# 2\n").manifest)
     for name in ("log.txt", "data.csv"):
         with (py / name).open("a") as stream:
             stream.write("written")
@@ -257,8 +251,8 @@ def test_files_of_the_same_content_do_not_become_one(robot: LocalRobot, project:
     assert (py / "package/__init__.py").read_text() == ""
 
 
-def test_plan_writes_nothing(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    session = robot.start(agents)
+def test_plan_writes_nothing(robot: LocalRobot, project: Project) -> None:
+    session = robot.start()
     before = contents(robot.root)
     plan = session.plan(project.manifest)
     assert plan.added == ("arm.py", "deploy/path.json", "robot.py")
@@ -266,11 +260,11 @@ def test_plan_writes_nothing(robot: LocalRobot, project: Project, agents: Agents
     assert plan.bytes_to_send == project.manifest.total_bytes
     assert contents(robot.root) == before
     session.close()
-    robot.deploy(agents, project.manifest)
+    robot.deploy(project.manifest)
     (robot.home / "py/log.txt").write_text("the program's")
     before = contents(robot.root)
     project.remove("arm.py").write("robot.py", "# 2\n").write("new.py", "# new\n").write("again.py", "LENGTH = 1\n")
-    session = robot.start(agents)
+    session = robot.start()
     plan = session.plan(project.manifest)
     session.close()
     assert (plan.added, plan.changed, plan.removed) == (("again.py", "new.py"), ("robot.py",), ("arm.py",))
@@ -278,9 +272,9 @@ def test_plan_writes_nothing(robot: LocalRobot, project: Project, agents: Agents
     assert contents(robot.root) == before
 
 
-def test_undeploy(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    robot.deploy(agents, project.manifest, debug=True)
-    session = robot.start(agents)
+def test_undeploy(robot: LocalRobot, project: Project) -> None:
+    robot.deploy(project.manifest, debug=True)
+    session = robot.start()
     assert session.undeploy()
     assert not session.undeploy()
     assert session.info().releases == ()
@@ -289,61 +283,55 @@ def test_undeploy(robot: LocalRobot, project: Project, agents: Agents) -> None:
     assert list((robot.root / "tmp").iterdir()) == []
 
 
-def test_a_module_with_a_name_too_long_for_its_compiled_form(
-    robot: LocalRobot, project: Project, agents: Agents
-) -> None:
+def test_a_module_with_a_name_too_long_for_its_compiled_form(robot: LocalRobot, project: Project) -> None:
     project.write("a" * 250 + ".py", "X = 1\n")
     for number in range(2):
-        robot.deploy(agents, project.write("robot.py", f"# {number}\n").manifest)
+        robot.deploy(project.write("robot.py", f"# {number}\n").manifest)
     assert robot.startable() is not None
     assert any((robot.home / "py/__pycache__").glob("robot.*.pyc"))
 
 
-def test_another_tools_program_is_started_for_debugging_again(
-    robot: LocalRobot, project: Project, agents: Agents
-) -> None:
+def test_another_tools_program_is_started_for_debugging_again(robot: LocalRobot, project: Project) -> None:
     project_of(robot.home / "py", {"robot.py": "# other\n"})
     (robot.home / "robotDebugCommand").write_text(OTHER_COMMAND)
     (robot.root / "tmp/frcdebug").touch()
     before = robot.startable()
     assert before == {"robot.py": b"# other\n"}
-    robot.deploy(agents, project.manifest)
+    robot.deploy(project.manifest)
     assert robot.startable() != before
-    session = robot.start(agents)
+    session = robot.start()
     assert session.rollback().release.taken
     session.close()
     assert robot.startable() == before
 
 
-def test_a_start_command_that_is_no_utf8_comes_back(robot: LocalRobot, project: Project, agents: Agents) -> None:
+def test_a_start_command_that_is_no_utf8_comes_back(robot: LocalRobot, project: Project) -> None:
     odd = b"python3 /home/lvuser/py/robot.py --name \xff\n"
     project_of(robot.home / "py", {"robot.py": "# other\n"})
     (robot.home / "robotCommand").write_bytes(odd)
-    robot.deploy(agents, project.manifest)
-    session = robot.start(agents)
+    robot.deploy(project.manifest)
+    session = robot.start()
     assert session.rollback().release.taken
     session.close()
     assert (robot.home / "robotCommand").read_bytes() == odd
 
 
-def test_a_file_that_changes_while_it_is_sent(
-    robot: LocalRobot, project: Project, agents: Agents, tmp_path: Path
-) -> None:
-    robot.deploy(agents, project.manifest)
+def test_a_file_that_changes_while_it_is_sent(robot: LocalRobot, project: Project, tmp_path: Path) -> None:
+    robot.deploy(project.manifest)
     before = robot.startable()
     for change in ("LENGTH = 3\n", "", "much longer than it was\n"):
         manifest = project.write("arm.py", "LENGTH = 2\n").manifest
         project.write("arm.py", change)
         with pytest.raises(RefusedError, match=r"arm.py was changed while it was sent\n  Deploy again."):
-            robot.deploy(agents, manifest)
+            robot.deploy(manifest)
         assert robot.startable() == before
     manifest = project.write("arm.py", "LENGTH = 2\n").manifest
     (tmp_path / "project/arm.py").unlink()
     os.mkfifo(tmp_path / "project/arm.py")
     with pytest.raises(RefusedError, match=r"arm.py was changed while it was sent"):
-        robot.deploy(agents, manifest)
+        robot.deploy(manifest)
     (tmp_path / "project/arm.py").unlink()
-    robot.deploy(agents, project.manifest)
+    robot.deploy(project.manifest)
 
 
 NAMES = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="/\0"), min_size=1, max_size=20).filter(
@@ -353,7 +341,7 @@ NAMES = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="/\0
 
 @settings(max_examples=10, suppress_health_check=list(HealthCheck))
 @given(programs=st.lists(st.dictionaries(NAMES, st.binary(max_size=200), max_size=6), min_size=2, max_size=3))
-def test_any_programs_one_after_the_other(programs: list[dict[str, bytes]], agents: Agents) -> None:
+def test_any_programs_one_after_the_other(programs: list[dict[str, bytes]]) -> None:
     """Manifests made here, since the file system of this machine may not have all such names."""
     with directory_in_memory() as directory:
         robot = LocalRobot.new(directory / "robot")
@@ -364,5 +352,5 @@ def test_any_programs_one_after_the_other(programs: list[dict[str, bytes]], agen
                 file = directory / str(number)
                 file.write_bytes(content)
                 entries.append(Entry(name, len(content), hashlib.sha256(content).hexdigest(), False, file))
-            robot.deploy(agents, Manifest(tuple(entries)))
+            robot.deploy(Manifest(tuple(entries)))
             assert robot.startable() == files

@@ -18,7 +18,7 @@ from loops import for_each
 from projects_of_before import OF_2019, OF_TODAY
 from test_virtual_robot import started
 
-from pyfrc_cli.main import COMMANDS, cli
+from pyfrc_cli.main import COMMANDS, cli, loaded
 from pyfrc_core.config.settings import FuzzSettings
 
 ROOT = Path(__file__).parents[1]
@@ -321,78 +321,74 @@ def test_the_commands_that_take_the_place_of_others_exist(document: str) -> None
 
 
 @pytest.mark.slow
-def test_the_commands_in_the_measuring_guide_work(project) -> None:
-    for command in [*commands("docs/how_to/measure_coverage.md")[2:], *commands("docs/reference/profile.md")]:
+def test_the_measuring_guides_reports_are_written(project) -> None:
+    for command in commands("docs/how_to/measure_coverage.md"):
+        if "html" in command:
+            result = project.run(*shlex.split(command)[1:])
+            assert result.code == 0, result.output
+            for file in ("htmlcov/index.html", "coverage.xml"):
+                (project.path / file).unlink()
+    assert (project.path / "coverage.json").is_file()
+    (command,) = (each for each in commands("docs/reference/profile.md") if " fuzz " in each)
+    result = project.run(*shlex.split(command)[1:])
+    assert result.code == 0, result.output
+
+
+@pytest.mark.slow
+def test_the_example_of_a_slow_robot_is_measured(make_project) -> None:
+    document = "docs/how_to/loop_overruns.md"
+    project = make_project(files(document))
+    (project.path / "slow/pyproject.toml").write_text(SHORT_MATCHES, "utf-8")
+    (command,) = commands(document)
+    result = project.run(*shlex.split(command)[1:])
+    assert result.code == 0, result.output
+    assert re.search(r"^  MyRobot.teleopPeriodic +[0-9.]+ ms", result.stdout, re.MULTILINE), result.output
+
+
+#: Pages with commands that no test here runs: each is in a test of what it does.
+NOT_RUN = (
+    "explanation/isolation.md",
+    "how_to/create_physics.md",
+    "how_to/find_what_is_wrong.md",
+    "how_to/tests_are_slow.md",
+)
+
+
+def test_each_command_in_the_pages_has_these_options(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert all(commands(f"docs/{page}") for page in NOT_RUN)
+    for directory in ("slow", "leaving"):
+        (tmp_path / directory).mkdir()
+    monkeypatch.chdir(tmp_path)
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    text = "".join(block for page in pages for kind in ("console", "sh") for block in blocks(str(page), kind))
+    found = re.findall(r"^(?:\$ )?pyfrc (?:-v )?(.+)$", text, re.MULTILINE)
+    assert len(found) > 60
+    for words in found:
+        name, *arguments = shlex.split(words, comments=True)
+        parse(name, arguments)
+
+
+def parse(name: str, arguments: list[str]) -> None:
+    """Parse a command's arguments, those of a command within it, too."""
+    command = loaded(name)
+    if isinstance(command, click.Group):
+        name, *arguments = arguments
+        command = command.commands[name]
+    inner = command.make_context(name, arguments).params.get("command_line")
+    if inner:
+        parse(inner[0], list(inner[1:]))
+
+
+SELECTING = [command for page in TESTING for command in commands(f"docs/{page}") if " -k " in command]
+
+
+@pytest.mark.slow
+def test_the_guides_commands_select_tests(project) -> None:
+    project.write(files("docs/how_to/a_motor_does_nothing.md"))
+    assert len(SELECTING) >= 2
+    for command in SELECTING:
         result = project.run(*shlex.split(command)[1:])
         assert result.code == 0, result.output
-    coverage, profile = ("htmlcov/index.html", "coverage.xml", "coverage.json"), ("json", "pstats")
-    for file in (*coverage, *(f"profile.{each}" for each in profile)):
-        assert (project.path / file).is_file(), file
-
-
-FAST = """
-import math
-
-import wpilib
-
-
-class MyRobot(wpilib.TimedRobot):
-    def robotInit(self):
-        self.motor = wpilib.PWMSparkMax(0)
-        self.stick = wpilib.Joystick(0)
-        self.curve = [math.copysign(abs(each / 1000) ** 1.5, each) for each in range(-1000, 1001)]
-
-    def robotPeriodic(self):
-        wpilib.SmartDashboard.putNumber("battery", wpilib.RobotController.getBatteryVoltage())
-
-    def teleopPeriodic(self):
-        self.motor.set(self.curve[round(1000 * self.stick.getRawAxis(1)) + 1000])
-"""
-
-
-@pytest.mark.slow
-def test_the_examples_of_a_slow_and_a_fast_robot_work(make_project) -> None:
-    document = "docs/how_to/loop_overruns.md"
-    project = make_project(files(document) | {"fast/robot.py": FAST})
-    medians = {}
-    (slow,) = commands(document)
-    for command in (slow, slow.replace("slow", "fast")):
-        program, *arguments = shlex.split(command)
-        assert program == "pyfrc"
-        directory = arguments[arguments.index("--project") + 1]
-        (project.path / directory / "pyproject.toml").write_text(SHORT_MATCHES, "utf-8")
-        result = project.run(*arguments)
-        assert result.code == 0, result.output
-        (median,) = re.findall(r"^  MyRobot.teleopPeriodic +([0-9.]+) ms", result.stdout, re.MULTILINE)
-        medians[directory] = float(median)
-    assert medians["fast"] < medians["slow"]
-
-
-GUIDES_COMMANDS = [
-    command
-    for page in (
-        *TESTING,
-        *PHYSICS_PAGES,
-        "explanation/isolation.md",
-        "how_to/create_physics.md",
-        "how_to/find_what_is_wrong.md",
-        "how_to/measure_coverage.md",
-        "how_to/tests_are_slow.md",
-        "reference/sim_config.md",
-    )
-    for command in commands(f"docs/{page}")
-    if not command.startswith("pyfrc coverage")  # they are in the test of measuring
-]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("command", GUIDES_COMMANDS)
-def test_the_commands_in_the_guides_work(command: str, project) -> None:
-    program, *arguments = shlex.split(command)
-    assert program == "pyfrc"
-    project.write(files("docs/how_to/a_motor_does_nothing.md"))
-    result = project.run(*arguments)
-    assert result.code == 0, result.output
 
 
 def shows(expected: str, printed: str) -> bool:

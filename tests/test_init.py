@@ -248,17 +248,6 @@ def test_add_tests_writes_the_documented_file_once(make_project: MakeProject, co
     assert (project.path / "tests/pyfrc_test.py").read_text() == "# mine\n"
 
 
-@pytest.mark.slow
-def test_the_added_tests_run_the_robot(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": ROBOT})
-    assert project.run_here("add-tests").code == 0
-    result = project.run("test", "--", "-v")
-    assert result.code == 0, result.output
-    assert {"test_autonomous", "test_disabled", "test_operator_control", "test_practice", "test_fuzz"} == {
-        re.sub(r"\[.*\]", "", test.partition("::")[2]) for test in result.outcomes()
-    }
-
-
 def test_add_tests_goes_where_the_tests_are(make_project: MakeProject) -> None:
     project = make_project({"src/robot.py": ROBOT, "tests/test_mine.py": "def test_it():\n    pass\n"})
     assert RobotProject(project.path / "src", project.temporary).run_here("add-tests").code == 0

@@ -6,8 +6,11 @@ import os
 from pathlib import Path
 
 import pytest
-from conftest import MakeProject, Result, sampled
+from conftest import MakeProject
+from loops import for_each
 from skips import require
+
+from pyfrc_core.test_support.autoload import _is_robot_project, _other_owner
 
 ROBOT = """
     import wpilib
@@ -49,59 +52,48 @@ DRIVES = """
 """
 
 
-def passed_as_without_pyfrc(result: Result) -> bool:
-    return result.code == 0 and "3 passed" in result.stdout and "pyfrc:" not in result.stdout
-
-
-@pytest.mark.parametrize(
-    "not_a_robot",
+@for_each(
+    "robot, is_one",
     [
-        "# Not for wpilib, magicbot or commands2\nraise SystemExit\n",
-        pytest.param('"""class Robot of wpilib"""\n', marks=pytest.mark.slow),
-        pytest.param("class RobotArm(Exception):\n    pass\n", marks=pytest.mark.slow),
-        pytest.param("import wpilib_helper\n\n\nclass RobotArm(Exception):\n    pass\n", marks=pytest.mark.slow),
-        "import os  # not wpilib\n\n\nclass Robot(os.PathLike):\n    pass\n",
+        ("# Not for wpilib, magicbot or commands2\nraise SystemExit\n", False),
+        ('"""class Robot of wpilib"""\n', False),
+        ("class RobotArm(Exception):\n    pass\n", False),
+        ("import wpilib_helper\n\n\nclass RobotArm(Exception):\n    pass\n", False),
+        ("import os  # not wpilib\n\n\nclass Robot(os.PathLike):\n    pass\n", False),
+        ("from wpilib import TimedRobot\n\n\nclass Arm(\n    TimedRobot\n):\n    pass\n", True),
+        ("import wpilib\n\n\nclass Robot(wpilib.TimedRobot):\n    pass\n", True),
+        ("import math, wpilib\nfrom base import Base\n\n\nclass MyRobot(Base):\n    pass\n", True),
+        ("import wpilib\nfrom base import Base\n\nif __name__ == '__main__':\n    wpilib.run(Base)\n", True),
     ],
 )
-def test_a_robot_file_without_a_robot_class_is_left_alone(make_project: MakeProject, not_a_robot: str) -> None:
-    project = make_project({"robot.py": not_a_robot, "app/test_app.py": APPLICATION})
-    assert passed_as_without_pyfrc(project.pytest(cwd=project.path / "app"))
+def test_which_files_have_a_robot(robot: str, is_one: bool, tmp_path: Path) -> None:
+    (tmp_path / "robot.py").write_text(robot, "utf-8")
+    assert _is_robot_project(tmp_path) is is_one
 
 
-@pytest.mark.parametrize(
-    "robot",
-    [
-        "from wpilib import TimedRobot\n\n\nclass Arm(\n    TimedRobot\n):\n    pass\n",
-        *sampled(
-            [
-                "import wpilib\n\n\nclass Robot(wpilib.TimedRobot):\n    pass\n",
-                "import math, wpilib\nfrom base import Base\n\n\nclass MyRobot(Base):\n    pass\n",
-                "import wpilib\nfrom base import Base\n\nif __name__ == '__main__':\n    wpilib.run(Base)\n",
-            ]
-        ),
-    ],
-)
-def test_a_robot_class_makes_a_robot_project(make_project: MakeProject, robot: str) -> None:
-    base = "import wpilib\n\n\nclass Base(wpilib.TimedRobot):\n    pass\n"
-    test = "def test_fixtures(robot_file):\n    assert robot_file\n"
-    project = make_project({"robot.py": robot, "base.py": base, "pyproject.toml": "", "tests/test_a.py": test})
-    result = project.pytest(cwd=project.path / "tests")
+def test_a_robot_file_without_a_robot_class_is_left_alone(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": "raise SystemExit\n", "app/test_app.py": APPLICATION})
+    result = project.pytest(cwd=project.path / "app")
     assert result.code == 0, result.output
+    assert "3 passed" in result.stdout
+    assert "pyfrc:" not in result.stdout
 
 
-@pytest.mark.parametrize("name", sampled(["robot.py", "physics.py"], "physics.py"))
-def test_a_robot_of_another_user_is_not_run(make_project: MakeProject, name: str) -> None:
+def test_a_robot_of_another_user_is_not_run(make_project: MakeProject) -> None:
     require("that another user's robot is not run", [] if hasattr(os, "getuid") and os.getuid() == 0 else ["root"])
     files = {"robot.py": ROBOT, "physics.py": "class PhysicsEngine:\n    pass\n", "mine/test_app.py": APPLICATION}
     project = make_project(files)
-    os.chown(project.path / name, 12345, 12345)
+    files_of_theirs = [project.path / name for name in ("physics.py", "robot.py")]
+    os.chown(files_of_theirs[0], 12345, 12345)
     result = project.pytest(cwd=project.path / "mine")
     assert result.code == 0, result.output
     assert "3 passed" in result.stdout
     (line,) = [line for line in result.stdout.splitlines() if "pyfrc:" in line]
     assert line == (
-        f"pyfrc: not active: {project.path / name} belongs to another user. If you trust it, run: pyfrc test"
+        f"pyfrc: not active: {files_of_theirs[0]} belongs to another user. If you trust it, run: pyfrc test"
     )
+    os.chown(files_of_theirs[1], 12345, 12345)
+    assert _other_owner(project.path).startswith(f"{files_of_theirs[1]} belongs to another user.")
 
 
 def other_season(directory: Path) -> dict[str, str]:
@@ -119,17 +111,15 @@ def other_season(directory: Path) -> dict[str, str]:
     return {"PYTHONPATH": str(directory)}
 
 
-@pytest.mark.parametrize("args", sampled([["-p", "their_tool"], ["-p", "their_tool", "-q"]], ["-p", "their_tool"]))
-def test_beside_an_unknown_season_it_is_as_if_not_installed(
-    make_project: MakeProject, tmp_path: Path, args: list[str]
-) -> None:
+def test_beside_an_unknown_season_it_is_as_if_not_installed(make_project: MakeProject, tmp_path: Path) -> None:
     test = "def test_theirs(control, robot):\n    assert control == robot == 'theirs'\n"
     project = make_project({"robot.py": ROBOT, "tests/test_a.py": test})
-    result = project.run(*args, env=other_season(tmp_path / "site"), program="pytest", cold=True)
+    env = other_season(tmp_path / "site")
+    result = project.run("-p", "their_tool", env=env, program="pytest", cold=True)
     assert result.code == 0, result.output
     lines = [line for line in result.output.splitlines() if "pyfrc:" in line]
-    wanted = ["pyfrc: not active: wpilib 2028.0.0a1 is installed here, and this pyfrc runs robots of 2026 and 2027"]
-    assert lines == ([] if "-q" in args else wanted)
+    wanted = "pyfrc: not active: wpilib 2028.0.0a1 is installed here, and this pyfrc runs robots of 2026 and 2027"
+    assert lines == [wanted]
 
 
 @pytest.mark.slow

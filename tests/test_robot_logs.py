@@ -18,7 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from roborio import Proxy, Roborio, require_roborio
 from roborio.computer import Computer
-from roborio.local import Agents, LocalRobot, directory_in_memory
+from roborio.local import LocalRobot, directory_in_memory
 from roborio.ssh import SshConnection
 from systemcore import Systemcore, require_systemcore
 
@@ -67,13 +67,13 @@ def put(robot: LocalRobot, directory: str, name: str, content: bytes, hours: flo
 class Command:
     """The command, with an agent on this computer."""
 
-    def __init__(self, robot: LocalRobot, agents: Agents, monkeypatch: pytest.MonkeyPatch) -> None:
+    def __init__(self, robot: LocalRobot, monkeypatch: pytest.MonkeyPatch) -> None:
         self.asked: list[str] = []
         self.printed = ""
 
         @contextmanager
         def connected_agent(*_: object) -> Iterator[tuple[Any, AgentClient]]:
-            with closing(robot.start(agents)) as agent:
+            with closing(robot.start()) as agent:
                 yield SimpleNamespace(host="10.12.34.2", controller=robot.controller), agent
 
         monkeypatch.setattr(logs, "connected_agent", connected_agent)
@@ -93,9 +93,9 @@ class Command:
 
 
 @pytest.fixture
-def command(robot: LocalRobot, agents: Agents, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Command:
+def command(robot: LocalRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Command:
     monkeypatch.chdir(tmp_path)
-    return Command(robot, agents, monkeypatch)
+    return Command(robot, monkeypatch)
 
 
 def log_of(agent: AgentClient, name: str) -> RobotLog:
@@ -164,11 +164,11 @@ def test_words_and_numbers_choose(command: Command) -> None:
         command("Q1")
 
 
-def test_a_fetch_goes_on_where_it_was_cut(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
+def test_a_fetch_goes_on_where_it_was_cut(robot: LocalRobot, tmp_path: Path) -> None:
     file, cuts, received = tmp_path / Q12, 0, 0
     while not file.exists():
         assert cuts < 9
-        with closing(robot.start(agents, cut_from_robot=400_000 + 200_000 * cuts)) as agent:
+        with closing(robot.start(cut_from_robot=400_000 + 200_000 * cuts)) as agent:
             with suppress(ConnectionFailedError):
                 fetch_log(agent, log_of(agent, Q12), file, no_progress)
             received += robot.channel.bytes_from_robot
@@ -177,21 +177,21 @@ def test_a_fetch_goes_on_where_it_was_cut(robot: LocalRobot, agents: Agents, tmp
     assert file.read_bytes() == CONTENT
     assert received < 1.5 * len(CONTENT) + 600_000 * cuts, "no piece that is complete is sent twice"
     assert list(tmp_path.iterdir()) == [file]
-    with closing(robot.start(agents)) as agent:
+    with closing(robot.start()) as agent:
         assert not fetch_log(agent, log_of(agent, Q12), file, no_progress)
         assert robot.channel.bytes_from_robot < 100_000, "it is here already"
 
 
-def test_a_cut_says_that_the_next_command_goes_on(command: Command, robot: LocalRobot, agents: Agents) -> None:
+def test_a_cut_says_that_the_next_command_goes_on(command: Command, robot: LocalRobot) -> None:
     start = robot.start
-    robot.start = lambda agents: start(agents, cut_from_robot=900_000)  # type: ignore[method-assign]
+    robot.start = lambda: start(cut_from_robot=900_000)  # type: ignore[method-assign]
     with pytest.raises(ConnectionFailedError, match="it goes on where this one has ended"):
         command("Q12")
     assert names_in("logs") == [f".{Q12}.part"]
 
 
 def test_a_log_that_grows_is_fetched_as_it_was_and_later_its_rest(
-    command: Command, robot: LocalRobot, agents: Agents, tmp_path: Path
+    command: Command, robot: LocalRobot, tmp_path: Path
 ) -> None:
     source, file = robot.root / "u/logs" / Q12, Path("logs", Q12)
     fetched = logs.fetch_log
@@ -212,7 +212,7 @@ def test_a_log_that_grows_is_fetched_as_it_was_and_later_its_rest(
     assert "just written" in command()
     command("Q12")
     assert file.read_bytes() == CONTENT + b"more"
-    with closing(robot.start(agents)) as agent:
+    with closing(robot.start()) as agent:
         fetch_log(agent, log_of(agent, Q12), file, no_progress)
         assert robot.channel.bytes_from_robot < 100_000
 
@@ -229,10 +229,8 @@ Change = Callable[[Path], object]
     ],
     ids=["renamed", "shorter", "other"],
 )
-def test_a_log_that_changes_while_it_is_fetched(
-    robot: LocalRobot, agents: Agents, tmp_path: Path, change: Change, says: str
-) -> None:
-    with closing(robot.start(agents)) as agent:
+def test_a_log_that_changes_while_it_is_fetched(robot: LocalRobot, tmp_path: Path, change: Change, says: str) -> None:
+    with closing(robot.start()) as agent:
         log = log_of(agent, Q12)
 
         def change_once(done: int, total: int) -> None:
@@ -289,9 +287,9 @@ def test_logs_are_removed_only_if_asked_and_confirmed(command: Command, robot: L
     assert (robot.root / "u/logs" / KIT).exists()
 
 
-def test_the_agent_touches_nothing_but_logs(robot: LocalRobot, agents: Agents) -> None:
+def test_the_agent_touches_nothing_but_logs(robot: LocalRobot) -> None:
     kept = put(robot, "/etc", "a.wpilog", b"", hours=1)
-    with closing(robot.start(agents)) as agent:
+    with closing(robot.start()) as agent:
         for path in ("/etc/a.wpilog", "/u/logs/../../etc/a.wpilog", "/u/logs/notes.txt"):
             with pytest.raises(RefusedError, match="is none of the robot's logs"):
                 agent.remove_log(path, 0)

@@ -94,14 +94,6 @@ def test_robotpy_ends_as_our_command_does(make_project) -> None:
     assert "Did you mean '--jobs'?" in wrong.stderr
 
 
-@pytest.mark.slow
-def test_robotpy_measures_our_commands(make_project) -> None:
-    project = make_project(ROBOT)
-    result = project.run("coverage", "--fail-under", "100", "test", "--builtin", "-j", "1", program="robotpy")
-    assert result.code == 0, result.output
-    assert "robot.py" in result.stdout
-
-
 def test_robotpy_adds_tests(make_project) -> None:
     project = make_project(ROBOT)
     result = project.run("add-tests", program="robotpy")

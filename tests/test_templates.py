@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings, sampled
+from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings
 from test_virtual_robot import deploy, started
 
 from pyfrc_cli.main import COMMANDS
@@ -62,13 +62,6 @@ def template(request: pytest.FixtureRequest) -> str:
 
 every_template = pytest.mark.parametrize("project", TEMPLATES, indirect=True)
 
-#: By day, one; by night, all.
-sampled_templates = pytest.mark.parametrize(
-    "project",
-    sampled(TEMPLATES, "command"),
-    indirect=True,
-)
-
 
 def workflow(project: RobotProject) -> list[list[str]]:
     """The commands of a project's workflow for tests: each what stands behind ``python -m``."""
@@ -78,7 +71,7 @@ def workflow(project: RobotProject) -> list[list[str]]:
     return [command[2:] for command in commands]
 
 
-@sampled_templates
+@every_template
 @pytest.mark.slow
 def test_its_workflow_passes_as_it_stands_in_the_file(project: RobotProject, tmp_path: Path) -> None:
     """Checking the config, and the tests with more than 80 % of the robot's lines run, when all is installed.
@@ -108,9 +101,10 @@ def test_the_page_on_github_shows_the_workflow(project_of: Callable[[str], Robot
     assert shown == written["jobs"]["test"]
 
 
-@sampled_templates
 @pytest.mark.slow
+@pytest.mark.parametrize("project", ["elevator-arm", "swerve"], indirect=True)
 def test_it_goes_through_a_match_in_the_simulator(project: RobotProject, template: str) -> None:
+    """That the others drive is in their own tests."""
     result = project.run("sim", "--ui", "none", "--mode", "practice")
     assert result.code == 0, result.output
     driven = re.search(r"distance driven: .* \(([0-9.]+) m\)", result.stdout)
@@ -118,13 +112,12 @@ def test_it_goes_through_a_match_in_the_simulator(project: RobotProject, templat
     assert (float(driven[1]) > 1) == (template != "elevator-arm")  # which has no wheels
 
 
-@sampled_templates
 @pytest.mark.slow
-def test_it_starts_on_a_virtual_robot(project: RobotProject, template: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("project", ["magic"], indirect=True)
+def test_a_magic_robot_does_not_report_its_start_on_a_virtual_robot(project: RobotProject, tmp_path: Path) -> None:
+    """That of the default template starts on one in the tutorial (`test_docs`)."""
     with started(project, tmp_path / "robot") as robot:
-        printed = deploy(robot, project)
-    # A MagicRobot does not report its start.
-    assert ("does not report the end of its start" if template == "magic" else "the program runs") in printed
+        assert "does not report the end of its start" in deploy(robot, project)
 
 
 @pytest.mark.slow
@@ -133,16 +126,14 @@ def test_types_and_style_are_clean(pytestconfig: pytest.Config, make_shared_proj
     cache = pytestconfig.cache
     assert cache is not None
     kept = cache.mkdir("mypy-of-templates")
+    project = make_shared_project({})
     for template in TEMPLATES:
-        project = make_shared_project({})
-        assert project.run("init", "--template", template).code == 0
-        for program, *arguments in (
-            ("mypy", "--cache-dir", str(kept), "."),
-            ("ruff", "check", "--no-cache", "."),
-            ("ruff", "format", "--no-cache", "--check", "."),
-        ):
-            result = project.run(*arguments, program=program)
-            assert result.code == 0, f"{template}: {result.output}"
+        assert project.run_here("init", template, "--template", template).code == 0
+        result = project.run("--cache-dir", str(kept), ".", program="mypy", cwd=project.path / template)
+        assert result.code == 0, f"{template}: {result.output}"
+    for arguments in (["check"], ["format", "--check"]):
+        result = project.run(*arguments, "--no-cache", ".", program="ruff")
+        assert result.code == 0, result.output
 
 
 @every_template

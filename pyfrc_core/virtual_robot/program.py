@@ -9,6 +9,7 @@ import argparse
 import importlib.util
 import logging
 import os
+import select
 import socket
 import sys
 import threading
@@ -25,16 +26,22 @@ def main() -> None:
     parser.add_argument("-v", "--verbose", action="store_true")
     parser.add_argument("command", choices=["run"])
     options = parser.parse_args()
-    _end_with_supervisor()
+    supervisor = _end_with_supervisor()
     logging.basicConfig(
         level=logging.DEBUG if options.verbose else logging.INFO,
         format="%(asctime)s:%(msecs)03d %(levelname)-8s: %(name)-20s: %(message)s",
         datefmt="%H:%M:%S",
     )
-    sys.exit(0 if _run(options.main) else 1)
+    try:
+        sys.exit(0 if _run(options.main) else 1)
+    finally:
+        # Its output is lost with the supervisor, which may end the program before the thread has killed the rest.
+        if sys.platform == "linux" and select.select([supervisor], [], [], 0)[0]:
+            children.kill_marked(os.environ[children.MARK])
 
 
-def _end_with_supervisor() -> None:
+def _end_with_supervisor() -> int:
+    """Have this process end when its standard input is closed. Return that input's file descriptor."""
     supervisor = os.dup(0)
     with Path(os.devnull).open("rb") as nothing:
         os.dup2(nothing.fileno(), 0)
@@ -46,6 +53,7 @@ def _end_with_supervisor() -> None:
         os._exit(1)
 
     threading.Thread(target=wait, daemon=True).start()
+    return supervisor
 
 
 def _run(main: Path) -> bool:

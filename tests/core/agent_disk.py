@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from roborio.local import serve_to_the_end
 from written_files import zip_of
 
 from pyfrc_core.deploy.agent.activity import Activity
@@ -79,12 +80,7 @@ class AgentDisk:
         os.close(target)
         responses = io.BytesIO()
         with os.fdopen(source, "rb", buffering=0) as stream:
-            agent = Agent(Wire(stream, responses), RealRobot(self.places), hello or {"who": "Ada"})
-            try:
-                agent.serve()
-            finally:
-                if agent._lock is not None:  # which ends with the agent's process
-                    agent._lock.close()
+            serve_to_the_end(Agent(Wire(stream, responses), RealRobot(self.places), hello or {"who": "Ada"}))
         responses.seek(0)
         messages = []
         while responses.tell() < len(responses.getvalue()):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,7 +13,7 @@ from pyfrc_core.deploy.agent import disk, serve, transaction
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.releases import Releases
 
-from .agent_disk import AgentDisk, contents, manifest
+from .agent_disk import AgentDisk, Message, contents, manifest
 
 ONE = {"robot.py": "# one\nimport arm\n", "arm.py": "# arm\n", "data/path.json": "{}"}
 TWO = {**ONE, "robot.py": "# two\nimport arm\n"}
@@ -328,6 +330,73 @@ def test_a_deploy_that_was_cut_past_its_moment_is_finished(robot: AgentDisk) -> 
     (robot.home / "robotCommand").write_text(direct.replace("releases/1/", "releases/9/"))
     records.recover()
     assert records.current() == 1
+
+
+# -- linear work -----------------------------------------------------------------------------------------------------
+
+
+def calls_of(robot: AgentDisk, *requests: Message | bytes) -> int:
+    """Have the agent handle requests, and return the calls that this makes, of functions in Python and in C.
+
+    Other processes and threads, and the wall clock, do not change the count: a busy machine gives the same.
+    """
+    count = 0
+
+    def profile(frame: object, event: str, argument: object) -> None:
+        nonlocal count
+        count += event in ("call", "c_call")
+
+    sys.setprofile(profile)
+    try:
+        said = robot.ask(*requests)
+    finally:
+        sys.setprofile(None)
+    assert "done" in said[-1], said
+    return count
+
+
+@pytest.fixture
+def _alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(os, "fork")  # the agent compiles by itself then
+    monkeypatch.setattr(RealRobot, "processes", lambda robot: set())
+    monkeypatch.setattr(RealRobot, "stop", lambda host, start, meanwhile=None: False)
+
+
+def large(number: int, **more: str) -> dict[str, str]:
+    return {"robot.py": "", **{f"generated/m{each}.py": f"x = {each}\n" for each in range(number)}, **more}
+
+
+@pytest.mark.usefixtures("_alone")
+def test_the_work_is_linear_in_the_files_of_a_directory(robot: AgentDisk) -> None:
+    """For 80 files more, the calls grow as for 40 before."""
+    counts = []
+    for files in (40, 80, 160):
+        there = AgentDisk(robot.root.with_name(str(files)))
+        first, changed = large(files), large(files, **{"generated/m7.py": "x = 'changed'\n"})
+        deploys = [{"op": "deploy", "files": manifest(each), "main": "robot.py"} for each in (first, first, changed)]
+        counts.append(
+            [
+                calls_of(there, deploys[0], contents(*there.needed(first))),
+                calls_of(there, deploys[1]),
+                calls_of(there, deploys[2], contents(changed["generated/m7.py"])),
+                calls_of(there, {"op": "plan", "files": manifest(first)}),
+                *(calls_of(there, {"op": op}) for op in ("rollback", "info", "undeploy")),
+            ]
+        )
+    for few, some, many in zip(*counts, strict=True):
+        assert many - some <= 2.2 * (some - few) + 200, counts
+
+
+@pytest.mark.usefixtures("_alone")
+def test_an_unchanged_file_is_read_once(robot: AgentDisk) -> None:
+    """Only the program in place is looked through, where it has all: earlier releases cost nothing."""
+    project, plan = large(100), {"op": "plan", "files": manifest(large(100))}
+    robot.deploy(project, *robot.needed(project))
+    one_release = calls_of(robot, plan)
+    for text in ("1", "2"):
+        robot.deploy(other := large(100, **{"a.txt": text}), *robot.needed(other))
+    robot.deploy(project)
+    assert calls_of(robot, plan) < 1.2 * one_release
 
 
 # -- parts -----------------------------------------------------------------------------------------------------------

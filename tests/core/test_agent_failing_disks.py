@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import errno
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 import pytest
 from conftest import sampled
-from roborio.local import directory_in_memory
 
 from pyfrc_core.deploy.agent import serve
 from pyfrc_core.deploy.agent.activity import Activity
@@ -24,7 +24,18 @@ from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 from .agent_disk import AgentDisk, run_quickly
 from .failing_disk import FAILS, failing
-from .test_agent_power_cuts import FIRST, ONE, RENAMED, SECOND, TWO, WHEELS, Program, deploy, packages_of, started
+from .test_agent_power_cuts import (
+    FIRST,
+    ONE,
+    RENAMED,
+    SECOND,
+    TWO,
+    WHEELS,
+    Program,
+    deploy,
+    packages_of,
+    started,
+)
 
 #: Whatever fails, the agent ends what it has started, and closes it.
 pytestmark = pytest.mark.filterwarnings("error::ResourceWarning", "error::pytest.PytestUnraisableExceptionWarning")
@@ -40,14 +51,6 @@ def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(RealRobot, "stop", lambda robot, start, meanwhile=None: False)
     monkeypatch.setattr(RealRobot, "processes", lambda robot: set())
     monkeypatch.setattr(serve, "look_up", lambda modules: {"packages": {}})  # this Python has hundreds
-
-
-@pytest.fixture(params=sampled(CONTROLLERS, ROBORIO), ids=lambda each: each.name)
-def robot(request: pytest.FixtureRequest) -> Iterator[AgentDisk]:
-    with directory_in_memory() as directory:
-        robot = AgentDisk(directory / "robot", request.param.layout)
-        robot.controller = request.param  # type: ignore[attr-defined]
-        yield robot
 
 
 def sending(files: dict[str, str], *contents: str, **more: object) -> Act:
@@ -100,14 +103,27 @@ ACTS: dict[str, tuple[Callable[[AgentDisk], object], Act, tuple[Program | None, 
 }
 
 
-@pytest.mark.parametrize("number", sampled(FAILS, errno.ENOSPC), ids=errno.errorcode.get)
-@pytest.mark.parametrize("name", sampled(ACTS, "update", "same files"))
-def test_any_step(robot: AgentDisk, name: str, number: int, monkeypatch: pytest.MonkeyPatch) -> None:
+#: Each of them on both controllers, and with both errors: the one on this, the other on that.
+CASES = [
+    (name, controller, number)
+    for place, name in enumerate(ACTS)
+    for controller, number in zip(CONTROLLERS, FAILS if place % 2 else reversed(FAILS), strict=True)
+]
+
+
+@pytest.mark.parametrize(
+    ("name", "controller", "number"),
+    sampled(CASES, ("update", ROBORIO, errno.ENOSPC), ("same files", CONTROLLERS[1], errno.ENOSPC)),
+    ids=lambda each: errno.errorcode.get(each) if isinstance(each, int) else getattr(each, "name", each),
+)
+def test_any_step(
+    name: str, controller: ControllerKind, number: int, in_memory: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     before, act, expected = ACTS[name]
+    robot = AgentDisk(in_memory / "robot", controller.layout)
     before(robot)
-    controller: ControllerKind = robot.controller  # type: ignore[attr-defined]
     environment = SECOND if "packages" in name else None
-    root, first, has_failed = robot.root.with_name("after"), 0, True
+    root, first, has_failed = in_memory / "after", 0, True
     while has_failed:
         first += 1
         shutil.rmtree(root, ignore_errors=True)

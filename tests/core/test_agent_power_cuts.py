@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Protocol
 
 import pytest
 from conftest import sampled
-from roborio.local import LocalRobot, directory_in_memory
+from roborio.local import LocalRobot
 
 from pyfrc_core.deploy.agent import releases
 from pyfrc_core.deploy.agent.activity import Activity
@@ -50,12 +50,6 @@ def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pyfrc_core.deploy.agent.disk.flush", lambda directory: None)
 
 
-@pytest.fixture
-def directory() -> Iterator[Path]:
-    with directory_in_memory() as directory:
-        yield directory
-
-
 def deploy(robot: AgentDisk, files: Files, environment: str | None = None) -> None:
     if environment is not None:
         robot.install(environment, WHEELS[environment])
@@ -91,9 +85,10 @@ class Check(Protocol):
     ) -> None: ...
 
 
-@pytest.fixture(params=[9, pytest.param(1, marks=pytest.mark.slow)], ids=["some", "each"])
-def check(directory: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Check:
+@pytest.fixture
+def check(in_memory: Path, pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch) -> Check:
     """By day, a deploy after that is tried after some of the power cuts: it takes most of the time."""
+    every = 1 if pytestconfig.getoption("run_slow") else 9
 
     def check_all_cuts(
         controller: ControllerKind,
@@ -102,20 +97,20 @@ def check(directory: Path, request: pytest.FixtureRequest, monkeypatch: pytest.M
         new: Program | None,
         environment: str | None = None,
     ) -> None:
-        robot = AgentDisk(directory / "robot", controller.layout)
+        robot = AgentDisk(in_memory / "robot", controller.layout)
         with noted(robot.root, monkeypatch) as disk:
             act(robot)
         assert started(robot, controller) == new
         outcomes = set()
         for number, state in enumerate(disk.states):
-            state.write(directory / "after")
-            after = AgentDisk(directory / "after", controller.layout)
+            state.write(in_memory / "after")
+            after = AgentDisk(in_memory / "after", controller.layout)
             found = started(after, controller)
             assert found in (old, new), "neither the old nor the new program would be started"
             outcomes.add(found == new)
             kept = Releases(after.places, Activity(lambda **said: None))
             assert not any(different_in_release(kept, number) for number in kept.numbers()), "a release is incomplete"
-            if number % request.param == 0:
+            if number % every == 0:
                 deploy(after, TWO, environment)
                 assert started(after, controller) == (TWO, packages_of(environment)), "a deploy after that fails"
         assert outcomes == {True, False}
@@ -123,15 +118,12 @@ def check(directory: Path, request: pytest.FixtureRequest, monkeypatch: pytest.M
     return check_all_cuts
 
 
-BOTH = pytest.mark.parametrize(
+@pytest.mark.parametrize(
     "controller", [ROBORIO, pytest.param(SYSTEMCORE, marks=pytest.mark.slow)], ids=lambda each: each.name
 )
-
-
-@BOTH
 @pytest.mark.parametrize("files", [TWO, RENAMED], ids=["update", "another main file"])
-def test_deploys(directory: Path, controller: ControllerKind, files: Files, check: Check) -> None:
-    deploy(AgentDisk(directory / "robot", controller.layout), ONE)
+def test_deploys(in_memory: Path, controller: ControllerKind, files: Files, check: Check) -> None:
+    deploy(AgentDisk(in_memory / "robot", controller.layout), ONE)
     check(controller, lambda robot: deploy(robot, files), (ONE, {}), (files, {}))
 
 
@@ -142,9 +134,9 @@ def test_the_first_deploy(check: Check) -> None:
 
 @pytest.mark.parametrize("exchanges", sampled([True, False], True))
 def test_another_tools_program_is_taken_over(
-    directory: Path, exchanges: bool, check: Check, monkeypatch: pytest.MonkeyPatch
+    in_memory: Path, exchanges: bool, check: Check, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    robot = AgentDisk(directory / "robot", ROBORIO.layout)
+    robot = AgentDisk(in_memory / "robot", ROBORIO.layout)
     if not exchanges:  # as before Linux 3.15
         monkeypatch.setattr(releases, "exchange", lambda one, other: False)
     robot.places.code.mkdir()
@@ -156,38 +148,36 @@ def test_another_tools_program_is_taken_over(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("controller", [ROBORIO, SYSTEMCORE], ids=lambda each: each.name)
-def test_rollbacks(directory: Path, controller: ControllerKind, check: Check) -> None:
-    robot = AgentDisk(directory / "robot", controller.layout)
+def test_a_rollback(in_memory: Path, check: Check) -> None:
+    robot = AgentDisk(in_memory / "robot", SYSTEMCORE.layout)
     deploy(robot, ONE)
     deploy(robot, RENAMED)
     back = {"op": "rollback", "release": 1}
-    check(controller, lambda robot: robot.ask(back), (RENAMED, {}), (ONE, {}))
+    check(SYSTEMCORE, lambda robot: robot.ask(back), (RENAMED, {}), (ONE, {}))
 
 
 @pytest.mark.slow
-def test_an_undeploy(directory: Path, check: Check, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_undeploy(in_memory: Path, check: Check, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(RealRobot, "stop", lambda host, start: False)
-    deploy(AgentDisk(directory / "robot", ROBORIO.layout), ONE)
+    deploy(AgentDisk(in_memory / "robot", ROBORIO.layout), ONE)
     undeploy = {"op": "undeploy"}
     check(ROBORIO, lambda robot: robot.ask(undeploy), (ONE, {}), None)
 
 
-@BOTH
-def test_other_packages(directory: Path, controller: ControllerKind, check: Check) -> None:
-    robot = AgentDisk(directory / "robot", controller.layout)
+def test_other_packages(in_memory: Path, check: Check) -> None:
+    robot = AgentDisk(in_memory / "robot", ROBORIO.layout)
     deploy(robot, ONE, FIRST)
 
     def act(robot: AgentDisk) -> None:
         deploy(robot, TWO, SECOND)
 
     old, new = (ONE, packages_of(FIRST)), (TWO, packages_of(SECOND))
-    check(controller, act, old, new, SECOND)
+    check(ROBORIO, act, old, new, SECOND)
 
 
-def test_while_damaged_files_are_replaced(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_while_damaged_files_are_replaced(in_memory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each file is the damaged or the good one, and another attempt works."""
-    robot = AgentDisk(directory / "robot", SYSTEMCORE.layout)
+    robot = AgentDisk(in_memory / "robot", SYSTEMCORE.layout)
     deploy(robot, ONE, FIRST)
     place = robot.environments.directory(FIRST)
     file = place / PACKAGES / "kept.py"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import select
@@ -13,15 +12,19 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from importlib.metadata import distribution
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from types import TracebackType
+from typing import Any
 
 from written_files import write_files
 
+from pyfrc_core.deploy.agent.host import RealRobot
+from pyfrc_core.deploy.agent.layout import Layout
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
+from pyfrc_core.deploy.agent.serve import Agent
+from pyfrc_core.deploy.agent.start_monitor import ENDED, RUNNING
+from pyfrc_core.deploy.agent.wire import LaptopPipe, Message, Wire, WireError
 from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest
 from pyfrc_core.deploy.agent_stream import agent_command, agent_package
 from pyfrc_core.deploy.manifest import Manifest, build_manifest
@@ -41,6 +44,7 @@ class Cut(OSError):
 class LocalChannel:
     """A channel to an agent on this machine.
 
+    :param wait: waits until the agent and its children have ended
     :param cut_to_robot:   bytes after which the connection is cut, counted on the way to the robot
     :param cut_from_robot: on the way back
     """
@@ -48,21 +52,18 @@ class LocalChannel:
     def __init__(
         self,
         ours: socket.socket,
-        alive: int,
-        process: subprocess.Popen[bytes] | None,
+        wait: Callable[[], object],
         cut_to_robot: int | None = None,
         cut_from_robot: int | None = None,
     ) -> None:
         self._socket = ours
-        self._alive = alive
-        self._process = process
+        self._wait = wait
         self._limits = {"to": cut_to_robot, "from": cut_from_robot}
         self.bytes_to_robot = self.bytes_from_robot = 0
+        self.is_open = True
         #: Set: `recv_exit_status` waits by itself.
         self.status_event = threading.Event()
         self.status_event.set()
-        #: How many calls the agent has made, once it has ended by itself.
-        self.steps: int | None = None
 
     def sendall(self, data: bytes) -> None:
         """Send, up to the cut."""
@@ -95,20 +96,12 @@ class LocalChannel:
         return bool(select.select([self._socket], [], [], 0)[0])
 
     def recv_stderr(self, count: int) -> bytes:
-        """What the agent has printed as errors."""
-        return self._process.stderr.read() if self._process is not None and self._process.stderr is not None else b""
+        """What the agent has printed as errors: nothing."""
+        return b""
 
     def recv_exit_status(self) -> int:
-        """The agent's, where it is a process of ours."""
-        if self._process is None or self._alive < 0:
-            return -1  # as paramiko returns after a lost connection
-        return self._process.wait()
-
-    def peak_memory(self) -> int:
-        """The most that the agent, which is a process of ours and runs, has had in memory; bytes."""
-        assert self._process is not None
-        status = Path(f"/proc/{self._process.pid}/status").read_text(encoding="utf-8")
-        return 1024 * int(status.partition("VmHWM:")[2].split()[0])
+        """What paramiko returns after a lost connection."""
+        return -1
 
     def settimeout(self, seconds: float | None) -> None:
         """As of a socket."""
@@ -116,19 +109,63 @@ class LocalChannel:
 
     def close(self) -> None:
         """Hang up, and wait until the agent and its children have ended."""
-        if self._alive < 0:
-            return
-        self._socket.close()
-        count = b""
-        while piece := os.read(self._alive, 100):
-            count += piece
-        os.close(self._alive)
-        self._alive = -1
-        self.steps = int(count) if count else None
-        if self._process is not None:
-            self._process.wait()
-            if self._process.stderr is not None:
-                self._process.stderr.close()
+        if self.is_open:
+            self.is_open = False
+            hang_up(self._socket)
+            self._wait()
+
+
+def hang_up(connection: socket.socket) -> None:
+    """Close a connection, also where a process that was forked meanwhile has it."""
+    with suppress(OSError):  # the other end may have closed it
+        connection.shutdown(socket.SHUT_RDWR)
+    connection.close()
+
+
+class LocalAgent(Agent):
+    """An agent in a thread of this process.
+
+    :param all_signs: it gives a sign of life for everything that it does
+    :param runs:      what each watch of a program sees: it runs, or it ends; None: what is so
+    """
+
+    def __init__(self, wire: Wire, hello: Message, all_signs: bool = False, runs: bool | None = None) -> None:
+        host = RealRobot(RobotPaths(Layout(**hello["layout"]), hello["root"]))
+        host.processes = set  # type: ignore[method-assign]  # listing all of this machine's takes long
+        super().__init__(wire, host, hello)
+        if all_signs:
+            self._activity._pause = 0.0
+        if runs is not None:
+            seen = {"verdict": RUNNING if runs else ENDED, "heard": True, "seen": True}
+            watched = {**seen, "seconds": 1.0, "age": 1.0, "lived": 1.0}
+            self._program.watch = lambda *_: watched  # type: ignore[method-assign]
+
+    def facts(self, request: Message) -> Message:
+        """As on a robot, whose Python has few packages."""
+        facts = super().facts(request)
+        return {**facts, "packages": {"wpilib": facts["packages"]["wpilib"]}}
+
+    @classmethod
+    def run(cls, connection: socket.socket, **options: Any) -> None:
+        """Run an agent with its laptop at the other end of a connection."""
+        with open(connection.fileno(), "rb", 0, closefd=False) as source:
+            wire = Wire(source, LaptopPipe(connection.fileno()))
+            try:
+                agent = cls(wire, wire.receive(), **options)
+                serve_to_the_end(agent)
+            except (WireError, ConnectionError):
+                pass  # the laptop has disconnected
+            finally:
+                hang_up(connection)
+
+
+def serve_to_the_end(agent: Agent) -> None:
+    """Serve, and release the lock, which ends with the process of an agent on a robot."""
+    try:
+        agent.serve()
+    finally:
+        if agent._lock is not None:
+            agent._lock.close()
 
 
 class LocalRobot:
@@ -141,7 +178,8 @@ class LocalRobot:
         self.controller = controller
         self.paths = RobotPaths(controller.layout, str(root))
         self.home = self.paths.home
-        self._agents: Agents | None = None
+        #: What starts agents; None: they are threads of this process.
+        self.agents: Processes | None = None
         self._options: dict[str, int | bool | None] = {}
 
     @classmethod
@@ -186,21 +224,20 @@ class LocalRobot:
         links = (tuple(sorted(each)) for each in names.values() if len(each) > 1)
         return frozenset(entries), frozenset(links)
 
-    def start(self, agents: Agents, **options: int | bool | None) -> AgentClient:
-        """An agent on it; for the options see `Agents.channel`."""
-        self._agents, self._options = agents, options
-        return AgentClient.start(self, hello={"root": str(self.root)})
+    def start(self, *, modules: Sequence[str] = (), **options: int | bool | None) -> AgentClient:
+        """An agent on it, which looks for modules; for the options see `LocalChannel` and `LocalAgent`."""
+        self._options = options
+        return AgentClient.start(self, hello={"root": str(self.root), "modules": list(modules)})
 
     def open(self, command: str) -> LocalChannel:
         """What a connection does: run the agent."""
         assert command == agent_command(self.controller.python)
-        assert self._agents is not None
-        self.channel = self._agents.channel(self.root, **self._options)
+        start = channel_to_thread if self.agents is None else self.agents.channel
+        self.channel = start(**self._options)
         return self.channel
 
     def deploy(
         self,
-        agents: Agents,
         project: Manifest,
         *,
         main: str = "robot.py",
@@ -208,7 +245,7 @@ class LocalRobot:
         **options: int | bool | None,
     ) -> Deployed:
         """Deploy and hang up."""
-        robot = self.start(agents, **options)
+        robot = self.start(**options)
         try:
             return robot.deploy(project, DeployRequest(main, {"deploy-user": "somebody"}, debug))
         finally:
@@ -231,65 +268,16 @@ class LocalRobot:
         }
 
 
-class Agents:
-    """Starts agents: forks of one process that waits for the next."""
-
-    def __init__(self) -> None:
-        self._control, theirs = socket.socketpair()
-        self._packages = tempfile.TemporaryDirectory()
-        _link_wpilib(Path(self._packages.name))
-        # Without site-packages: a robot's Python has few packages, and each agent reports them.
-        path = os.pathsep.join([str(Path(__file__).parents[2]), self._packages.name])
-        self._process = subprocess.Popen(
-            [sys.executable, "-S", str(Path(__file__).with_name("zygote.py")), str(theirs.fileno())],
-            pass_fds=[theirs.fileno()],
-            env={**os.environ, "PYTHONPATH": path},
-        )
-        theirs.close()
-
-    def __enter__(self) -> Agents:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        self._control.close()
-        self._process.wait()
-        self._packages.cleanup()
-
-    def channel(
-        self,
-        root: Path,
-        *,
-        cut_to_robot: int | None = None,
-        cut_from_robot: int | None = None,
-        calls: bool = False,
-        all_signs: bool = False,
-        runs: bool | None = None,
-    ) -> LocalChannel:
-        """A new agent.
-
-        :param calls:     its calls are counted
-        :param all_signs: it gives a sign of life for everything that it does
-        :param runs:      what each watch of a program sees: it runs, or it ends; None: what is so
-        """
-        ours, theirs = socket.socketpair()
-        alive, end = os.pipe()
-        options = {"calls": calls, "all_signs": all_signs, "runs": runs}
-        message = json.dumps({"root": str(root), **options}).encode()
-        socket.send_fds(self._control, [message], [theirs.fileno(), end])
-        theirs.close()
-        os.close(end)
-        channel = LocalChannel(ours, alive, None, cut_to_robot, cut_from_robot)
-        _skip_bootstrap(channel)
-        return channel
-
-
-def _link_wpilib(directory: Path) -> None:
-    """Make a directory with links to the `wpilib` that is installed here, and nothing else."""
-    wpilib = distribution("wpilib")
-    for name in {file.parts[0] for file in wpilib.files or ()}:
-        (directory / name).symlink_to(Path(str(wpilib.locate_file(name))))
+def channel_to_thread(
+    *, cut_to_robot: int | None = None, cut_from_robot: int | None = None, **options: Any
+) -> LocalChannel:
+    """A channel to a new agent in a thread."""
+    ours, theirs = socket.socketpair()
+    thread = threading.Thread(target=LocalAgent.run, args=[theirs], kwargs=options, daemon=True)
+    thread.start()
+    channel = LocalChannel(ours, thread.join, cut_to_robot, cut_from_robot)
+    _skip_bootstrap(channel)
+    return channel
 
 
 def _skip_bootstrap(channel: LocalChannel) -> None:
@@ -307,6 +295,40 @@ def _skip_bootstrap(channel: LocalChannel) -> None:
     channel.sendall = sendall  # type: ignore[method-assign]
 
 
+class ProcessChannel(LocalChannel):
+    """A channel to an agent in a process of its own.
+
+    :param alive: a pipe that ends with the agent and its children
+    """
+
+    def __init__(self, ours: socket.socket, process: subprocess.Popen[bytes], alive: int, cut: int | None) -> None:
+        super().__init__(ours, self._wait_for_end, cut)
+        self._process = process
+        self._alive = alive
+
+    def recv_stderr(self, count: int) -> bytes:
+        """What the agent has printed as errors."""
+        assert self._process.stderr is not None
+        return self._process.stderr.read()
+
+    def recv_exit_status(self) -> int:
+        """The agent's."""
+        return self._process.wait() if self.is_open else super().recv_exit_status()
+
+    def peak_memory(self) -> int:
+        """The most that the agent, which runs, has had in memory; bytes."""
+        status = Path(f"/proc/{self._process.pid}/status").read_text(encoding="utf-8")
+        return 1024 * int(status.partition("VmHWM:")[2].split()[0])
+
+    def _wait_for_end(self) -> None:
+        while os.read(self._alive, 100):
+            pass
+        os.close(self._alive)
+        self._process.wait()
+        assert self._process.stderr is not None
+        self._process.stderr.close()
+
+
 class Processes:
     """Starts agents as a robot does: a Python that is sent everything.
 
@@ -318,9 +340,7 @@ class Processes:
         program = agent_command("python3").partition(" -c '")[2].removesuffix("'")
         self._command = [python, "-X", "utf8", "-u", "-c", program] if shell is None else ["sh", "-c", shell]
 
-    def channel(
-        self, root: Path, *, cut_to_robot: int | None = None, cut_from_robot: int | None = None
-    ) -> LocalChannel:
+    def channel(self, *, cut_to_robot: int | None = None) -> ProcessChannel:
         """A new agent."""
         ours, theirs = socket.socketpair()
         alive, end = os.pipe()
@@ -329,7 +349,7 @@ class Processes:
         )
         theirs.close()
         os.close(end)
-        return LocalChannel(ours, alive, process, cut_to_robot, cut_from_robot)
+        return ProcessChannel(ours, process, alive, cut_to_robot)
 
 
 @contextmanager
