@@ -259,11 +259,3 @@ def test_what_a_sysid_routine_writes_is_in_the_runs_log(make_project) -> None:
     # Thousands of matches have none.
     assert made.run("fuzz", "--runs", "2").code == 0
     assert list(made.path.rglob("*.wpilog")) == [file]
-
-
-@pytest.mark.slow
-def test_a_directory_that_there_cannot_be(make_project) -> None:
-    made = make_project(robot() | {".pyfrc": "a file"})
-    result = made.run("sim", "--ui", "none", "--mode", "disabled", "--seconds", "2")
-    assert result.code == 0, result.output
-    assert "cannot be written" in result.output
