@@ -283,7 +283,7 @@ def opened_page(browser: Browser, address: str, width: int = 1180, height: int =
 
 
 @contextmanager
-def page_of(browser: Browser, server: Served, address: str = "", script: str = "", **options: Any) -> Iterator[Seen]:
+def page_of(browser: Browser, server: Served, address: str = "", **options: Any) -> Iterator[Seen]:
     """Open the page as a new person, for whom nothing was arranged, on a robot that has just started."""
     (server.simulation.project.root / ".pyfrc" / "sim-layout.json").unlink(missing_ok=True)
     starts = server.simulation.status.starts
@@ -301,7 +301,7 @@ def page_of(browser: Browser, server: Served, address: str = "", script: str = "
     context = browser.new_context(viewport={"width": 1366, "height": 768}, **options)
     try:
         seen = Seen(context.new_page(), server)
-        seen.page.add_init_script(MODULE + FRAMES + script)
+        seen.page.add_init_script(MODULE + FRAMES)
         yield seen.open(address)
         assert not seen.wrong, seen.wrong
     finally:

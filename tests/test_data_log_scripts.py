@@ -6,8 +6,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 ROBOT = """
     import ntcore
     import wpilib
@@ -77,15 +75,12 @@ def outputs(trace: Path) -> list[tuple[float, str, Any]]:
     ]
 
 
-BOTH = pytest.mark.parametrize(
-    "arguments", [("--mode", "practice"), pytest.param(("--script", "drive.jsonl"), marks=pytest.mark.slow)]
-)
+SIM = ("sim", "--ui", "none", "--script", "drive.jsonl", "--record", "recorded.jsonl")
 
 
-@BOTH
-def test_the_log_of_a_robot_replays_to_the_same_outputs(arguments: tuple[str, ...], make_project) -> None:
+def test_the_log_of_a_robot_replays_to_the_same_outputs(make_project) -> None:
     project = make_project(robot())
-    result = project.run("sim", "--ui", "none", *arguments, "--record", "recorded.jsonl")
+    result = project.run(*SIM)
     assert result.code == 0, result.output
     (log,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
     log = log.rename(project.path / "match.wpilog")
@@ -96,11 +91,9 @@ def test_the_log_of_a_robot_replays_to_the_same_outputs(arguments: tuple[str, ..
     assert replayed == outputs(project.path / "recorded.trace.jsonl")
 
 
-@BOTH
-def test_the_log_of_the_simulator_replays_to_the_same_outputs(arguments: tuple[str, ...], make_project) -> None:
+def test_the_log_of_the_simulator_replays_to_the_same_outputs(make_project) -> None:
     project = make_project(robot("pass"))
-    sim = ("sim", "--ui", "none", *arguments, "--wpilog", "match.wpilog", "--record", "recorded.jsonl")
-    assert project.run(*sim).code == 0
+    assert project.run(*SIM, "--wpilog", "match.wpilog").code == 0
     result = project.run("replay", "match.wpilog", "--trace", "replayed.jsonl")
     assert result.code == 0, result.output
     assert outputs(project.path / "replayed.jsonl") == outputs(project.path / "recorded.trace.jsonl")

@@ -193,14 +193,10 @@ def test_a_log_that_is_started_at_import(make_project) -> None:
 
 
 @pytest.mark.slow
-def test_replays_and_campaigns(make_project) -> None:
-    """A replay has a log; thousands of matches have none."""
+def test_a_replay_has_a_log(make_project) -> None:
     script = [{"format": "pyfrc-input 1", "robot": "robot.py", "end": 4.0}, {"t": 1.0, "set": {"mode": "teleop"}}]
     made = make_project(robot() | {"script.jsonl": "\n".join(map(json.dumps, script)) + "\n"})
     assert len(turns(named(made.run("replay", "script.jsonl").output, made))) == 199
-    before = set(made.path.rglob("*.wpilog"))
-    assert made.run("fuzz", "--runs", "2").code == 0
-    assert set(made.path.rglob("*.wpilog")) == before
 
 
 SYSID = """
@@ -260,13 +256,6 @@ def test_what_a_sysid_routine_writes_is_in_the_runs_log(make_project) -> None:
         "acceleration-arm-drive": "turns_per_second_squared",
         "heat-arm-drive": "celsius",
     }
-    made.run("fuzz", "--runs", "2")
+    # Thousands of matches have none.
+    assert made.run("fuzz", "--runs", "2").code == 0
     assert list(made.path.rglob("*.wpilog")) == [file]
-
-
-@pytest.mark.slow
-def test_a_directory_that_there_cannot_be(make_project) -> None:
-    made = make_project(robot() | {".pyfrc": "a file"})
-    result = made.run("sim", "--ui", "none", "--mode", "disabled", "--seconds", "2")
-    assert result.code == 0, result.output
-    assert "cannot be written" in result.output

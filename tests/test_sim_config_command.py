@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from conftest import MakeProject, sampled
+from conftest import MakeProject
 
 ROBOT = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
 
@@ -52,21 +52,20 @@ def test_strict_makes_warnings_fail(make_project: MakeProject) -> None:
     assert many.stdout.endswith("sim/config.json: no mistakes, but more than 20 warnings\n")
 
 
-@pytest.mark.parametrize(
-    "place", sampled(["config.json", "tests/sim/config.json", "Sim/config.json", "sim/Config.json"], "Sim/config.json")
-)
-def test_a_file_in_the_wrong_place_is_told(make_project: MakeProject, place: str) -> None:
-    project = make_project({"robot.py": ROBOT, place: '{"pyfrc": {}}'})
-    if (project.path / "sim/config.json").exists():
-        pytest.skip("this file system does not tell capital letters from others")
-    checked = project.run_here("config", "check", "--strict")
-    assert checked.code == 1
-    assert checked.stdout == (
-        f"warning: {place}: pyfrc does not read this file\n  Move it to sim/config.json\n"
-        "sim/config.json: the file does not exist, so all values are defaults, but 1 warning\n"
-    )
-    project.write({place: '{"other": 1}'})  # another tool's
-    assert project.run_here("config", "check", "--strict").code == 0
+def test_a_file_in_the_wrong_place_is_told(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT})
+    for place in ("config.json", "tests/sim/config.json", "Sim/config.json", "sim/Config.json"):
+        project.write({place: '{"pyfrc": {}}'})
+        if (project.path / "sim/config.json").exists():
+            pytest.skip("this file system does not tell capital letters from others")
+        checked = project.run_here("config", "check", "--strict")
+        assert checked.code == 1
+        assert checked.stdout == (
+            f"warning: {place}: pyfrc does not read this file\n  Move it to sim/config.json\n"
+            "sim/config.json: the file does not exist, so all values are defaults, but 1 warning\n"
+        )
+        project.write({place: '{"other": 1}'})  # another tool's
+        assert project.run_here("config", "check", "--strict").code == 0
 
 
 def test_a_file_beside_the_directory_of_the_code_is_told(make_project: MakeProject) -> None:

@@ -6,8 +6,6 @@ import subprocess
 import sys
 from textwrap import dedent
 
-import pytest
-from conftest import sampled
 from sim_robots import FILES
 
 PROGRAM = """
@@ -19,8 +17,7 @@ PROGRAM = """
     from pyfrc_core.sim.simulate import SimRequest, simulate
 
     request = SimRequest(ui="none", seconds=0.5, quiet=True, page=Path("run.html"))
-    if {runs}:
-        assert simulate(find_project(Path.cwd()), request, print) == 0
+    assert simulate(find_project(Path.cwd()), request, print) == 0
     print("of the server:", [name for name in ("starlette", "uvicorn", "websockets") if name in sys.modules])
     import pyfrc_core.sim.ui.web.front_end
     import pyfrc_core.sim.ui.choose
@@ -30,10 +27,9 @@ PROGRAM = """
 """
 
 
-@pytest.mark.parametrize("runs", sampled([False, True], False))
-def test_the_front_ends_process_imports_nothing_of_wpilib(runs: bool, make_project) -> None:
+def test_the_front_ends_process_imports_nothing_of_wpilib(make_project) -> None:
     done = subprocess.run(
-        [sys.executable, "-c", dedent(PROGRAM.replace("{runs}", str(runs)))],
+        [sys.executable, "-c", dedent(PROGRAM)],
         cwd=make_project(FILES).path,
         capture_output=True,
         text=True,
@@ -41,6 +37,6 @@ def test_the_front_ends_process_imports_nothing_of_wpilib(runs: bool, make_proje
         timeout=120,
     )
     assert done.returncode == 0, done.stdout + done.stderr
-    assert ("the robot is there" in done.stdout) is runs
+    assert "the robot is there" in done.stdout
     assert "of the server: []" in done.stdout
     assert "imported: []" in done.stdout

@@ -20,6 +20,7 @@ from typing import Any
 import ntcore
 import pytest
 from conftest import sampled
+from loops import for_each
 from ports import lasting_port
 from sim_robots import FILES, PATIENCE, run, settle, wait
 from spelling import spelled
@@ -28,10 +29,13 @@ from pyfrc_core.errors import UsageError
 from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.processes.spawn import StartedProcess
 from pyfrc_core.project import Project
-from pyfrc_core.runtime.scripts.script import parse_script
+from pyfrc_core.runtime.scripts.script import InputScript, Step, parse_script
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine import processes
-from pyfrc_core.sim.engine.scene import Pose
+from pyfrc_core.sim.engine.commands import Write
+from pyfrc_core.sim.engine.first_script import ending_released, first_script, releases_after
+from pyfrc_core.sim.engine.recording import Recording
+from pyfrc_core.sim.engine.scene import Field, Pose
 from pyfrc_core.sim.engine.snapshot import Snapshot
 from pyfrc_core.sim.engine.watch import Watch
 
@@ -70,6 +74,7 @@ def test_a_robot_that_has_just_been_switched_on(simulation: Simulation) -> None:
     assert snapshot.values["pwm[0].value"] == 0
     assert snapshot.values["dio[3].is_input"] is True
     assert "pwm[2].value" not in snapshot.values  # the robot has made no such motor
+    assert snapshot.values["alliance_station"] == 4
     assert snapshot.scene.robot == (10, 12, 0)
     assert [text.text for text in snapshot.scene.drawings] == ["hello"]
     assert (snapshot.scene.field.width, list(snapshot.scene.field.starts)) == (54.25, ["start", "left", "right"])
@@ -258,6 +263,7 @@ def test_going_back_lands_on_the_same_snapshot(simulation: Simulation) -> None:
     run(simulation, 2)
     assert simulation.snapshot == later
     assert simulation.script().trace == script.trace
+    assert sum("alliance_station" in step.writes for step in simulation.script().steps) == 1
     simulation.rewind(0)
     wait(simulation, lambda: simulation.status.state == "paused")
     assert (simulation.snapshot.time, simulation.snapshot.mode) == (0, "disabled")
@@ -316,6 +322,8 @@ def test_a_robot_that_fails_takes_nothing_with_it(
     assert released(simulation.snapshot) == released(before)
     run(simulation, 1)
     assert simulation.status.state == "paused"
+    assert simulation.snapshot.enabled
+    assert simulation.snapshot.values["pwm[0].value"] == 0  # what was held there is released
 
 
 def test_code_that_cannot_be_imported_says_where(make_project) -> None:
@@ -501,38 +509,31 @@ def answers(address: str, port: int) -> bool:
         return connection.connect_ex((address, port)) == 0
 
 
+DRIVEN = {"joysticks[0].axes[1]": -1.0, "joysticks[1].buttons[3]": True, "joysticks[1].povs[0]": 90}
+RELEASED = {"joysticks[0].axes[1]": 0.0, "joysticks[1].buttons[3]": False, "joysticks[1].povs[0]": -1}
+
+
+def test_what_was_held_is_released_where_a_moment_is_left_and_where_a_script_ends() -> None:
+    held = Step(20_000, {"mode": "teleop", **DRIVEN})
+    assert releases_after(Recording(InputScript((held,), 60_000))) == (Write(RELEASED),)
+    assert releases_after(Recording(InputScript((held, Step(40_000, RELEASED)), 60_000))) == ()
+    assert ending_released(InputScript((held,), 60_000)).steps == (held, Step(60_001, RELEASED))
+
+
+@for_each("start, station", [(None, "blue1"), ("left", "blue1"), ("far", "red1")])
+def test_the_alliance_is_that_of_the_wall_where_the_robot_starts(start: str | None, station: str) -> None:
+    starts = {"start": Pose(0, 0, 0), "left": Pose(2, 3, 0), "far": Pose(50, 3, math.pi)}
+    field = Field(54.25, 26.4, 20.0, 2.0, 3.0, starts)
+    steps = first_script(replace(STILL, start_position=start), "robot.py", field).steps
+    assert [step.writes["alliance_station"] for step in steps if "alliance_station" in step.writes] == [station]
+
+
 def stands(simulation: Simulation) -> bool:
     """Whether the robot stays where it is, and no motor runs."""
     before = simulation.snapshot
     run(simulation, 0.5)
     now = simulation.snapshot
     return before.scene.robot == now.scene.robot and now.values["pwm[0].value"] == 0
-
-
-@pytest.mark.slow
-def test_a_moment_that_is_left_releases_what_was_held(simulation: Simulation) -> None:
-    drive_forward(simulation)
-    run(simulation, 1)
-    simulation.set_axis(0, 1, 0.0)
-    simulation.rewind(0.5)  # where it was held
-    settle(simulation)
-    assert simulation.snapshot.enabled
-    run(simulation, 0.1)
-    assert stands(simulation)
-
-
-@pytest.mark.slow
-def test_a_script_that_has_ended_holds_nothing(project: Project) -> None:
-    lines = [
-        '{"format": "pyfrc-input 1", "end": 1}',
-        '{"t": 0.1, "set": {"mode": "teleop", "joysticks[0].axes[1]": -1}}',
-    ]
-    with Simulation(project, replace(STILL, script=parse_script(lines))) as simulation:
-        settle(simulation)
-        run(simulation, 0.9)
-        assert simulation.snapshot.values["pwm[0].value"] == 1
-        run(simulation, 0.2)
-        assert stands(simulation)
 
 
 def test_who_leaves_releases_what_they_held_and_the_last_one_disables(simulation: Simulation) -> None:
@@ -575,22 +576,6 @@ def test_a_restart_keeps_what_was_chosen(simulation: Simulation) -> None:
     settle(simulation)
     run(simulation, 0.1)
     assert simulation.snapshot.chosen_mode == "teleop"
-
-
-@pytest.mark.parametrize(("start", "station"), sampled([(None, 4), ("left", 4), ("far", 1)], ("far", 1)))
-def test_the_alliance_is_that_of_the_wall_where_the_robot_starts(make_project, start: str | None, station: int) -> None:
-    positions = """{"pyfrc": {"robot": {"start_positions": [
-        {"name": "left", "x": 2, "y": 3}, {"name": "far", "x": 50, "y": 3, "angle": 180}]}}}"""
-    made = make_project({**FILES, "sim/config.json": positions})
-    options = replace(STILL, start_position=start)
-    with Simulation(Project(made.path / "robot.py"), options) as simulation:
-        run(simulation, 0.1)
-        assert simulation.snapshot.values["alliance_station"] == station
-        simulation.rewind(0.06)
-        settle(simulation)
-        run(simulation, 0.1)
-        steps = simulation.script().steps
-        assert sum("alliance_station" in step.writes for step in steps) == 1
 
 
 def test_the_robot_of_todays_physics_begins_at_the_start_that_is_chosen(make_project) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import threading
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -82,8 +83,10 @@ def test_a_page_drives_the_robot(make_project) -> None:
 
 
 def test_a_page_sets_inputs_choosers_and_its_place(make_project) -> None:
-    with served(make_project(FILES)) as server, server.page() as page:
+    config = FILES["sim/config.json"].replace('"robot":', '"field": {"coordinates": "alliance"}, "robot":')
+    with served(make_project({**FILES, "sim/config.json": config})) as server, server.page() as page:
         page.run_for(0.1)
+        assert page.parts["field"]["coordinates"] == "alliance"
         page.command("write", values={"dio[3].value": False, "joysticks[2].axes[1]": 0.25})
         page.command("choose", chooser="/SmartDashboard/Auto", option="Forward")
         page.command("choose_mode", mode="autonomous")
@@ -177,6 +180,14 @@ def test_every_change_of_a_subscribed_value_arrives_at_any_speed(make_project) -
         times, angles = flat[::2], flat[1::2]
         assert angles == [angles[0] + number for number in range(500)]
         assert times == pytest.approx([times[0] + 0.02 * number for number in range(500)])
+
+
+def test_a_page_knows_from_when_on_values_are_kept(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pyfrc_core.sim.ui.web.collector.Runs", partial(Runs, most_bytes=1))
+    with served(make_project(DASHBOARD)) as server, server.page() as page:
+        page.run_for(20)
+        page.until(lambda: page.parts.get("known_from"))
+        assert 0 < page.parts["known_from"] < 20
 
 
 def drive_and_mark(page: Page) -> None:

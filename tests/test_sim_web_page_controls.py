@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 import pytest
-from browser_pages import Seen, page_of
+from browser_pages import Seen
 from playwright.sync_api import expect
 from web_pages import served
 
@@ -76,32 +76,6 @@ ROBOT = {
     """,
 }
 
-#: Two gamepads of the same name, and one that the browser has no layout for.
-PADS = """
-    window.fakePads = [0, 1].map((index) => ({
-      id: "Twin Pad (STANDARD GAMEPAD Vendor: 1 Product: 2)", index, connected: true, mapping: "standard", timestamp: 1,
-      axes: [0, 0, 0, 0], buttons: Array.from({ length: 17 }, () => ({ pressed: false, value: 0, touched: false })),
-    })).concat([{ id: "Old Stick", index: 2, connected: true, mapping: "", timestamp: 1,
-                  axes: [0.25, 0.5], buttons: [{ pressed: true, value: 1, touched: true }] }]);
-    Object.defineProperty(navigator, "getGamepads", { value: () => window.fakePads });
-"""
-
-
-#: Finds where the field's canvas shows the robot: the middle one of the places at which the pointer would be a hand. A
-#: real mouse at each of these thousands of places would take a minute.
-PLACE_OF_ROBOT = """(canvas) => {
-    const box = canvas.getBoundingClientRect();
-    const found = [];
-    for (let y = 10; y < box.height; y += 12) {
-        for (let x = 10; x < box.width; x += 12) {
-            const place = { clientX: box.left + x, clientY: box.top + y, bubbles: true };
-            canvas.dispatchEvent(new PointerEvent("pointermove", place));
-            if (canvas.style.cursor === "grab") found.push([x, y]);
-        }
-    }
-    return found[Math.floor(found.length / 2)];
-}"""
-
 
 @pytest.fixture(scope="module", name="server")
 def server_of_many_devices(make_shared_project):
@@ -148,77 +122,73 @@ def test_each_kind_of_device_shows_and_takes_its_value(person: Seen) -> None:
     page.locator(".curve-name").first.wait_for(state="detached")
 
 
-def test_joysticks_by_keys(browser, server) -> None:
-    with page_of(browser, server, script=PADS) as person:
-        page = person.page
-        person.button("Enable").click()
-        trigger = page.locator(".stick-button", has_text="Trigger")
-        for key in ("Enter", "Space"):  # neither disables nor stops the robot here
-            trigger.focus()
-            page.keyboard.down(key)
-            person.until(lambda: person.value("joysticks[0].buttons")[1] is True)
-            page.keyboard.up(key)
-            person.until(lambda: person.value("joysticks[0].buttons")[1] is False)
-        person.state("Teleoperated enabled")
-        page.get_by_label("POV 90°").focus()
-        page.keyboard.down("Enter")
-        person.until(lambda: person.value("joysticks[0].povs")[0] == 90)
-        page.keyboard.up("Enter")
-        person.until(lambda: person.value("joysticks[0].povs")[0] == -1)
-        page.get_by_label("POV 180°").click(button="right")
-        person.until(lambda: person.value("joysticks[0].povs")[0] == 180)
-        page.locator(".pov .pressed", has_text="↓").wait_for()
-        page.get_by_label("POV 180°").click(button="right")
-        person.until(lambda: person.value("joysticks[0].povs")[0] == -1)
-        choice = page.get_by_label("Gamepad of joystick 0")
-        choice.select_option("none")
-        axis = page.get_by_role("slider", name="Axis").nth(1)
-        axis.focus()
-        axis.press("End")
-        person.until(lambda: person.value("joysticks[0].axes")[1] == 1)
-        axis.dblclick()
-        person.until(lambda: person.value("joysticks[0].axes")[1] == 0)
-        # Two of the same name can be chosen separately. A gamepad without a standard layout keeps its own numbers.
-        names = ["Automatic: no gamepad", "Keyboard and mouse only", "Twin Pad", "Twin Pad", "Old Stick"]
-        expect(choice.locator("option")).to_have_text(names)
-        choice.select_option(label="Old Stick")
-        person.until(lambda: list(person.value("joysticks[0].axes")[:2]) == [0.25, 0.5])
-        person.until(lambda: person.value("joysticks[0].buttons")[1] is True)
-        page.evaluate("window.fakePads = []")
-        choice.locator("option", has_text="Old Stick (not connected)").wait_for(state="attached")
-
-
-def test_menus_tabs_and_borders_by_keys_and_mouse(person: Seen) -> None:
+def test_joysticks_by_mouse_and_keys(person: Seen) -> None:
     page = person.page
-    menu = page.get_by_title("Layout", exact=True)
-    menu.focus()
-    for key in ("Enter", "ArrowDown", "ArrowDown", "ArrowUp", "Escape"):
-        page.keyboard.press(key)
-    page.locator(".menu-list:popover-open").wait_for(state="detached")
-    expect(menu).to_be_focused()
-    page.keyboard.press("Enter")
-    page.locator(".menu-list:popover-open").wait_for()
-    for key in ("ArrowDown", "ArrowDown", "ArrowDown", "Enter"):
-        page.keyboard.press(key)
-    expect(menu).to_have_text("Tuning")
-    first = page.get_by_role("tablist").nth(0).get_by_role("tab").first
-    border = page.locator("[role=separator][aria-orientation=vertical]").first
-    before = border.bounding_box()["x"]
-    person.drag(border, (0.5, 0.5), (-20, 0.5))
-    page.wait_for_function(
-        "x => document.querySelector('[role=separator][aria-orientation=vertical]').getBoundingClientRect().x < x - 20",
-        arg=before,
-    )
-    first.focus()
-    name = first.inner_text()
-    page.keyboard.press("ArrowRight")
-    expect(person.tab(name)).to_have_attribute("aria-selected", "false")
-    page.keyboard.press("ArrowLeft")
-    expect(person.tab(name)).to_be_focused()
-    page.keyboard.press("Delete")
-    person.tab(name).wait_for(state="detached")
-    person.choose("Layout", "Reset this layout")
-    person.tab(name).wait_for()
+
+    def value(kind: str, number: int = 0) -> Any:
+        return person.value(f"joysticks[0].{kind}")[number]
+
+    person.button("Enable").click()
+    box = page.get_by_label("Axes 0 and 1").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + 16, steps=3)
+    person.until(lambda: value("axes", 1) == -1)
+    page.mouse.up()
+    person.until(lambda: value("axes", 1) == 0)
+    trigger = page.locator(".stick-button", has_text="Trigger")
+    trigger.hover()
+    page.mouse.down()
+    person.until(lambda: value("buttons", 1))
+    page.locator(".stick-button.pressed", has_text="Trigger").wait_for()
+    page.mouse.up()
+    person.until(lambda: not value("buttons", 1))
+    page.locator(".stick-button.pressed", has_text="Trigger").wait_for(state="detached")
+    for key in ("Enter", "Space"):  # neither disables nor stops the robot here
+        trigger.focus()
+        page.keyboard.down(key)
+        person.until(lambda: value("buttons", 1))
+        page.keyboard.up(key)
+        person.until(lambda: not value("buttons", 1))
+    person.state("Teleoperated enabled")
+    trigger.click(button="right")
+    person.until(lambda: value("buttons", 1))
+    right = page.get_by_label("POV 90°")
+    right.hover()
+    page.mouse.down()
+    person.until(lambda: value("povs") == 90)
+    page.mouse.up()
+    person.until(lambda: value("povs") == -1)
+    right.focus()
+    page.keyboard.down("Enter")
+    person.until(lambda: value("povs") == 90)
+    page.keyboard.up("Enter")
+    person.until(lambda: value("povs") == -1)
+    page.get_by_label("POV 180°").click(button="right")
+    person.until(lambda: value("povs") == 180)
+    page.locator(".pov .pressed", has_text="↓").wait_for()
+    page.get_by_label("POV 180°").click(button="right")
+    person.until(lambda: value("povs") == -1)
+    axis = page.get_by_role("slider", name="Axis").nth(1)
+    axis.focus()
+    axis.press("End")
+    person.until(lambda: value("axes", 1) == 1)
+    axis.dblclick()
+    person.until(lambda: value("axes", 1) == 0)
+    page.get_by_role("tab", name="1", exact=True).click()
+    page.get_by_label("Plugged in").uncheck()
+    person.until(lambda: person.value("joysticks[1].axes") is None)
+    # A control that loses the keyboard is released.
+    person.tab("Touch sticks").click()
+    for control, key, kind in (
+        (page.get_by_label("Left stick"), "ArrowUp", "axes"),
+        (page.get_by_role("button", name="2", exact=True), "Enter", "buttons"),
+    ):
+        control.focus()
+        page.keyboard.down(key)
+        person.until(lambda kind=kind: any(person.value(f"joysticks[0].{kind}")[2 * (kind == "buttons") :]))
+        control.blur()
+        person.until(lambda kind=kind: not any(person.value(f"joysticks[0].{kind}")[2 * (kind == "buttons") :]))
 
 
 def test_the_dashboard_runs_commands_and_sets_values(person: Seen) -> None:
@@ -252,32 +222,56 @@ def test_the_dashboard_runs_commands_and_sets_values(person: Seen) -> None:
     row.wait_for(state="detached")
 
 
-def test_the_field_is_moved_zoomed_and_turned_round(person: Seen) -> None:
+def test_the_field_is_moved_zoomed_and_turned_round_and_the_robot_on_it_is_placed(person: Seen) -> None:
     page = person.page
     field = page.locator(".field-canvas")
     box = field.bounding_box()
     page.keyboard.press("F5")
+    page.locator(".pose b", has_text="10.00 ft").wait_for()
 
-    def robot_at(x: float, y: float) -> str:
-        """The pointer's form there: a hand on the robot only."""
+    def robot() -> Any:
+        return person.simulation.snapshot.scene.robot
+
+    def at(x: float, y: float) -> tuple[float, float]:
+        """Return where a place on the field is on the page: the field of 54 by 26.4 feet has a margin around it."""
+        size = person.simulation.field
+        scale = 0.93 * min(box["width"] / size.width, box["height"] / size.height)
+        return box["width"] / 2 + (x - size.width / 2) * scale, box["height"] / 2 + (y - size.height / 2) * scale
+
+    def pointer_at(x: float, y: float) -> str:
+        """Return the pointer's form there: a hand on the robot only."""
         page.mouse.move(box["x"] + x, box["y"] + y)
         return field.evaluate("element => element.style.cursor")
 
-    x, y = field.evaluate(PLACE_OF_ROBOT)
-    assert robot_at(x, y) == "grab"
-    robot = person.simulation.snapshot.scene.robot
-    page.mouse.move(box["x"] + x + 80, box["y"] + y + 60)  # beside the robot
-    page.mouse.down()
-    page.mouse.move(box["x"] + x + 140, box["y"] + y + 60, steps=3)
-    page.mouse.up()
-    assert robot_at(x + 60, y) == "grab"
+    def drag(start: tuple[float, float], end: tuple[float, float], button: str = "left") -> None:
+        shares = [(x / box["width"], y / box["height"]) for x, y in (start, end)]
+        person.drag(field, *shares, button=button)
+
+    x, y = at(10, 12)
+    assert pointer_at(x, y) == "grab"
+    drag((x + 80, y + 60), (x + 140, y + 60))  # beside the robot
+    assert pointer_at(x + 60, y) == "grab"
+    page.mouse.wheel(0, -600)
     page.get_by_label("Show the whole field").click()
-    assert robot_at(x, y) == "grab"
+    assert pointer_at(x, y) == "grab"
     person.choose("What is drawn", "Turn the field round")
-    assert robot_at(box["width"] - x, box["height"] - y) == "grab"
+    assert pointer_at(box["width"] - x, box["height"] - y) == "grab"
     person.choose("What is drawn", "Turn the field round")
+    page.get_by_title("What is drawn").click()
+    page.get_by_role("menuitemcheckbox", name="AprilTags").click()
+    drag((x, y), at(30, 10))
+    person.until(lambda: robot()[:2] == pytest.approx((30, 10), abs=0.5))
+    page.locator(".pose b", has_text=f"{robot().x:.2f} ft").wait_for()  # it is drawn there, too
+    drag(at(*robot()[:2]), at(robot().x - 8, robot().y), button="right")
+    person.until(lambda: abs(robot().angle) == pytest.approx(math.pi, abs=0.2))
+    before = robot()
     field.focus()
-    page.keyboard.press("Shift+ArrowRight")
-    person.until(lambda: person.simulation.snapshot.scene.robot.angle == pytest.approx(robot.angle + math.radians(15)))
-    page.keyboard.press("ArrowUp")
-    person.until(lambda: person.simulation.snapshot.scene.robot.y == pytest.approx(robot.y - 0.25))
+    for key, moved in (
+        ("ArrowRight", (0.25, 0, 0)),
+        ("ArrowUp", (0.25, -0.25, 0)),
+        ("Shift+ArrowLeft", (0.25, -0.25, -math.radians(15))),
+    ):
+        page.keyboard.press(key)
+        there = [each + by for each, by in zip(before, moved, strict=True)]
+        person.until(lambda there=there: robot() == pytest.approx(there, abs=0.01))
+        person.drawn()  # the next key moves it from where the page has it

@@ -122,15 +122,6 @@ def test_the_file_is_the_teams(file: Path, person: Seen) -> None:
     page.get_by_role("alert").get_by_text("sim/dashboards.json:").wait_for()
     file.write_text(good, "utf-8")
     shown(person, "lamp").wait_for()
-    person.choose("Dashboards of this project", "Rename…")
-    page.keyboard.type("Pit")
-    page.keyboard.press("Enter")
-    page.get_by_title("Dashboards of this project").get_by_text("Pit").wait_for()
-    assert len(widgets(file, "Pit")) == 2
-    person.choose("Dashboards of this project", "Remove…")
-    page.locator("dialog").get_by_text("Remove", exact=True).click()
-    person.button("New dashboard…").wait_for()
-    assert json.loads(file.read_text("utf-8")) == {"dashboards": {}}
 
 
 def test_every_widget_shows_what_the_robot_publishes(file: Path, person: Seen) -> None:

@@ -1,4 +1,4 @@
-"""Plots for tuning on the page: axes, units, derivatives, differences, statistics, curves over another curve."""
+"""Plots on the page: axes, units, derivatives, differences, statistics, and the parts of structs and lists."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def test_a_curve_is_shown_in_another_unit_as_a_derivative_or_without_another_one
     assert float(lines[-1].split(",")[3]) == pytest.approx(shown(drove, "sim.pose[1] (2)"), rel=0.01)
 
 
-def test_axes_are_zoomed_locked_and_typed(drove: Seen) -> None:
+def test_axes_tables_and_colours(drove: Seen) -> None:
     page = drove.page
     automatic = limits(drove, "Left")
     page.locator(f"{PLOT} .u-axis.axis-handle").hover()
@@ -108,10 +108,7 @@ def test_axes_are_zoomed_locked_and_typed(drove: Seen) -> None:
     page.locator(f"{PLOT} .u-axis.axis-handle").dblclick()
     drove.eventually(f"{CONFIG}.then(({{ ranges }}) => !ranges.left)")
     assert limits(drove, "Left") == pytest.approx(automatic, abs=0.1)
-
-
-def test_a_table_has_statistics_of_what_is_in_view(drove: Seen) -> None:
-    page = drove.page
+    # A table has statistics of what is in view.
     drove.button("All").first.click()
     page.locator(PLOT).get_by_role("button", name="Table", exact=True).click()
     cells = page.locator(f"{PLOT} tbody tr", has_text="Robot x").locator("td.number")
@@ -126,11 +123,10 @@ def test_a_table_has_statistics_of_what_is_in_view(drove: Seen) -> None:
     drove.button("Follow again").wait_for()
     assert float(cells.nth(3).inner_text()) < high
     page.get_by_label("Hide sim.pose[0]").click()
-    page.get_by_label("Show sim.pose[0]").wait_for()
-
-
-def test_more_curves_than_colours_look_different(drove: Seen) -> None:
-    page = drove.page
+    page.get_by_label("Show sim.pose[0]").click()
+    page.locator(PLOT).get_by_role("button", name="Table", exact=True).click()
+    page.locator(f"{PLOT} .curve-table").wait_for(state="detached")
+    # More curves than colours look different.
     page.evaluate(ADD, [f"joysticks[0].axes[{number}]" for number in range(6)])
     page.evaluate(ADD, [f"joysticks[1].axes[{number}]" for number in range(6)])
     page.locator(f"{PLOT} .curve-name").nth(13).wait_for()
@@ -144,10 +140,8 @@ def test_more_curves_than_colours_look_different(drove: Seen) -> None:
         "module('js/plotting.js').then(({ plotOf }) => plotOf('plot:1').curves.map(({ color }) => color))"
     )
     assert colors == [*range(13), 16]
-
-
-def test_the_axis_of_time_has_times(drove: Seen) -> None:
-    steps = drove.page.evaluate(
+    # The axis of time has times.
+    steps = page.evaluate(
         """async () => {
           const { buildChart } = await module("js/plot_chart.js");
           const area = document.createElement("div");
@@ -167,33 +161,7 @@ def test_the_axis_of_time_has_times(drove: Seen) -> None:
     assert set(steps) <= {0.1, 0.2, 1, 2, 5, 15, 20, 30, 60, 120, 300}
 
 
-def test_a_chart_keeps_a_height_below_many_curves_and_above_many_states(person: Seen) -> None:
-    page = person.page
-    page.set_viewport_size({"width": 1600, "height": 1000})
-    paths = [
-        "sim.pose[0]",
-        "sim.pose[1]",
-        "sim.pose[2]",
-        "pwm[0].value",
-        "sim.mode",
-        "dio[3].value",
-        "alliance_station",
-    ]
-    page.evaluate(ADD, paths)
-    page.locator(f"{PLOT} .curve-name").nth(len(paths) - 1).wait_for()
-    page.locator(f"{PLOT} .u-over").wait_for()
-    for is_table in (False, True):
-        if is_table:
-            page.locator(PLOT).get_by_role("button", name="Table").click()
-            page.locator(f"{PLOT} .curve-table").wait_for()
-        person.drawn()
-        least = {".u-over": 80, ".legend": 60 if is_table else 20}
-        for part, height in least.items():
-            assert page.locator(f"{PLOT} {part}").bounding_box()["height"] >= height
-    page.locator(f"{PLOT} .plot-bands").scroll_into_view_if_needed()
-
-
-def test_the_wheel_scrolls_a_low_panel_and_zooms_with_ctrl(person: Seen) -> None:
+def test_low_panels(person: Seen) -> None:
     page = person.page
     person.choose("Layout", "Tuning")
     page.evaluate(ADD, ["sim.pose[0]"])
@@ -220,23 +188,63 @@ def test_the_wheel_scrolls_a_low_panel_and_zooms_with_ctrl(person: Seen) -> None
     page.mouse.wheel(0, -4)  # a pinch on a trackpad
     follow.wait_for()
     page.keyboard.up("Control")
+    # A chart keeps a height below many curves and above many states.
+    page.set_viewport_size({"width": 1600, "height": 1000})
+    paths = [
+        "sim.pose[0]",
+        "sim.pose[1]",
+        "sim.pose[2]",
+        "pwm[0].value",
+        "sim.mode",
+        "dio[3].value",
+        "alliance_station",
+    ]
+    page.evaluate(ADD, paths)
+    page.locator(f"{PLOT} .curve-name").nth(len(paths) - 1).wait_for()
+    page.locator(f"{PLOT} .u-over").wait_for()
+    for is_table in (False, True):
+        if is_table:
+            page.locator(PLOT).get_by_role("button", name="Table").click()
+            page.locator(f"{PLOT} .curve-table").wait_for()
+        person.drawn()
+        least = {".u-over": 80, ".legend": 60 if is_table else 20}
+        for part, height in least.items():
+            assert page.locator(f"{PLOT} {part}").bounding_box()["height"] >= height
+    page.locator(f"{PLOT} .plot-bands").scroll_into_view_if_needed()
 
 
-def test_what_the_robot_publishes_and_outputs_is_offered_first(person: Seen) -> None:
+MODULES = "nt:/SmartDashboard/Modules"
+GOAL = "nt:/SmartDashboard/Plan/goal"
+
+
+def test_structs_and_lists_unfold_into_parts_that_are_plotted_and_saved(person: Seen) -> None:
     page = person.page
-    person.tab("Plot 1").click()
-    page.locator(PLOT).get_by_role("button", name="Add value").click()
-    offered = page.locator(f"{PLOT} .picker li button")
-    page.locator(f"{PLOT} .picker li button[title='nt:/SmartDashboard/kP']").wait_for()
-    assert offered.first.get_attribute("title").startswith("nt:/")
-    page.get_by_label("Search all values").fill("pwm[0]")
-    offered.filter(has_text="raw_value").wait_for()
-    titles = [each.get_attribute("title") for each in offered.all()]
-    assert (titles[0], titles[-1]) == ("pwm[0].value", "pwm[0].raw_value")
-    page.get_by_label("Search all values").fill("left motor")
-    offered.first.wait_for()
-    assert offered.first.get_attribute("title") == "pwm[0].value"
-    page.get_by_label("Search all values").fill("0")
-    page.locator(f"{PLOT} .picker li button[title='pwm[0].value']").wait_for()
-    titles = [each.get_attribute("title") for each in offered.all()]
-    assert titles.index("pwm[0].value") < titles.index("joysticks[0].axes[0]")
+    person.choose("Layout", "Tuning")
+    person.tab("NetworkTables").click()
+    page.locator(".nt-row.folder", has_text="SwerveModuleState[]").get_by_role("button").click()
+    page.get_by_role("button", name="0", exact=True).click()
+    speed = person.row(f"{MODULES}/0/speed")
+    speed.locator(".nt-value", has_text="1").wait_for()
+    person.set_number(person.row("nt:/SmartDashboard/kP").locator("input"), "1.5")
+    speed.locator(".nt-value", has_text="3").wait_for()
+    assert speed.locator("input").count() == 0
+    speed.hover()
+    speed.get_by_label("Plot speed").click()
+    # The picker offers parts and elements by their names.
+    page.locator("[data-panel='plot:1']").get_by_role("button", name="Add value").click()
+    page.get_by_label("Search all values").fill("modules 3 angle")
+    page.get_by_label("Search all values").press("Enter")
+    page.locator(".nt-row.folder", has_text="Field2d").filter(has_text="Plan").get_by_role("button").click()
+    person.row(GOAL).get_by_title("The elements of this list").click()
+    element = person.row(f"{GOAL}[1]")
+    element.locator(".nt-value", has_text="5.5").wait_for()
+    assert element.locator("input").count() == 0
+    element.hover()
+    element.get_by_label("Plot [1]").click()
+    for text in ("5.5", "0.7"):
+        page.locator(".legend b", has_text=text).first.wait_for()
+    with page.expect_download() as download:
+        person.button("Save the values as CSV").first.click()
+    lines = download.value.path().read_text("utf-8").splitlines()
+    assert lines[0] == f"t,{MODULES}/0/speed,{MODULES}/3/angle/value,{GOAL}[1]"
+    assert lines[-1].split(",")[1:] == ["3", "0.7", "5.5"]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import threading
-from functools import partial
+from typing import Any
 
+import pytest
 from browser_pages import ROBOT, Seen, page_of
-from web_pages import served
-
-from pyfrc_core.sim.ui.web.runs import Runs
+from playwright.sync_api import expect
+from web_pages import Served, served
 
 
 def drive(person: Seen, seconds: float = 1.0) -> None:
@@ -124,59 +125,22 @@ def test_marks_and_moments_are_found_on_the_timeline(person: Seen) -> None:
     timeline.hover(position={"x": x(0.5), "y": 14})
     page.locator(".timeline-tip", has_text="<i>here</i>").wait_for()
     page.keyboard.press("Tab")  # the keys reach what the mouse reaches
-    person.choose("Restart, save, end", "Save the recording")
-    page.get_by_label("Save the recording").fill("kept/drive.jsonl")
-    page.keyboard.press("Enter")
+    # A file that is there is replaced after a question.
+    file = person.simulation.project.root / "kept/drive.jsonl"
+    file.parent.mkdir()
+    file.write_text("mine")
+    for answer in ("Cancel", "Replace"):
+        assert file.read_text() == "mine"
+        person.choose("Restart, save, end", "Save the recording")
+        page.get_by_label("Save the recording").fill("kept/drive.jsonl")
+        page.keyboard.press("Enter")
+        page.get_by_text("kept/drive.jsonl exists. Replace it?").wait_for()
+        person.button(answer).click()
+        page.locator("dialog").wait_for(state="detached")
     page.get_by_text("Saved kept/drive.jsonl").wait_for()
-    assert (person.simulation.project.root / "kept/drive.jsonl").is_file()
+    assert file.read_text() != "mine"
     page.get_by_label("Hide this message").click()
     page.get_by_text("Saved kept/drive.jsonl").wait_for(state="detached")
-
-
-def test_after_a_click_on_the_timeline_arrows_look_around_until_escape(person: Seen) -> None:
-    page = person.page
-    drive(person)
-    timeline = page.get_by_role("slider", name="Timeline")
-    timeline.click(position={"x": 20, "y": 14})
-    page.locator(".timebar.past .timeline:not([aria-valuetext^=live])").wait_for()
-    moment = float(timeline.get_attribute("aria-valuenow"))
-    page.keyboard.press("ArrowRight")
-    page.locator(f".timeline[aria-valuenow='{moment + 0.02:.2f}']").wait_for()
-    page.keyboard.press("PageUp")
-    page.locator(f".timeline[aria-valuenow='{min(moment + 1.02, person.simulation.status.length):.2f}']").wait_for()
-    page.keyboard.press("Escape")
-    page.locator(".timebar.past").wait_for(state="detached")
-    page.keyboard.press("ArrowLeft")
-    person.drawn()
-    assert page.locator(".timebar.past").count() == 0
-    # The emergency stop is the space bar, also there.
-    timeline.click(position={"x": 20, "y": 14})
-    page.keyboard.press(" ")
-    page.locator(".timebar.past").wait_for(state="detached")
-    person.state("Emergency stopped")
-
-
-def test_a_crash_shows_the_line_and_the_way_back(person: Seen) -> None:
-    page = person.page
-    person.button("Enable").click()
-    person.until(lambda: person.simulation.snapshot.enabled and person.simulation.snapshot.time > 2.5)
-    page.keyboard.down("5")
-    alert = page.get_by_role("alert")
-    alert.locator("strong", has_text="ZeroDivisionError").wait_for()
-    page.keyboard.up("5")
-    assert alert.locator("strong").inner_text().startswith("robot.py:")
-    assert alert.locator("a.source").get_attribute("href").startswith("vscode://file/")
-    alert.locator("summary").click()
-    alert.locator("pre", has_text="Traceback").wait_for()
-    failed_at = person.simulation.status.failure.time
-    page.locator(".live-now", has_text="Ended").wait_for()
-    person.button("Load the code again").wait_for()
-    person.button("Values of that moment").click()
-    page.locator(".state em", has_text="past").wait_for()
-    person.button("Go back 2 s and drive on").click()
-    page.get_by_role("alert").wait_for(state="detached")
-    person.until(lambda: person.simulation.status.state == "running")
-    assert person.simulation.snapshot.time < failed_at + 60
 
 
 def test_a_robot_that_floods_the_console_or_hangs_leaves_the_page_alive(person: Seen) -> None:
@@ -197,19 +161,6 @@ def test_a_robot_that_floods_the_console_or_hangs_leaves_the_page_alive(person: 
     page.get_by_label("Search NetworkTables").wait_for()
     page.keyboard.press("F9")
     person.state("Teleoperated disabled")
-
-
-def test_the_console_is_filtered_and_searched(person: Seen) -> None:
-    page = person.page
-    page.locator(".line.warning", has_text="this is a warning").first.wait_for()
-    page.get_by_role("button", name="Warnings").click()
-    page.locator(".line.warning").first.wait_for(state="detached")
-    page.get_by_role("button", name="Warnings").click()
-    page.get_by_label("Search the output").fill("nothing prints this")
-    page.get_by_text("No line matches.").wait_for()
-    page.get_by_label("Search the output").fill("WARNING")
-    page.locator(".line").first.wait_for()
-    assert all("arning" in text for text in page.locator(".line").all_inner_texts())
 
 
 def test_panels_are_moved_sized_closed_and_stay_so(person: Seen) -> None:
@@ -241,33 +192,92 @@ def test_panels_are_moved_sized_closed_and_stay_so(person: Seen) -> None:
         "width => document.querySelector(\"[data-panel='match']\").getBoundingClientRect().width > width + 10",
         arg=width,
     )
+    # Also by the mouse.
+    before = vertical.bounding_box()["x"]
+    person.drag(vertical, (0.5, 0.5), (20, 0.5))
+    page.wait_for_function(
+        "x => document.querySelector('[role=separator][aria-orientation=vertical]').getBoundingClientRect().x > x + 20",
+        arg=before,
+    )
+    # Tabs by keys.
+    first = page.get_by_role("tablist").nth(0).get_by_role("tab").first
+    name = first.inner_text()
+    first.focus()
+    page.keyboard.press("ArrowRight")
+    expect(person.tab(name)).to_have_attribute("aria-selected", "false")
+    expect(person.tab(name)).not_to_be_focused()
+    page.keyboard.press("ArrowLeft")
+    expect(person.tab(name)).to_be_focused()
+    page.keyboard.press("Delete")
+    person.tab(name).wait_for(state="detached")
     page.get_by_title("Dark colours").click()
     page.reload()
     below.wait_for()
     assert below.bounding_box()["width"] > width + 10
     assert person.tab("Console").count() == 0
     assert page.locator("html").get_attribute("data-theme") == "dark"
+    # A menu by keys.
+    menu = page.get_by_title("Layout", exact=True)
+    menu.focus()
+    for key in ("Enter", "ArrowDown", "ArrowDown", "ArrowUp", "Escape"):
+        page.keyboard.press(key)
+    page.locator(".menu-list:popover-open").wait_for(state="detached")
+    expect(menu).to_be_focused()
+    page.keyboard.press("Enter")
+    page.locator(".menu-list:popover-open").wait_for()
+    for key in ("ArrowDown", "ArrowDown", "ArrowDown", "Enter"):
+        page.keyboard.press(key)
+    expect(menu).to_have_text("Tuning")
+    person.choose("Layout", "Driving")
     person.choose("Layout", "Reset this layout")
     person.tab("Console").wait_for()
 
 
-def test_the_page_says_which_values_are_forgotten(browser, make_project, monkeypatch) -> None:
-    monkeypatch.setattr("pyfrc_core.sim.ui.web.collector.Runs", partial(Runs, most_bytes=1))
-    with served(make_project(ROBOT)) as server, page_of(browser, server) as person:
-        page = person.page
-        person.simulation.enable()
-        person.simulation.set_axis(0, 0, 0.5)  # it turns, so that something changes
-        person.simulation.set_speed(0)
-        person.until(lambda: person.simulation.snapshot.time > 60)
-        person.pause()
-        timeline = page.get_by_role("slider", name="Timeline")
-        timeline.press("Home")
-        page.locator(".state em", has_text="past").wait_for()
-        sentence = "were forgotten, since memory for them is limited."
-        page.locator(".notice", has_text=sentence).wait_for()
-        assert float(timeline.get_attribute("aria-valuenow") or 0) > 10
-        timeline.hover(position={"x": 30, "y": 10})
-        page.locator(".timeline-tip", has_text="Values forgotten").wait_for()
+def saved_layout(server: Served) -> Any:
+    file = server.simulation.project.root / ".pyfrc" / "sim-layout.json"
+    return json.loads(file.read_text()) if file.is_file() else {}
+
+
+def test_two_windows_arrange_the_page_together(person: Seen) -> None:
+    with person.page.context.new_page() as second:
+        other = Seen(second, person.server).open()
+        person.page.get_by_label("Dark colours").click()
+        person.until(lambda: saved_layout(person.server).get("theme") == "dark")
+        other.choose("Layout", "Tuning")
+        other.tab("Mechanism").click()
+        person.until(lambda: saved_layout(person.server).get("trees"))
+    found = saved_layout(person.server)
+    assert (found["theme"], found["layout"], list(found["trees"])) == ("dark", "tuning", ["tuning"])
+    person.page.reload()
+    person.page.get_by_label("Light colours").wait_for()
+    person.page.get_by_title("Layout", exact=True).get_by_text("Tuning").wait_for()
+
+
+def test_a_branch_that_is_longer_than_the_present_is_shown_whole(person: Seen) -> None:
+    page = person.page
+    person.simulation.enable()
+    person.simulation.set_axis(0, 0, 0.5)  # it turns, so that something changes
+    person.simulation.set_speed(0)
+    person.until(lambda: person.simulation.snapshot.time > 30)
+    person.pause()
+    long = person.simulation.snapshot.time
+    page.evaluate("module('js/plotting.js').then(({ addToPlot }) => addToPlot('pwm[0].value', 'plot:1'))")
+    person.button("All").first.click()
+    person.simulation.rewind(1.0)
+    person.until(lambda: person.simulation.snapshot.time == pytest.approx(1.0))
+    page.get_by_title("Compare with an earlier run").click()
+    page.get_by_role("menuitemcheckbox", name="before 0:01.00").last.click()
+    shown = """async () => {
+      const { compared } = await module("js/compare.js");
+      const { length } = await module("js/past.js");
+      return [length(), compared.end];
+    }"""
+    page.locator(".u-over").first.wait_for()
+    present, end = person.eventually(shown, accept=lambda found: found[1] > 0)
+    assert (present, end) == (pytest.approx(1.0), pytest.approx(long))
+    # The pointer is at a moment that only the branch has, and the plot's own curve has no value there.
+    page.locator("[data-panel='plot:1'] .u-over").hover(position={"x": 200, "y": 20})
+    expect(page.locator("[data-panel='plot:1'] .legend b").first).to_have_text("\N{EN DASH}")
 
 
 def test_the_page_says_that_the_simulation_was_closed(browser, make_project) -> None:
@@ -308,27 +318,3 @@ def test_a_server_that_was_silent_is_connected_again(browser, server) -> None:
         person.state("Autonomous disabled")
         assert page.evaluate("window.notReloaded")
         person.wrong.clear()  # the browser's own words about attempts that came to nothing
-
-
-def test_everything_fits(browser, server) -> None:
-    with page_of(browser, server, color_scheme="dark") as person:
-        page = person.page
-        person.simulation.set_speed(0.1)  # painting fifty updates a second would take most of the time
-        assert page.locator("html").get_attribute("data-theme") == "dark"
-        for size in ((1366, 768), (3840, 2160), (820, 1180)):
-            page.set_viewport_size({"width": size[0], "height": size[1]})
-            for layout in ("Driving", "Tuning", "Dashboard"):
-                person.choose("Layout", layout)
-                page.locator(".tabs").first.wait_for()
-                whole = page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
-                assert whole == list(size), layout
-                outside = page.locator(".station button, .timebar button").evaluate_all(
-                    "all => all.map((each) => [each.textContent, each.getBoundingClientRect()])"
-                    ".filter(([, box]) => box.right > innerWidth + 1 || box.bottom > innerHeight + 1)"
-                    ".map(([text]) => text)"
-                )
-                assert outside == [], (size, layout)
-                rows = page.locator(".station > button, .station > .menu").evaluate_all(
-                    "all => all.map((each) => each.getBoundingClientRect()).map((box) => (box.top + box.bottom) / 2)"
-                )
-                assert max(rows) - min(rows) < 5, (size, layout)  # one row

@@ -262,13 +262,6 @@ def test_arrow_keys_go_on_from_where_a_person_has_clicked(tmp_path: Path, browse
         goes("Shift+ArrowRight", 1)
 
 
-def test_the_page_names_the_command_that_has_ended(tmp_path: Path, browser: Browser) -> None:
-    with served_source(source_of(tmp_path)) as server, opened_page(browser, server.address) as page:
-        page.locator(".recorded code", has_text="match.wpilog").wait_for()
-        server.front_end.close()
-        page.get_by_text("pyfrc view has ended. This is its last state. Start pyfrc view again").wait_for()
-
-
 def test_curves_of_another_log_are_kept_for_it_and_not_shown(tmp_path: Path, browser: Browser) -> None:
     first, second = a_match(), practice()
     for log, name in ((first, "BatteryVoltage"), (second, "arm")):

@@ -66,6 +66,10 @@ class Served:
             yield Page(socket)
 
 
+#: The parts of messages that are replaced as a whole.
+_REPLACED = ("t", "panels", "robot", "choosers", "opmodes", "branches", "drawings", "field", "run", "known_from")
+
+
 class Page:
     """A page's state, brought up to date by messages, as the page's own code does it."""
 
@@ -81,7 +85,6 @@ class Page:
         self.samples: dict[str, list[Any]] = {}
         self.trail: list[Any] = []
         self.types: dict[str, str] = {}
-        #: What is replaced as a whole.
         self.parts: dict[str, Any] = {}
         self._number = 0
         self._take(self.hello)
@@ -109,8 +112,7 @@ class Page:
             self.samples.setdefault(path, []).extend(flat)
         if trail := message.get("trail"):
             self.trail = self.trail[: trail["from"]] + trail["points"]
-        kept = ("t", "panels", "robot", "choosers", "opmodes", "branches", "drawings", "field", "clients", "run")
-        self.parts |= {key: message[key] for key in kept if key in message}
+        self.parts |= {key: message[key] for key in _REPLACED if key in message}
 
     def until(self, condition: Callable[[], object]) -> None:
         """Take updates until this is so."""

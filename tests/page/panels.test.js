@@ -7,17 +7,22 @@ const sent = serve();
 const { model } = await import("#js/model.js");
 const { connect } = await import("#js/connection.js");
 const { PlotButton, Select, Switch, TextBox } = await import("#js/controls.js");
+const { DevicesPanel } = await import("#js/panels/devices.js");
+const { FieldPanel } = await import("#js/panels/field.js");
 const { Dock } = await import("#js/layout/dock.js");
 const { changeText } = await import("#js/format.js");
-const { grouped } = await import("#js/panels/console.js");
+const { FailureBar } = await import("#js/failure.js");
+const { ConsolePanel, grouped } = await import("#js/panels/console.js");
 const { FirstDifference } = await import("#js/panels/differences.js");
 const { frontOf } = await import("#js/layout/open.js");
-const { MatchPanel } = await import("#js/panels/match.js");
+const { Chooser, MatchPanel } = await import("#js/panels/match.js");
 const { playback } = await import("#js/playback.js");
 const { driveOn } = await import("#js/past.js");
+const { Notice } = await import("#js/notice.js");
 const { Menu } = await import("#js/popup.js");
 const { PlotPicker } = await import("#js/plot_picker.js");
 const { addToPlot } = await import("#js/plotting.js");
+const { TimeBar } = await import("#js/timebar.js");
 const { unwatch, watch } = await import("#js/series.js");
 const { settings } = await import("#js/settings.js");
 
@@ -129,6 +134,23 @@ test("equal lines that follow each other soon are one, with their number and the
   assert.deepEqual(grouped(lines).map(({ line, count, until }) => [line.t, line.text, count, until]), [[1, "a", 3, 1.9], [2, "b", 1, 2], [2.1, "a", 1, 2.1], [4, "a", 1, 4]]);
 });
 
+test("the console shows the levels and the words that a person wants, until the moment that is shown", () => {
+  const line = (n, level, text) => ({ n, t: n, level, text });
+  model.take({ type: "update", console: [line(1, "info", "hello"), line(2, "warning", "Low WARNING"), line(3, "error", "warned")] });
+  const panel = new ConsolePanel({});
+  const shown = (search = "") => {
+    const found = elements(panel.render({}, { search, shown: 150 }));
+    return [...found.filter((each) => each.props.line).map(({ props }) => props.line.text), ...found.filter((each) => each.props.class === "empty").map(({ props }) => props.children)];
+  };
+  assert.deepEqual([shown(), shown("warn"), shown("nothing")], [["hello", "Low WARNING", "warned"], ["Low WARNING", "warned"], ["No line matches."]]);
+  const warnings = elements(panel.render({}, panel.state)).find((each) => each.key === "warning");
+  warnings.props.onClick();
+  assert.deepEqual(shown(), ["hello", "warned"]);
+  warnings.props.onClick();
+  model.show({ t: 2, values: new Map() });
+  assert.deepEqual(shown(), ["hello", "Low WARNING"]);
+});
+
 test("arrow keys move in a list, around its ends, and only while it is open", () => {
   const menu = new Menu({ items: [] });
   const items = [0, 1, 2].map((number) => ({ focus: () => (document.activeElement = items[number]) }));
@@ -165,6 +187,18 @@ test("what can be plotted is offered: what there was at the moment that is shown
   assert.deepEqual(offered("button"), ["joysticks[0].buttons[1]", "joysticks[0].buttons[2]"]);
 });
 
+test("what the robot publishes is offered first, then what it outputs, then its sensors and all else", () => {
+  const row = (label, path, settable = false) => ({ label, settable, paths: [path] });
+  const values = ["joysticks[0].axes[0]", "pwm[0].raw_value", "analog_in[0].voltage", "pwm[0].value", "nt:/FMSInfo/EventName0", "nt:/SmartDashboard/kP0"];
+  model.take({
+    type: "update", values: Object.fromEntries(values.map((path) => [path, 0])),
+    panels: [{ title: "PWM", rows: [row("0  left motor", "pwm[0].value"), row("0  Analog", "analog_in[0].voltage", true)] }],
+  });
+  const offered = (search) => render(PlotPicker, { add() {} }, { open: true, search }).filter((each) => each.type === "button" && each.props.title).map(({ props }) => props.title);
+  assert.deepEqual(offered("0"), ["nt:/SmartDashboard/kP0", "pwm[0].value", "analog_in[0].voltage", "joysticks[0].axes[0]", "nt:/FMSInfo/EventName0", "pwm[0].raw_value"]);
+  assert.deepEqual(offered("left motor"), ["pwm[0].value"]);
+});
+
 test("a click leaves the list of values open, and a key closes it", () => {
   const done = [];
   const picker = new PlotPicker({});
@@ -198,6 +232,66 @@ test("the choices before a match are commands", () => {
   one(found, TextBox).props.set("LRL");
   const commands = sent.map(({ id: _, type: __, ...fields }) => fields);
   assert.deepEqual(commands, [{ station: "blue2", name: "alliance" }, { start: "right", name: "reset_position" }, { text: "LRL", name: "game_message" }]);
+  const list = one(elements(Chooser({ chooser: { name: "/SmartDashboard/Auto", options: ["Stay", "Go"], active: "Stay" } })), Select, { "aria-label": "Auto" });
+  sent.length = 0;
+  list.props.set("Go");
+  assert.deepEqual([list.props.value, sent[0].name, sent[0].chooser, sent[0].option], ["Stay", "choose", "/SmartDashboard/Auto", "Go"]);
+});
+
+test("a row of the devices is pinned to the top and stays there", () => {
+  const row = (path, label) => ({ paths: [path], label, kind: "lamp", tooltip: "" });
+  model.take({ type: "update", panels: [{ title: "Analog", rows: [row("analog_in[2].voltage", "2 range finder")] }, { title: "PWM", rows: [row("pwm[0].value", "0")] }] });
+  const groups = (search = "") => render(DevicesPanel, {}, { search, closed: {} }).filter((each) => each.type?.name === "Group");
+  const tools = (group) => elements(group.type(group.props)).filter((each) => each.props.pin).map(({ props }) => props);
+  assert.deepEqual(groups("range").map(({ props }) => props.title), ["Analog"]);
+  tools(groups()[0])[0].pin();
+  assert.deepEqual(settings.get("pins"), ["analog_in[2].voltage"]);
+  const [pinned] = groups();
+  assert.deepEqual([pinned.props.title, tools(pinned)[0].row.label, tools(pinned)[0].pinned], ["Pinned", "2 range finder", true]);
+  tools(pinned)[0].pin();
+  assert.deepEqual(settings.get("pins"), []);
+});
+
+test("each motor has one row above its devices, which are closed when they have many values, but for a search", () => {
+  const row = (device, name, kind = "number") => ({ paths: [`${device}.${name}`], label: `  ${name}`, kind, tooltip: "" });
+  const device = (number, label) => [
+    { paths: [], label: `SPARK MAX [${number}]${label}`, kind: "text", tooltip: "" },
+    ...["Applied Output", "Velocity", ...Array.from({ length: 10 }, (_, other) => `Other ${other}`)].map((name) => row(number, name)),
+  ];
+  model.take({ type: "update", panels: [{ title: "CAN and SimDevices", rows: Array.from({ length: 12 }, (_, number) => device(number, number === 2 ? "  front left drive" : "")).flat() }] });
+  const groups = (search) => render(DevicesPanel, {}, { search, closed: {} }).filter((each) => each.type?.name === "Group").map(({ props }) => props);
+  const table = (group) => {
+    const made = group.content();
+    return elements(made.type(made.props));
+  };
+  const [motors, devices] = groups("");
+  assert.deepEqual([motors.title, motors.rows.length, devices.title, devices.closed], ["Motors", 12, "CAN and SimDevices", true]);
+  assert.equal(table(motors).filter((each) => each.type === "tr").length, 13);
+  const plotButtons = table(motors).filter((each) => each.type === PlotButton);
+  PlotButton(plotButtons[2].props).props.onClick();
+  assert.deepEqual(settings.get("plots")["plot:1"].curves.map(({ path }) => path), ["2.Applied Output", "2.Velocity"]);
+  const found = groups("front left");
+  assert.deepEqual(found.map(({ rows, closed }) => [rows.length, closed]), [[1, false], [13, false]]);
+});
+
+test("places are written as the project says, unless a person chooses otherwise", () => {
+  model.hello.field.coordinates = "alliance";
+  assert.equal(new FieldPanel({}).coordinates, "alliance");
+  settings.set("coordinates", "blue");
+  assert.equal(new FieldPanel({}).coordinates, "blue");
+  settings.set("coordinates", "");
+});
+
+test("a page whose server has gone says which command that was", () => {
+  const said = (connection, kind) => {
+    model.hello.source.kind = kind;
+    model.connection = connection;
+    return one(render(Notice), "span").props.children;
+  };
+  assert.match(said("closed", "simulation"), /^The simulation was closed. This is its last state. Start pyfrc sim again/);
+  assert.match(said("closed", "log"), /^pyfrc view has ended. This is its last state. Start pyfrc view again/);
+  assert.match(said("lost", "simulation"), /^The connection to pyfrc sim was lost, reconnecting/);
+  model.connection = "open";
 });
 
 test("from a moment of the past the robot is driven on, and not from the present", () => {
@@ -228,4 +322,37 @@ test("every change of a watched value is asked for, as long as something watches
   unwatch("pwm[0].value");
   const paths = sent.filter(({ type }) => type === "subscribe").map((each) => each.paths);
   assert.deepEqual(paths, [["pwm[0].value"], ["pwm[0].value", "dio[3].value"], ["pwm[0].value"], []]);
+});
+
+test("a failure has its line, and the ways to go on", () => {
+  const failure = { t: 3.5, headline: "robot.py:7: ZeroDivisionError", details: "Traceback", file: "robot.py", line: 7 };
+  const shown = (given = {}) => {
+    model.take({ type: "update", status: { state: "failed", failure: { ...failure, ...given } } });
+    return render(FailureBar);
+  };
+  const named = (found, name) => found.find((each) => each.type === "button" && [each.props.children].flat().includes(name));
+  const found = shown();
+  assert.equal(one(found, "strong").props.children, failure.headline);
+  assert.deepEqual([found.find((each) => each.props.file).props.line, one(found, "pre").props.children], [7, "Traceback"]);
+  for (const name of ["Go back 2 s and drive on", "Load the code again", "Restart"]) named(found, name).props.onClick();
+  const commands = sent.filter(({ type }) => type === "command").map(({ name, t }) => [name, t]);
+  assert.deepEqual(commands, [["rewind", 1.5], ["reload", undefined], ["restart", undefined]]);
+  named(found, "Values of that moment").props.onClick();
+  assert.deepEqual([sent.at(-1).type, sent.at(-1).t], ["values", 3.5]);
+  assert.equal(named(shown({ headline: "robot.py:7: SyntaxError" }), "Go back 2 s and drive on"), undefined); // it fails again at any moment
+  model.hello.options.watch = true;
+  assert.equal(named(shown(), "Load the code again"), undefined); // the corrected file is, when it is saved
+});
+
+test("time is run, stepped and scaled, up to no limit", () => {
+  model.hello.options.speeds = { slowest: 0.1, fastest: 10 };
+  const slider = one(render(TimeBar), "input", { "aria-label": "Speed" });
+  for (const name of ["Run", "Step"]) one(render(TimeBar), "button", { "aria-label": name }).props.onClick();
+  assert.deepEqual(sent.splice(0).map(({ name }) => name), ["toggle", "step"]);
+  for (const value of ["1", "0"]) slider.props.onInput({ target: { value } });
+  model.take({ type: "update", status: { speed: 0 } });
+  const fast = render(TimeBar);
+  assert.equal(one(fast, "b").props.children, "max");
+  fast.find((each) => each.props.children === "Real time").props.onClick();
+  assert.deepEqual(sent.map(({ factor }) => factor), [0, 0.1, 1]);
 });

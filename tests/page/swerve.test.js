@@ -1,9 +1,11 @@
-// What is published of a swerve drive: structs, or a table of the type "SwerveDrive".
+// What robot code publishes for the field and of a swerve drive: objects of a Field2d, structs, or a table of the type "SwerveDrive".
 import "./browser.js";
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
 const { model } = await import("#js/model.js");
+const { fieldObjects } = await import("#js/field/published.js");
+const { mechanisms } = await import("#js/panels/mechanism.js");
 const { swerveDrive, swerveNeeds } = await import("#js/field/swerve.js");
 
 function publish(values, types = {}, robot = null) {
@@ -61,4 +63,33 @@ test("a table has four corners and an angle", () => {
 test("nothing is published", () => {
   publish({});
   assert.deepEqual(swerveDrive(model.shown), { measured: null, wanted: null, speeds: null, heading: null });
+});
+
+test("objects of fields are found, and poses in metres from the lower left become feet from the upper left", () => {
+  const plan = "nt:/SmartDashboard/Plan";
+  const own = "nt:/SmartDashboard/Field/Robot";
+  const poses = (count, dx, dy) => Array.from({ length: count }, (_, n) => [n * dx, n * dy, 0]).flat();
+  const solid = Object.entries({ w: Math.cos(0.25), x: 0, y: 0, z: Math.sin(0.25) }).map(([name, value]) => [`nt:/solid/rotation/q/${name}`, value]);
+  const values = {
+    [`${plan}/.type`]: "Field2d", [`${plan}/Robot`]: [0, 0, 0], [`${plan}/goal`]: [3.048, 1.524, 90], [`${plan}/path`]: poses(12, 0.5, 0.1), [`${plan}/tags`]: poses(8, 5, 1),
+    "nt:/flat/translation/x": 0.3048, "nt:/flat/translation/y": 0, "nt:/flat/rotation/value": 1,
+    "nt:/solid/translation/x": 0, "nt:/solid/translation/y": 0, "nt:/solid/translation/z": 2, ...Object.fromEntries(solid),
+    "nt:/none": { $: "struct", type: "Pose2d", size: 3 },
+    "nt:/SmartDashboard/Field/.type": "Field2d", [own]: [1, 2, 0],
+  };
+  publish(values, { "nt:/flat": "struct:Pose2d", "nt:/solid": "struct:Pose3d", "nt:/none": "struct:Pose2d" }, [1, 2, 0]);
+  model.hello.options = { dashboard: { robot: own } };
+  const found = () => fieldObjects(model.values, { height: 27 });
+  const round = (pose) => pose.map((each) => Number(each.toFixed(6)));
+  const shown = Object.fromEntries(found().map(({ name, poses, isPath }) => [name, [poses.length, isPath, round(poses[0])]]));
+  assert.deepEqual(shown, {
+    goal: [1, false, [10, 22, -1.570796]], path: [12, true, [0, 27, 0]], tags: [8, false, [0, 27, 0]],
+    flat: [1, false, [1, 27, -1]], solid: [1, false, [0, 27, -0.5]],
+  });
+  // The physics' field has another name if robot code shows one of its own as "Field".
+  publish({ "nt:/SmartDashboard/Field/.type": "Field2d", [own]: [1, 2, 0], "nt:/SmartDashboard/Field (physics)/.type": "Field2d", "nt:/SmartDashboard/Field (physics)/Robot": [1, 2, 0] }, {}, [1, 2, 0]);
+  model.hello.options = { dashboard: { robot: own } };
+  assert.deepEqual(found().map(({ path }) => path), [own]);
+  publish({ "nt:/Elevator/Drawing/.type": "Mechanism2d", "nt:/Arm/Drawing/.type": "Mechanism2d" });
+  assert.deepEqual(mechanisms(model.values).map(({ name }) => name), ["Elevator/Drawing", "Arm/Drawing"]);
 });

@@ -1,7 +1,7 @@
 // The timeline: moments as places, marks near the pointer, keys, and a past that is forgotten.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { drawFrame, serve } from "./browser.js";
+import { drawFrame, elements, serve } from "./browser.js";
 
 const { model } = await import("#js/model.js");
 const { Timeline } = await import("#js/timeline.js");
@@ -67,6 +67,8 @@ test("before what is known, the first known packet is shown, and a sentence says
   await settled();
   assert.equal(model.past.t, 60.02);
   assert.equal(model.problem, "The values before 1:00.00 were forgotten, since memory for them is limited.");
+  const tip = (t) => elements(timeline.render({}, { hover: { t, left: 60 } })).filter((each) => each.type === "span").map(({ props }) => props.children);
+  assert.deepEqual([tip(5), tip(70)], [["Values forgotten"], []]);
   model.set("problem", "");
   press("ArrowRight");
   await settled();
