@@ -30,7 +30,7 @@ class Recorder:
 
 
 def record() -> None:
-    sys.stdout, sys.stderr = Recorder(sys.stdout), Recorder(sys.stderr)  # type: ignore[assignment]
+    sys.stdout, sys.stderr = Recorder(sys.stdout), Recorder(sys.stderr)
     print("recorded")
 
 
@@ -40,7 +40,7 @@ def record_both_names() -> None:
 
 
 def remove() -> None:
-    sys.stdout = sys.stderr = None  # type: ignore[assignment]
+    sys.stdout = sys.stderr = None
 
 
 def close() -> None:
@@ -57,7 +57,7 @@ def close_both_names() -> None:
 
 def keep_in_a_handler() -> None:
     handler = logging.StreamHandler(sys.stdout)
-    sys.stdout = Recorder(sys.stdout)  # type: ignore[assignment]
+    sys.stdout = Recorder(sys.stdout)
     handler.emit(logging.makeLogRecord({"msg": "recorded"}))
 
 
