@@ -6,41 +6,39 @@ import json
 from pathlib import Path
 
 import pytest
-from conftest import SHORT_MATCH, MakeProject
+from conftest import SHORT_MATCH, MakeProject, sampled
 
-#: Keeps logs under names that are the same in every run, and fails if another run has changed a file.
+#: Keeps a log under a name that is the same in every run, and fails if another run has changed its file.
 WRITES = """
     {imports}
 
     import wpilib
 
-    NAMES = {names}
+    NAME = {name}
 
 
     class Robot(wpilib.TimedRobot):
         def {init}(self):
-            for name in NAMES:
-                if os.path.exists(name):
-                    os.remove(name)
-                with open(name, "w") as log:
-                    log.write("0")
+            if os.path.exists(NAME):
+                os.remove(NAME)
+            with open(NAME, "w") as log:
+                log.write("0")
             self.turns = 0
             end = time.process_time() + 0.1
             while time.process_time() < end:  # configures devices
                 pass
 
         def robotPeriodic(self):
-            for name in NAMES:
-                with open(name) as log:
-                    assert log.read() == str(self.turns), "another run has written this"
-                with open(name, "w") as log:
-                    log.write(str(self.turns + 1))
+            with open(NAME) as log:
+                assert log.read() == str(self.turns), "another run has written this"
             self.turns += 1
+            with open(NAME, "w") as log:
+                log.write(str(self.turns))
 
         def teleopPeriodic(self):
             if wpilib.DriverStation.getEventName():
-                os.rename(NAMES[0], NAMES[0] + ".old")
-                os.rename(NAMES[0] + ".old", NAMES[0])
+                os.rename(NAME, NAME + ".old")
+                os.rename(NAME + ".old", NAME)
 """
 
 IMPORTS = "import os, random, tempfile, time"
@@ -49,18 +47,18 @@ NAMES = {
     "always alike": "'log.txt'",
     "random": "f'log_{random.randint(0, 65535)}.txt'",
     "by the time": "time.strftime('%H%M%S.txt')",
-    "beside the code": "os.path.join(os.path.dirname(os.path.abspath(__file__)), 'beside.txt')",
+    "beside the code": "os.path.join(os.path.dirname(os.path.abspath(__file__)), 'log.txt')",
     "in the temporary directory": "os.path.join(tempfile.gettempdir(), 'robot.log')",
 }
 
 
-def robot(*names: str, init: str = "robotInit") -> str:
-    written = f"[{', '.join(NAMES[name] for name in names)}]"
-    return WRITES.replace("{imports}", IMPORTS).replace("{names}", written).replace("{init}", init)
+def robot(name: str, init: str = "robotInit") -> str:
+    return WRITES.replace("{imports}", IMPORTS).replace("{name}", NAMES[name]).replace("{init}", init)
 
 
-def test_tests_at_the_same_time(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": robot(*NAMES), "pyproject.toml": SHORT_MATCH})
+@pytest.mark.parametrize("name", sampled(NAMES, "random"))
+def test_tests_at_the_same_time(make_project: MakeProject, name: str) -> None:
+    project = make_project({"robot.py": robot(name), "pyproject.toml": SHORT_MATCH})
     result = project.run("test", "--builtin", "-j", "4")
     assert result.code == 0, result.output
 

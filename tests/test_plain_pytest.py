@@ -53,31 +53,54 @@ def passed_as_without_pyfrc(result: Result) -> bool:
     return result.code == 0 and "3 passed" in result.stdout and "pyfrc:" not in result.stdout
 
 
-def test_a_robot_file_without_a_robot_class_is_left_alone(make_project: MakeProject) -> None:
-    not_a_robot = "# Not for wpilib, magicbot or commands2\nraise SystemExit\n"
+@pytest.mark.parametrize(
+    "not_a_robot",
+    [
+        "# Not for wpilib, magicbot or commands2\nraise SystemExit\n",
+        pytest.param('"""class Robot of wpilib"""\n', marks=pytest.mark.slow),
+        pytest.param("class RobotArm(Exception):\n    pass\n", marks=pytest.mark.slow),
+        pytest.param("import wpilib_helper\n\n\nclass RobotArm(Exception):\n    pass\n", marks=pytest.mark.slow),
+        "import os  # not wpilib\n\n\nclass Robot(os.PathLike):\n    pass\n",
+    ],
+)
+def test_a_robot_file_without_a_robot_class_is_left_alone(make_project: MakeProject, not_a_robot: str) -> None:
     project = make_project({"robot.py": not_a_robot, "app/test_app.py": APPLICATION})
     assert passed_as_without_pyfrc(project.pytest(cwd=project.path / "app"))
 
 
-def test_a_robot_class_makes_a_robot_project(make_project: MakeProject) -> None:
-    robot = "from wpilib import TimedRobot\n\n\nclass Arm(\n    TimedRobot\n):\n    pass\n"
+@pytest.mark.parametrize(
+    "robot",
+    [
+        "from wpilib import TimedRobot\n\n\nclass Arm(\n    TimedRobot\n):\n    pass\n",
+        *sampled(
+            [
+                "import wpilib\n\n\nclass Robot(wpilib.TimedRobot):\n    pass\n",
+                "import math, wpilib\nfrom base import Base\n\n\nclass MyRobot(Base):\n    pass\n",
+                "import wpilib\nfrom base import Base\n\nif __name__ == '__main__':\n    wpilib.run(Base)\n",
+            ]
+        ),
+    ],
+)
+def test_a_robot_class_makes_a_robot_project(make_project: MakeProject, robot: str) -> None:
+    base = "import wpilib\n\n\nclass Base(wpilib.TimedRobot):\n    pass\n"
     test = "def test_fixtures(robot_file):\n    assert robot_file\n"
-    project = make_project({"robot.py": robot, "pyproject.toml": "", "tests/test_a.py": test})
+    project = make_project({"robot.py": robot, "base.py": base, "pyproject.toml": "", "tests/test_a.py": test})
     result = project.pytest(cwd=project.path / "tests")
     assert result.code == 0, result.output
 
 
-def test_a_robot_of_another_user_is_not_run(make_project: MakeProject) -> None:
+@pytest.mark.parametrize("name", sampled(["robot.py", "physics.py"], "physics.py"))
+def test_a_robot_of_another_user_is_not_run(make_project: MakeProject, name: str) -> None:
     require("that another user's robot is not run", [] if hasattr(os, "getuid") and os.getuid() == 0 else ["root"])
     files = {"robot.py": ROBOT, "physics.py": "class PhysicsEngine:\n    pass\n", "mine/test_app.py": APPLICATION}
     project = make_project(files)
-    os.chown(project.path / "physics.py", 12345, 12345)
+    os.chown(project.path / name, 12345, 12345)
     result = project.pytest(cwd=project.path / "mine")
     assert result.code == 0, result.output
     assert "3 passed" in result.stdout
     (line,) = [line for line in result.stdout.splitlines() if "pyfrc:" in line]
     assert line == (
-        f"pyfrc: not active: {project.path / 'physics.py'} belongs to another user. If you trust it, run: pyfrc test"
+        f"pyfrc: not active: {project.path / name} belongs to another user. If you trust it, run: pyfrc test"
     )
 
 

@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from conftest import MakeProject, RobotProject, trace_hash
+from conftest import MakeProject, RobotProject, sample_robots, trace_hash
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -113,10 +113,9 @@ def text(*lines: object, header: object = HEADER) -> str:
 # -- recordings ----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["command", "worker"])
+@pytest.mark.parametrize("name", sample_robots())
 def test_a_recordings_replay_does_the_same(name: str, make_project) -> None:
-    """The one of a sample robot's own tests with the most inputs, but not a whole match."""
+    """For each sample robot, the one of its own tests with the most inputs, but not a whole match."""
     project = make_project({})
     project.copy(ROBOTS / name)
     result = project.run("test", "--record", "recordings", "--", "--ignore=tests/pyfrc_test.py", "-k", "not match")

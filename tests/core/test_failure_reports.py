@@ -98,26 +98,6 @@ def test_a_robot_project_is_found_above_its_tests_and_not_beyond_another_project
     assert not _exists(tmp_path / ("x" * 5000)), "no file can have this name"
 
 
-@pytest.mark.parametrize(
-    ("text", "is_robot"),
-    [
-        ("# Not for wpilib, magicbot or commands2\nraise SystemExit\n", False),
-        ('"""class Robot of wpilib"""\n', False),
-        ("class RobotArm(Exception):\n    pass\n", False),
-        ("import wpilib_helper\n\n\nclass RobotArm(Exception):\n    pass\n", False),
-        ("import os  # not wpilib\n\n\nclass Robot(os.PathLike):\n    pass\n", False),
-        ("from wpilib import TimedRobot\n\n\nclass Arm(\n    TimedRobot\n):\n    pass\n", True),
-        ("import wpilib\n\n\nclass Robot(wpilib.TimedRobot):\n    pass\n", True),
-        ("import math, wpilib\nfrom base import Base\n\n\nclass MyRobot(Base):\n    pass\n", True),
-        ("import wpilib\nfrom base import Base\n\nif __name__ == '__main__':\n    wpilib.run(Base)\n", True),
-    ],
-)
-def test_whether_a_robot_py_has_a_robot(tmp_path: Path, text: str, is_robot: bool) -> None:
-    (tmp_path / "robot.py").write_text(text)
-    (tmp_path / "pyproject.toml").touch()
-    assert _robot_project_of(tmp_path) == (tmp_path if is_robot else None)
-
-
 def test_files_that_have_tests_and_of_which_none_is_run(tmp_path: Path) -> None:
     directory = tmp_path / "tests"
     directory.mkdir()
