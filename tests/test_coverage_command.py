@@ -122,9 +122,8 @@ def test_lines_in_threads_and_isolated_tests_count(project: RobotProject, isolat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("isolation", sampled(["auto", "reuse"], "auto"))
-def test_lines_that_only_a_fuzz_match_runs_count(project: RobotProject, isolation: str) -> None:
-    report = measured(project, "fuzz", "--runs", "2", "-j", "2", "--isolation", isolation)
+def test_lines_that_only_a_fuzz_match_runs_count(project: RobotProject) -> None:
+    report = measured(project, "fuzz", "--runs", "2", "-j", "2")
     assert functions_run(report) == {"in_a_thread", "in_a_notifier", "in_autonomous", "with_button_pressed"}
 
 

@@ -201,18 +201,6 @@ ROLLS = {
                 self.physics_controller.move_robot(self.wheels.calculate(left, right, tm_diff))
                 self.encoder.setCount(round(self.wheels.l_position * 100_000))
         """,
-    "a speed of its own, in feet": """
-        class PhysicsEngine:
-            def __init__(self, physics_controller):
-                self.physics_controller = physics_controller
-                self.speed = self.rolled = 0.0
-
-            def update_sim(self, hal_data, now, tm_diff):
-                self.speed += (-12 * hal_data["pwm"][0]["value"] - self.speed) * tm_diff
-                self.rolled += self.speed * tm_diff
-                self.physics_controller.drive(self.speed, 0, tm_diff)
-                hal_data["encoder"][0]["count"] = round(self.rolled * 100_000)
-        """,
 }
 
 ROLLING_ROBOT = """

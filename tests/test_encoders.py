@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
-
 import pytest
-from conftest import MakeProject, sampled
+from conftest import MakeProject
 
 from pyfrc_core.wpi import encoder_channels
 
@@ -62,12 +60,11 @@ def test_an_encoder_counts_from_its_reset_and_has_a_rate(make_project: MakeProje
     assert result.code == 0, result.output
 
 
-@pytest.mark.parametrize("values", [pytest.param((math.nan, 0.0), marks=pytest.mark.slow), (0.0, math.inf)])
-def test_a_shaft_refuses_what_is_not_a_number(values: tuple[float, float], make_project: MakeProject) -> None:
+def test_a_shaft_refuses_what_is_not_a_number(make_project: MakeProject) -> None:
     project = make_project(
         {
             "robot.py": ROBOT,
-            "physics.py": PHYSICS.replace("self.position, 3.0", f"float('{values[0]}'), float('{values[1]}')"),
+            "physics.py": PHYSICS.replace("self.position, 3.0", "0.0, float('inf')"),
         }
     )
     result = project.run("test", "--builtin")
@@ -76,13 +73,7 @@ def test_a_shaft_refuses_what_is_not_a_number(values: tuple[float, float], make_
     assert "must be a finite number" in result.output
 
 
-@pytest.mark.parametrize(
-    "made",
-    sampled(
-        ["2, 3", "bChannel=3, aChannel=2", "wpilib.DigitalInput(2), wpilib.DigitalInput(3)", "2, bChannel=3"],
-        *("bChannel=3, aChannel=2", "wpilib.DigitalInput(2), wpilib.DigitalInput(3)"),
-    ),
-)
+@pytest.mark.parametrize("made", ["bChannel=3, aChannel=2", "wpilib.DigitalInput(2), wpilib.DigitalInput(3)"])
 def test_the_channels_of_an_encoder(made: str, make_project: MakeProject) -> None:
     project = make_project(
         {

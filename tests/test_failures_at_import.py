@@ -34,7 +34,7 @@ LOOPS_WHILE_IMPORTED = """
 
 @pytest.mark.parametrize(
     "command",
-    sampled(["test", "fuzz --runs 1", "sim --ui none", "create-physics", "replay script.jsonl"], "test"),
+    sampled(["test", "fuzz --runs 1", "sim --ui none"], "test"),
 )
 def test_an_endless_loop_in_a_file_that_is_imported_is_told_with_its_line(
     make_project: MakeProject, command: str
@@ -45,7 +45,6 @@ def test_an_endless_loop_in_a_file_that_is_imported_is_told_with_its_line(
             "arm.py": LOOPS_WHILE_IMPORTED,
             "tests/test_a.py": ANY_TEST,
             "pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.2\n",
-            "script.jsonl": '{"format": "pyfrc-input 1", "end": 1.0}\n',
         }
     )
     result = project.run(*command.split())

@@ -156,7 +156,6 @@ COMMANDS = [
     "pyfrc sim --ui none --mode auto --seconds 0.5 --record auto.jsonl",
     "pyfrc fuzz --runs 1 --seed 1",
     "pyfrc deploy --robot 127.0.0.1:1",
-    "pyfrc deploy --robot 127.0.0.1:1 --quiet",
     "pytest -v",
 ]
 

@@ -18,7 +18,11 @@ import pytest
 from skips import requires
 from started_commands import StartedCommand, start_command
 
+from pyfrc_core.fuzz.campaign import cluster as cluster_module
+
 pytestmark = requires("campaigns on a cluster", [] if find_spec("distributed") else ["Dask"])
+if find_spec("distributed"):
+    from pyfrc_core.fuzz.campaign.cluster_worker import versions
 
 DOCS = (Path(__file__).parents[1] / "docs/how_to/fuzz_every_night.md").read_text("utf-8")
 _ON_A_CLUSTER = DOCS.partition("## On a cluster")[2].partition("\n## ")[0]
@@ -237,25 +241,34 @@ def test_a_scheduler_that_is_lost(own_cluster: Cluster, make_shared_project) -> 
     assert list(project.path.rglob("tests/fuzz/*.jsonl"))
 
 
-@pytest.mark.slow
-def test_a_scheduler_without_workers(own_cluster: Cluster, make_shared_project) -> None:
-    result = make_shared_project({"robot.py": ROBOT}).run("fuzz", "--scheduler", own_cluster.address)
-    assert (result.code, result.first_error) == (1, f"the scheduler at {own_cluster.address} has no workers")
-    assert f"dask worker {own_cluster.address}" in result.stderr
+class _Client:
+    """What a campaign asks of Dask's client, of a cluster with one worker or none."""
+
+    def __init__(self, threads: dict[str, int], **packages: str) -> None:
+        there = versions()
+        python = f"{there.pop('Python')}.1.final.0"
+        self._versions = {"host": {"python": python}, "packages": there}
+        self._threads = threads
+        self._workers = {worker: {**self._versions, "packages": {**there, **packages}} for worker in threads}
+
+    def nthreads(self) -> dict[str, int]:
+        return self._threads
+
+    def get_versions(self, packages: Sequence[str]) -> dict[str, Any]:
+        return {"scheduler": self._versions, "workers": self._workers}
 
 
-@pytest.mark.slow
-def test_a_worker_with_another_version(own_cluster: Cluster, make_shared_project, tmp_path: Path) -> None:
-    project = copy(make_shared_project)
-    metadata = tmp_path / "other" / "pyfrc-2025.9.9.dist-info" / "METADATA"
-    metadata.parent.mkdir(parents=True)
-    metadata.write_text("Metadata-Version: 2.1\nName: pyfrc\nVersion: 2025.9.9\n")
-    own_cluster.add_worker({"PYTHONPATH": str(tmp_path / "other")})
-    result = project.run("fuzz", "--scheduler", own_cluster.address)
-    assert result.code == 1
-    assert re.fullmatch(
-        r"the worker at tcp://\S+ has another version: pyfrc 2025\.9\.9 \(\S+ here\)", result.first_error
-    ), result.stderr
+def test_a_cluster_that_cannot_play_the_same_matches() -> None:
+    worker = {"tcp://10.0.0.6:1": 1}
+    cluster_module._check_versions(_Client(worker), "tcp://10.0.0.5:1")
+    with pytest.raises(cluster_module.ClusterError) as raised:
+        cluster_module._check_versions(_Client({}), "tcp://10.0.0.5:1")
+    assert str(raised.value).startswith("the scheduler at tcp://10.0.0.5:1 has no workers\n")
+    assert "dask worker tcp://10.0.0.5:1" in str(raised.value)
+    with pytest.raises(cluster_module.ClusterError) as raised:
+        cluster_module._check_versions(_Client(worker, pyfrc="2025.9.9"), "tcp://10.0.0.5:1")
+    here = f"({versions()['pyfrc']} here)"
+    assert str(raised.value).startswith(f"the worker at tcp://10.0.0.6:1 has another version: pyfrc 2025.9.9 {here}\n")
 
 
 def test_workers_play_the_matches(cluster: Cluster, make_project) -> None:

@@ -6,7 +6,6 @@ from collections import Counter
 from typing import Any
 
 import pytest
-from conftest import sampled
 
 from pyfrc_core.fuzz.guidance.seed_schedule import SeedScheduler
 from pyfrc_core.fuzz.inputs.left_out import needed_inputs, without
@@ -71,20 +70,16 @@ def test_after_misbehavior_the_match_goes_on(make_project) -> None:
     assert "2 failures" in result.stdout
 
 
-@pytest.mark.parametrize(
-    ("created", "disabled"),
-    sampled(
-        [
-            ("pass", "self.can.set(0.2)"),
-            ("pass", "self.can.setVoltage(4.0)"),
-            ("self.drive = DifferentialDrive(self.can, CanMotor())", "self.drive.arcadeDrive(0.5, 0.0)"),
-            ("self.group = wpilib.MotorControllerGroup(self.can)", "self.group.set(0.5)"),
-            ("self.drive = DifferentialDrive(self.can.set, self.can.set)", "self.drive.tankDrive(0.5, 0.5)"),
-        ],
-        ("self.drive = DifferentialDrive(self.can, CanMotor())", "self.drive.arcadeDrive(0.5, 0.0)"),
-    ),
-)
-def test_controllers_on_the_can_bus_are_inert_while_disabled(created: str, disabled: str, make_project) -> None:
+def test_controllers_on_the_can_bus_are_inert_while_disabled(make_project) -> None:
+    created = (
+        "self.drive = DifferentialDrive(self.can, CanMotor());"
+        " self.group = wpilib.MotorControllerGroup(self.can);"
+        " self.functions = DifferentialDrive(self.can.set, self.can.set)"
+    )
+    disabled = (
+        "self.can.set(0.2); self.can.setVoltage(4.0); self.drive.arcadeDrive(0.5, 0.0); self.group.set(0.5);"
+        " self.functions.tankDrive(0.5, 0.5)"
+    )
     project = make(make_project, created=created, disabled=disabled, seconds=20)
     result = project.run("fuzz", "--seed", "1", "--runs", "1")
     assert result.code == 0, result.output

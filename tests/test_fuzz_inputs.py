@@ -1,9 +1,10 @@
-"""The inputs that `pyfrc fuzz` varies: a robot for each kind, which fails when it meets a certain value."""
+"""The inputs that `pyfrc fuzz` varies: code for each kind, which fails when it meets a certain value."""
 
 from __future__ import annotations
 
 import math
 import random
+from collections.abc import Sequence
 from types import FunctionType
 from typing import Any
 
@@ -23,24 +24,44 @@ from pyfrc_core.runtime.scripts.network_targets import entry_target, parse_entry
 from pyfrc_core.runtime.scripts.script import load_script
 from pyfrc_core.runtime.scripts.targets import Targets
 
+#: Robots have such a class for each kind of input: its `look` fails when it meets a certain value.
+CLASS = """
+    class Kind{number}:
+        def __init__(self, pad):
+            self.pad = pad
+            self.network = ntcore.NetworkTableInstance.getDefault()
+            self.camera = self.network.getTable("limelight")
+            {first}
+
+        def look(self):
+            {then}
+    """
+
 ROBOT = """
     import ntcore
     import wpilib
     from wpilib import DriverStation, Preferences, RobotController, SmartDashboard
     from wpimath.geometry import Pose2d
+    {classes}
+    KINDS = {kinds}
 
     class MyRobot(wpilib.TimedRobot):
         def robotInit(self):
-            self.pad = wpilib.XboxController(0)
-            self.network = ntcore.NetworkTableInstance.getDefault()
-            self.camera = self.network.getTable("limelight")
-            {}
+            pad = wpilib.XboxController(0)
+            self.kinds = [kind(pad) for kind in KINDS]
 
         def teleopPeriodic(self):
-            {}
+            for kind in self.kinds:
+                {look}
     """
 
-#: Two lines of each robot: one of `robotInit`, and one of `teleopPeriodic` that fails with one kind of input.
+#: Notes which kinds have failed, and goes on.
+NOTES = """try:
+                    kind.look()
+                except Exception:
+                    open(f"met {type(kind).__name__}", "w").close()"""
+
+#: What is in a class: a line of its `__init__`, and one of `look`.
 KINDS = {
     "a camera's numbers": (
         "pass",
@@ -63,7 +84,7 @@ KINDS = {
         "if self.pose.get().x > 8: raise ValueError",
     ),
     "a pose that is not a number": (
-        "self.pose = self.network.getStructTopic('/vision/pose', Pose2d).subscribe(Pose2d())",
+        "self.pose = self.network.getStructTopic('/vision/second', Pose2d).subscribe(Pose2d())",
         "round(self.pose.get().x)",
     ),
     "a latency that jumps": (
@@ -71,7 +92,7 @@ KINDS = {
         "self.history[-1 - int(self.camera.getNumber('tl', 0.0) / 20)]",
     ),
     "pulses that are counted": (
-        "self.balls = wpilib.Counter(3)",
+        "self.balls = wpilib.Counter(5)",
         "if self.balls.get() > 1: raise ValueError",
     ),
     "a preference, read once": (
@@ -99,11 +120,11 @@ KINDS = {
         "if 10.0 <= self.lift.getDistance() <= 10.05: raise ValueError",
     ),
     "an absolute encoder that begins again": (
-        "self.absolute, self.last = wpilib.DutyCycleEncoder(0), 0.5",
-        "now = self.absolute.get(); 1 / (not self.last > 0.97 > 0.03 > now); self.last = now",
+        "self.absolute, self.last = wpilib.DutyCycleEncoder(4), 0.5",
+        "now = self.absolute.get(); before, self.last = self.last, now; 1 / (not before > 0.97 > 0.03 > now)",
     ),
     "a wheel that stands still at a rate": (
-        "self.wheel, self.last, self.still = wpilib.Encoder(0, 1), 0, 0",
+        "self.wheel, self.last, self.still = wpilib.Encoder(6, 7), 0, 0",
         "stands = self.wheel.getRate() and self.wheel.get() == self.last;"
         " self.last, self.still = self.wheel.get(), self.still + 1 if stands else 0;"
         " 1 / (self.still < 12)",
@@ -128,61 +149,95 @@ KINDS = {
     "a button that most joysticks lack": ("pass", "if self.pad.getRawButton(14): raise ValueError"),
 }
 
-#: Kinds that are met in longer matches only.
-RARE = {"an absolute encoder that begins again"}
+
+def robot(*kinds: tuple[str, str], look: str = "kind.look()") -> str:
+    classes = [CLASS.format(number=number, first=first, then=then) for number, (first, then) in enumerate(kinds)]
+    names = ", ".join(f"Kind{number}" for number in range(len(kinds)))
+    return ROBOT.format(classes="".join(classes), kinds=f"[{names}]", look=look)
+
+
+#: Met in the first matches only, or seldom beside the constants of other code: each has a robot of its own.
+ALONE = ("an entry of another type than the code reads", "a number beside constants")
+#: Met at a start only, by a text of the code, or while a camera measures nothing else: sooner beside few others.
+RARE = (
+    "a latency that jumps",
+    "a preference, read once",
+    "a string of the dashboard",
+    "an event's name",
+    "the controller's comment",
+)
+#: Met in long matches.
+LONG = ("an absolute encoder that begins again",)
+
 #: Numbers of matches, each of another campaign: few matches meet some kinds, and those of another Python are others.
 RUNS = ("8", "24", "24", "24", "24", "24")
 
 
-@pytest.mark.parametrize("kind", sampled(KINDS, "a preference that is 0"))
-def test_each_kind_of_input_is_varied(kind: str, make_project: Any) -> None:
-    first, then = KINDS[kind]
-    settings = f"[tool.pyfrc.fuzz]\nmatch_seconds = {15 if kind in RARE else 5}\n"
-    project = make_project({"robot.py": ROBOT.format(first, then), "pyproject.toml": settings})
+@pytest.mark.parametrize("kind", sampled(["a preference that is 0", *ALONE], "a preference that is 0"))
+def test_what_a_kind_of_input_finds_fails_again_in_a_replay(kind: str, make_project: Any) -> None:
+    settings = "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"
+    project = make_project({"robot.py": robot(KINDS[kind]), "pyproject.toml": settings})
     campaigns = (project.run("fuzz", "--seed", str(seed), "--runs", runs) for seed, runs in enumerate(RUNS, 1))
     assert any(result.code == 1 for result in campaigns)
-    (file,) = (project.path / "tests/fuzz").glob("*.jsonl")  # it has failed again in a replay
+    (file,) = (project.path / "tests/fuzz").glob("*.jsonl")
     assert sum(len(step.writes) for step in load_script(file).steps) <= 5
 
 
-#: What is no input: two lines of a robot as above, and one of `simulationPeriodic`.
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("kinds", "seconds"),
+    [(RARE, 5), (LONG, 15), ([kind for kind in KINDS if kind not in ALONE + RARE + LONG], 5)],
+    ids=["rare", "in long matches", "the others"],
+)
+def test_each_kind_of_input_is_varied(kinds: Sequence[str], seconds: int, make_project: Any) -> None:
+    """Of another Python, the matches are others: more campaigns are played until each kind was met."""
+    code = robot(*(KINDS[kind] for kind in kinds), look=NOTES)
+    settings = f"[tool.pyfrc.fuzz]\nmatch_seconds = {seconds}\n"
+    project = make_project({"robot.py": code, "pyproject.toml": settings})
+    missing = list(kinds)
+    for seed, runs in enumerate(RUNS, 1):
+        result = project.run("fuzz", "--seed", str(seed), "--runs", runs)
+        assert result.code == 0, result.output
+        missing = [kind for number, kind in enumerate(kinds) if not (project.path / f"met Kind{number}").exists()]
+        if not missing:
+            break
+    assert missing == []
+
+
+#: What is no input.
 NO_INPUTS = {
     "a list that the program publishes": (
         "SmartDashboard.putNumberArray('states', [0.0] * 8)",
         "SmartDashboard.putNumberArray('states', [1.0] * 8); SmartDashboard.getNumberArray('states', [0.0] * 8)[7]",
-        "pass",
     ),
     "a list that is read before the program publishes it": (
-        "SmartDashboard.getNumberArray('states', [0.0] * 8)[7]; SmartDashboard.putNumberArray('states', [0.0] * 8)",
-        "SmartDashboard.getNumberArray('states', [0.0] * 8)[7]",
-        "pass",
+        "SmartDashboard.getNumberArray('early', [0.0] * 8)[7]; SmartDashboard.putNumberArray('early', [0.0] * 8)",
+        "SmartDashboard.getNumberArray('early', [0.0] * 8)[7]",
     ),
     "a number that the program writes all the time": (
         "SmartDashboard.putNumber('loops', 0.0)",
         "loops = SmartDashboard.getNumber('loops', 0.0); 1 / (loops >= 0);"
         " SmartDashboard.putNumber('loops', loops + 1)",
-        "pass",
     ),
     "telemetry that no one reads": (
         "SmartDashboard.putNumber('speed', 1.0); SmartDashboard.putBoolean('ready', True)",
         "1 / (self.network.getEntry('/SmartDashboard/speed').getValue().value() == 1.0)",
-        "pass",
-    ),
-    "what only the simulation reads": (
-        "pass",
-        "pass",
-        "if self.camera.getNumber('tv', 0) == 1: raise ValueError",
     ),
 }
 
+SIMULATED = """
+        def simulationPeriodic(self):
+            if ntcore.NetworkTableInstance.getDefault().getTable("limelight").getNumber('tv', 0) == 1: raise ValueError
+    """
+
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", NO_INPUTS)
-def test_what_the_program_publishes_or_only_simulations_read_is_no_input(kind: str, make_project: Any) -> None:
-    first, then, simulated = NO_INPUTS[kind]
-    robot = f"{ROBOT.format(first, then).rstrip()}\n\n        def simulationPeriodic(self):\n            {simulated}\n"
-    project = make_project({"robot.py": robot, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"})
-    result = project.run("fuzz", "--seed", "1", "--runs", "24")
+def test_what_the_program_publishes_or_only_simulations_read_is_no_input(make_project: Any) -> None:
+    files = {
+        "robot.py": robot(*NO_INPUTS.values()) + SIMULATED,
+        "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n",
+    }
+    result = make_project(files).run("fuzz", "--seed", "1", "--runs", "24")
     assert result.code == 0, result.output
 
 

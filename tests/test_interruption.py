@@ -117,7 +117,7 @@ def test_an_import_that_was_interrupted_is_no_fault_of_the_robot(
 @pytest.mark.parametrize(
     "line",
     sampled(
-        ["SIGHUP coverage test", "SIGINT replay script.jsonl", "SIGINT test", "SIGTERM test", "SIGTERM profile test"],
+        ["SIGHUP coverage test", "SIGINT replay script.jsonl", "SIGTERM test"],
         "SIGHUP coverage test",
         "SIGINT replay script.jsonl",
     ),
@@ -153,7 +153,7 @@ LISTENS = """
 
 @pytest.mark.parametrize(
     "line",
-    sampled(["replay script.jsonl", "test --no-isolation", "profile test --no-isolation"], "replay script.jsonl"),
+    sampled(["replay script.jsonl", "test --no-isolation"], "replay script.jsonl"),
 )
 def test_a_robot_with_a_listener_in_this_process_ends_with_the_result(line: str, make_project: MakeProject) -> None:
     """At the end of Python, NetworkTables' thread would end the process by SIGABRT."""

@@ -55,8 +55,8 @@ def test_orders(control, robot, run):
 
 @pytest.mark.parametrize(
     "args",
-    [(), *(pytest.param(each, marks=pytest.mark.slow) for each in (("--isolation", "reuse"), ("--no-isolation",)))],
-    ids=["isolated", "reused", "one process"],
+    [(), pytest.param(("--isolation", "reuse"), marks=pytest.mark.slow)],
+    ids=["isolated", "reused"],
 )
 def test_each_run_has_the_same_order(make_project: MakeProject, args: tuple[str, ...]) -> None:
     project = make_project({"robot.py": ROBOT, "tests/orders_test.py": TEST})

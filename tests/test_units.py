@@ -112,8 +112,8 @@ def test_definitions_are_kept_and_read_again(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "content",
-    sampled([b"", b"\x80\x05garbage", b"\x80\x05K\x05.", None], None),
-    ids=["empty", "garbage", "other", "half"],
+    sampled([b"\x80\x05K\x05.", None], None),
+    ids=["other", "half"],
 )
 def test_a_damaged_cache_is_made_anew(definitions: Path, tmp_path: Path, content: bytes | None) -> None:
     folder = shutil.copytree(definitions, tmp_path / "definitions")

@@ -61,22 +61,6 @@ MAGIC = """
             pass
 """
 
-CALLBACK = """
-    import threading
-
-    import wpilib
-
-
-    class MyRobot(wpilib.TimedRobot):
-        def robotInit(self):
-            self.pressed = threading.Event()
-            self.addPeriodic(self.look, 0.05)
-
-        def look(self):
-            if self.isTeleopEnabled():
-                self.pressed.wait()
-"""
-
 READY_MADE = """
     from pyfrc.tests.basic import *
 """
@@ -87,9 +71,8 @@ READY_MADE = """
     [
         (TIMED, "teleopPeriodic", "time.sleep(0.02)", "2 s"),
         pytest.param(MAGIC, "execute", "time.sleep(0.02)", "2 s", marks=pytest.mark.slow),
-        pytest.param(CALLBACK, "look", "self.pressed.wait()", "2 s", marks=pytest.mark.slow),
     ],
-    ids=["timed", "magic", "callback"],
+    ids=["timed", "magic"],
 )
 def test_a_loop_that_waits_fails_and_names_its_line(
     make_project: MakeProject, robot: str, function: str, line: str, now: str

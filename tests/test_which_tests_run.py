@@ -20,10 +20,6 @@ def ran(result) -> list[str]:
     ("tests", "expected", "line"),
     [
         pytest.param(*(None, READY_MADE, "4 ready-made tests and 0 other tests"), marks=pytest.mark.slow),
-        pytest.param(
-            *('"""Ready-made tests."""\n', READY_MADE, "4 ready-made tests and 0 other tests"), marks=pytest.mark.slow
-        ),
-        pytest.param(*(OWN, {*READY_MADE, "own"}, "4 ready-made tests and 1 other test"), marks=pytest.mark.slow),
         ("from pyfrc.tests import *\n", {*READY_MADE, "fuzz"}, "5 ready-made tests and 0 other tests"),
         ("from pyfrc.tests import test_practice\n" + OWN, {*READY_MADE, "own"}, "4 ready-made tests and 1 other test"),
     ],
