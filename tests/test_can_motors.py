@@ -1,4 +1,4 @@
-"""`pyfrc.physics.can_motors`: the motion of mechanisms and swerve drives, without any vendor's device."""
+"""`pyfrc.physics.can_motors`: how mechanisms and swerve drives move, without any vendor's device; a SPARK's sensors."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import math
 from typing import Any
 
 import pytest
+from conftest import MakeProject
+from skips import missing_python, require
 from wpimath.geometry import Translation2d
 from wpimath.system.plant import DCMotor
 
@@ -87,3 +89,77 @@ def test_the_wheels_of_a_swerve_drive_may_be_anywhere() -> None:
     wheels: list[Any] = [Wheel((x, y), (vx - omega * y, vy + omega * x)) for x, y in places]
     speeds = SwerveDrive(*wheels).update(0.02)
     assert (speeds.vx, speeds.vy, speeds.omega) == pytest.approx((vx, vy, omega))
+
+
+SPARK = {
+    "robot.py": """
+        import rev
+        import wpilib
+
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.spark = rev.SparkFlex(9, rev.SparkFlex.MotorType.kBrushless)
+                config = rev.SparkFlexConfig()
+                config.encoder.positionConversionFactor(2.0).velocityConversionFactor(3.0)
+                config.externalEncoder.positionConversionFactor(5.0).velocityConversionFactor(7.0)
+                config.absoluteEncoder.positionConversionFactor(360.0).velocityConversionFactor(6.0)
+                config.closedLoop.setFeedbackSensor(rev.FeedbackSensor.{sensor})
+                self.spark.configure(config, rev.ResetMode.kResetSafeParameters, rev.PersistMode.kPersistParameters)
+
+            def teleopInit(self):
+                self.spark.getEncoder().setPosition(100.0)
+                self.spark.getExternalEncoder().setPosition(50.0)
+
+            def teleopPeriodic(self):
+                self.spark.set(0.5)
+        """,
+    "physics.py": """
+        from pyfrc.physics.can_motors import Mechanism, Spark
+        from wpimath.system.plant import DCMotor
+
+
+        class PhysicsEngine:
+            def __init__(self, physics_controller, robot):
+                robot.simulated = Spark(robot.spark, DCMotor.neoVortex(1), 10.0, zero=1.25)
+                self.shaft = robot.shaft = Mechanism(robot.simulated, 0.02)
+
+            def update_sim(self, now, tm_diff):
+                self.shaft.update(tm_diff)
+        """,
+    "tests/test_sensors.py": """
+        import pytest
+        import rev
+
+
+        def test_sensors(control, robot):
+            with control.run_robot():
+                absolute = robot.spark.getAbsoluteEncoder()
+                assert absolute.getPosition() == pytest.approx(0.25 * 360)
+                control.step_timing(seconds=2, autonomous=False, enabled=True)
+                turns, speed = robot.shaft.turns, robot.shaft.speed
+                # A NEO Vortex makes 6784 turns a minute with 12 V.
+                assert speed == pytest.approx(6784 / 60 / 10 / 2, rel=0.05)
+                assert absolute.getPosition() == pytest.approx((turns + 1.25) % 1 * 360, abs=0.1)
+                assert absolute.getVelocity() == pytest.approx(speed * 60 * 6, rel=0.01)
+                for encoder, began, position, velocity in (
+                    (robot.spark.getEncoder(), 100, turns * 10 * 2, speed * 60 * 10 * 3),
+                    (robot.spark.getExternalEncoder(), 50, turns * 5, speed * 60 * 7),
+                ):
+                    assert encoder.getPosition() - began == pytest.approx(position, rel=0.01)
+                    assert encoder.getVelocity() == pytest.approx(velocity, rel=0.05)  # REV's library adds noise
+                assert robot.simulated.steps() == 1
+                robot.spark.getClosedLoopController().setReference(1.0, rev.SparkFlex.ControlType.kPosition)
+                assert robot.simulated.steps() == 5
+        """,
+}
+
+
+@pytest.mark.parametrize("sensor", ["kPrimaryEncoder", "kAbsoluteEncoder"])
+def test_the_sensors_of_a_spark_follow_its_shaft_whichever_closes_the_loop(
+    sensor: str, make_project: MakeProject
+) -> None:
+    require("REV's library", missing_python())
+    project = make_project({**SPARK, "robot.py": SPARK["robot.py"].replace("{sensor}", sensor)})
+    result = project.run("test")
+    assert result.code == 0, result.output
