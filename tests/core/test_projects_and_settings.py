@@ -90,7 +90,7 @@ def test_files_that_hide_libraries(project: Project) -> None:
             "Give wpilib/ another name.",
         ),
     }
-    by_any = {each.library for each in find_hidden_by_any_name(project.root)}
+    by_any = {each.library for each in find_hidden_by_any_name(project.root, project.main_file)}
     assert {"random", "time", "turtle", "wpilib"} <= by_any <= {"random", "time", "turtle", "wpilib", "six"}
     with pytest.raises(ProjectError) as error:
         refuse_hidden_libraries(project.root, project.main_file)
