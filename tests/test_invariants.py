@@ -6,10 +6,8 @@ import re
 from typing import Any
 
 import pytest
+from core.test_invariants import rule
 
-import pyfrc
-from pyfrc_core.invariants.load import load_invariants
-from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import load_script
 
 RULES = "tests/rules.py"
@@ -62,11 +60,6 @@ SETTINGS = """
     """
 
 READY_MADE = "from pyfrc.tests import test_autonomous, test_operator_control, test_practice\n"
-
-
-def rule(body: str, head: str = "def it_holds(robot, hal_data):") -> str:
-    """The text of a file with one rule, whose body is in line 5."""
-    return f"import pyfrc\n\n@pyfrc.invariant\n{head}\n    {body}\n"
 
 
 @pytest.fixture
@@ -208,36 +201,3 @@ def test_a_new_rule_concerns_tests_that_have_passed(project) -> None:
         project.write({file: rule("assert robot.elevator.height < 0.51")})
         assert project.run("test", "--changed").code == 1
         (project.path / file).unlink()
-
-
-def test_the_decorator_returns_the_function_and_needs_no_wpilib(project) -> None:
-    def holds(robot: object) -> bool:
-        return True
-
-    assert pyfrc.invariant(holds) is holds
-    project.write({RULES: "import sys\n" + rule("assert 'pytest' not in sys.modules")})
-    (found,) = load_invariants(Project(project.path / "robot.py"))
-    assert (found.name, found.parameters, found.place) == ("it_holds", ("robot", "hal_data"), f"{RULES}:5")
-
-
-def test_rules_in_a_package_of_tests_import_their_neighbors(project) -> None:
-    project.write(
-        {
-            "tests/__init__.py": "",
-            "tests/limits.py": "HIGHEST = 0.51\n",
-            RULES: "from .limits import HIGHEST\n" + rule("assert robot < HIGHEST", "def it_holds(robot):"),
-        }
-    )
-    (found,) = load_invariants(Project(project.path / "robot.py"))
-    found.function(0.5)
-    with pytest.raises(AssertionError):
-        found.function(0.52)
-    assert found.place == f"{RULES}:5"
-
-
-def test_rules_are_in_the_order_of_their_lines(project) -> None:
-    project.write({RULES: "import pyfrc\n" + "@pyfrc.invariant\ndef {}(robot): ...\n" * 3})
-    text = (project.path / RULES).read_text()
-    (project.path / RULES).write_text(text.format("third", "first", "second"))
-    found = load_invariants(Project(project.path / "robot.py"))
-    assert [each.name for each in found] == ["third", "first", "second"]

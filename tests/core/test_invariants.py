@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import importlib.util
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 import wpilib
+from written_files import write_files
 
+import pyfrc
 from pyfrc_core.errors import PyfrcError
 from pyfrc_core.invariants.load import Invariant, load_invariants
 from pyfrc_core.invariants.watch import BrokenInvariantError, watch_invariants
 from pyfrc_core.project import Project
+from pyfrc_core.runtime.loading import import_file
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.wpi import station
 
@@ -22,19 +24,20 @@ Load = Callable[[str], tuple[Invariant, ...]]
 
 
 @pytest.fixture
-def load(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Load:
-    """Loads the rules of a text, which is the project's file tests/rules.py."""
+def load(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Load]:
+    """Loads the rules of a text, which is tests/rules.py of a project. Nothing of the project stays importable."""
     monkeypatch.setattr(sys, "path", [*sys.path])
     (tmp_path / "tests").mkdir()
     (tmp_path / "robot.py").touch()
-    monkeypatch.setitem(sys.modules, "rules", sys)  # put back, so that the next test imports its own
-    del sys.modules["rules"]
 
     def load(text: str) -> tuple[Invariant, ...]:
         (tmp_path / "tests/rules.py").write_text(text, "utf-8")
         return load_invariants(Project(tmp_path / "robot.py"))
 
-    return load
+    yield load
+    for name, module in [*sys.modules.items()]:
+        if str(getattr(module, "__file__", "")).startswith(str(tmp_path)):
+            del sys.modules[name]
 
 
 def rule(body: str, head: str = "def it_holds(robot, hal_data):") -> str:
@@ -83,6 +86,31 @@ def test_what_cannot_be_a_rule_is_named_with_its_line(load: Load, head: str, bod
     assert message in str(raised.value)
 
 
+def test_the_decorator_returns_the_function_and_needs_no_wpilib(load: Load) -> None:
+    def holds(robot: object) -> bool:
+        return True
+
+    assert pyfrc.invariant(holds) is holds
+    (found,) = load("import sys\n" + rule("assert 'pytest' not in sys.modules"))
+    assert (found.name, found.parameters, found.place) == ("it_holds", ("robot", "hal_data"), "tests/rules.py:5")
+
+
+def test_rules_in_a_package_of_tests_import_their_neighbors(load: Load, tmp_path: Path) -> None:
+    write_files(tmp_path, {"tests/__init__.py": "", "tests/limits.py": "HIGHEST = 0.51\n"})
+    text = "from .limits import HIGHEST\n" + rule("assert robot < HIGHEST", "def it_holds(robot):")
+    (found,) = load(text)
+    found.function(0.5)
+    with pytest.raises(AssertionError):
+        found.function(0.52)
+    assert found.place == "tests/rules.py:5"
+
+
+def test_rules_are_in_the_order_of_their_lines(load: Load) -> None:
+    text = "import pyfrc\n" + "@pyfrc.invariant\ndef {}(robot): ...\n" * 3
+    found = load(text.format("third", "first", "second"))
+    assert [each.name for each in found] == ["third", "first", "second"]
+
+
 def found_in(run: RobotRun, rules: tuple[Invariant, ...], directory: Path, robot: Any) -> list[BrokenInvariantError]:
     """Run the robot for three packets of teleoperated mode; return what is reported of the rules."""
     found: list[BrokenInvariantError] = []
@@ -108,11 +136,7 @@ class Arm:
 def robot(load: Load, tmp_path: Path) -> type[wpilib.TimedRobot]:
     """A robot with an arm."""
     (tmp_path / "arm.py").write_text(ARM, "utf-8")
-    spec = importlib.util.spec_from_file_location("arm_of_rules", tmp_path / "arm.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    module = import_file(Project(tmp_path / "robot.py"), tmp_path / "arm.py")
 
     class Robot(wpilib.TimedRobot):
         def robotInit(self) -> None:
