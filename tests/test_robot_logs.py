@@ -18,7 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from roborio import Proxy, Roborio, require_roborio
 from roborio.computer import Computer
-from roborio.local import LocalRobot, directory_in_memory
+from roborio.local import LocalRobot
 from roborio.ssh import SshConnection
 from systemcore import Systemcore, require_systemcore
 
@@ -43,16 +43,15 @@ CONTENT = random.Random(7).randbytes(1_300_000)
 
 
 @pytest.fixture(params=[ROBORIO])
-def robot(request: pytest.FixtureRequest) -> Iterator[LocalRobot]:
+def robot(request: pytest.FixtureRequest, in_memory: Path) -> LocalRobot:
     """A robot with four logs: two on its USB stick, two in its home directory."""
-    with directory_in_memory() as directory:
-        made = LocalRobot.new(directory / "robot", request.param)
-        put(made, "/u/logs", Q12, CONTENT, hours=1)
-        put(made, "/u/logs", KIT, b"a", hours=30)
-        put(made, f"{request.param.layout.home}/logs", Q9, b"b" * 3000, hours=5)
-        put(made, f"{request.param.layout.home}/logs", HOOT, b"", hours=50)
-        put(made, "/u/logs", "notes.txt", b"", hours=0)
-        yield made
+    made = LocalRobot.new(in_memory / "robot", request.param)
+    put(made, "/u/logs", Q12, CONTENT, hours=1)
+    put(made, "/u/logs", KIT, b"a", hours=30)
+    put(made, f"{request.param.layout.home}/logs", Q9, b"b" * 3000, hours=5)
+    put(made, f"{request.param.layout.home}/logs", HOOT, b"", hours=50)
+    put(made, "/u/logs", "notes.txt", b"", hours=0)
+    return made
 
 
 def put(robot: LocalRobot, directory: str, name: str, content: bytes, hours: float) -> Path:

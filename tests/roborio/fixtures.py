@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from importlib.metadata import version
+from pathlib import Path
 
 import pytest
 
-from .local import LocalRobot, directory_in_memory
+from .local import LocalRobot
 from .machine import Roborio, require_roborio
 
 
@@ -20,7 +21,6 @@ def roborio() -> Iterator[Roborio]:
 
 
 @pytest.fixture(name="robot")
-def local_robot() -> Iterator[LocalRobot]:
+def local_robot(in_memory: Path) -> LocalRobot:
     """A robot's directories, here."""
-    with directory_in_memory() as directory:
-        yield LocalRobot.new(directory / "robot")
+    return LocalRobot.new(in_memory / "robot")
