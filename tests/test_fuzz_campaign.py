@@ -18,7 +18,6 @@ from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.runtime.scripts.script import load_script
 
 ROBOTS = Path(__file__).parent / "robots"
-REGRESSIONS = "tests/test_fuzz_regressions.py"
 
 SHORT_MATCHES = """
     [tool.pyfrc.fuzz]

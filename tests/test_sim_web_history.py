@@ -17,9 +17,6 @@ from pyfrc_core.sim.ui.web.messages import json_text, read_value
 from pyfrc_core.sim.ui.web.plots import series
 from pyfrc_core.sim.ui.web.runs import Runs
 
-#: Packets of a whole match.
-MATCH = 7725
-
 
 def random_value(chance: random.Random) -> object:
     kinds = (

@@ -385,39 +385,3 @@ def test_a_text_without_quotes_in_toml(tmp_path: Path, line: str, quoted: str) -
         TomlFile(tmp_path / "pyproject.toml")
     assert caught.value.remedy == (f"A text needs quotes: write {quoted}" if quoted else None)
     assert str(caught.value).startswith("pyproject.toml:2: ") or "pyproject.toml:2: " in str(caught.value)
-
-
-# --- one bug that breaks many tests
-
-ONE_BUG = """
-    import wpilib
-
-    class MyRobot(wpilib.TimedRobot):
-        def robotInit(self):
-            self.count = 0
-
-        def teleopPeriodic(self):
-            self.count += 1
-            raise ValueError(f"no such arm: {self.count}")
-
-        def autonomousPeriodic(self):
-            raise ValueError("another")
-"""
-
-EIGHT_TESTS = """
-    import pytest
-
-    @pytest.mark.parametrize("number", range(6))
-    def test_teleop(control, robot, number):
-        with control.run_robot():
-            control.step_timing(seconds=number, autonomous=False, enabled=False)
-            control.step_timing(seconds=1, autonomous=False, enabled=True)
-
-    def test_autonomous(control, robot):
-        with control.run_robot():
-            control.step_timing(seconds=1, autonomous=True, enabled=True)
-
-    @pytest.mark.parametrize("number", range(2))
-    def test_itself(control, robot, number):
-        assert number == 5
-"""
